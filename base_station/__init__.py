@@ -1,0 +1,1 @@
+"""The base station: records, fuses, raises alarms, serves the console, replays."""

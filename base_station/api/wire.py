@@ -1,0 +1,153 @@
+"""What the console hears over the WebSocket ``/api/v1/live``: a snapshot, then deltas.
+
+Every message carries ``seq``; a delta whose ``seq`` is not the last one plus one means that
+the console missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).
+Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
+Positions are metres north, east and down in the incident frame.  The console's
+``src/wire.ts`` mirrors these types.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+Link = Literal["live", "stale", "lost", "never"]
+
+
+class PersonView(msgspec.Struct, frozen=True):
+    person_id: str
+    name: str
+    crew: str
+    role: str
+    photo_url: str | None
+
+
+class StatusView(msgspec.Struct, frozen=True):
+    activity: str  # lower-case name of shared.messages.Activity
+    motionless_s: float
+    battery: float | None  # 0..1
+    mayday: bool
+    steps: int
+    distance_m: float
+
+
+class PositionView(msgspec.Struct, frozen=True):
+    t_ms: int  # the time to which the position belongs
+    north_m: float
+    east_m: float
+    down_m: float
+    floor: int | None
+    ellipse_major_m: float  # semi-axes of the 95 % region
+    ellipse_minor_m: float
+    ellipse_heading_rad: float  # of the major axis, clockwise from north
+    std_down_m: float
+    heading_rad: float
+    heading_std_rad: float
+    quality: str  # lower-case name of shared.quality.Quality
+    quality_reason: str
+    since_gps_s: float | None
+    lat_deg: float | None  # where the site has an anchor
+    lon_deg: float | None
+
+
+class AlarmView(msgspec.Struct, frozen=True):
+    alarm_id: str
+    rule: str
+    unit_id: str
+    priority: int
+    state: str  # raised | acknowledged | resolved
+    level: str
+    text: str
+    by: str
+    raised_ms: int
+    changed_ms: int
+
+
+class UnitView(msgspec.Struct, frozen=True):
+    """Everything a card and the plan show of one unit; a delta carries it whole."""
+
+    unit_id: str
+    label: str
+    registered: bool
+    person: PersonView | None
+    link: Link
+    last_heard_ms: int | None
+    status: StatusView | None
+    status_ms: int | None  # age of the status is shown too
+    ambient_degc: float | None
+    heat_level: str  # "" | caution | warning | critical
+    position: PositionView | None
+    inside_since_ms: int | None
+    alarms: tuple[str, ...]  # ids of the alarms that are not resolved
+
+
+class IncidentView(msgspec.Struct, frozen=True):
+    incident_id: str
+    name: str
+    opened_ms: int
+    closed_ms: int | None
+
+
+class HealthView(msgspec.Struct, frozen=True):
+    """The station's own state; ``problems`` are sentences for a person."""
+
+    problems: tuple[str, ...]
+    messages: int
+    undecodable: int
+    unknown_units: int
+    log_bytes: int
+    disk_free_bytes: int
+    messages_per_s: float
+    insecure: bool
+
+
+class ReplayView(msgspec.Struct, frozen=True):
+    """Where a replay stands; absent when the console shows what is live."""
+
+    incident_id: str
+    start_ms: int
+    end_ms: int
+    at_ms: int
+    speed: float
+    playing: bool
+
+
+class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
+    """One point of a trail, at most one a second: ``[t_ms, north_m, east_m, floor]``."""
+
+    t_ms: int
+    north_m: float
+    east_m: float
+    floor: int | None
+
+
+class AnchorView(msgspec.Struct, frozen=True):
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    plan_rotation_rad: float
+
+
+class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
+    seq: int
+    now_ms: int
+    incident: IncidentView | None
+    units: tuple[UnitView, ...]
+    alarms: tuple[AlarmView, ...]  # all that are not resolved, and the last resolved ones
+    trails: dict[str, tuple[TrailPoint, ...]]  # by unit
+    plan: msgspec.Raw | None  # GeoJSON as stored: see docs/messages
+    anchor: AnchorView | None
+    health: HealthView
+    replay: ReplayView | None
+
+
+class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
+    seq: int
+    now_ms: int
+    units: tuple[UnitView, ...] = ()
+    alarms: tuple[AlarmView, ...] = ()
+    health: HealthView | None = None
+    incident: IncidentView | None = None
+    replay: ReplayView | None = None

@@ -1,0 +1,57 @@
+"""What steps the station's pipeline, live or from a log, and what comes out of a step.
+
+A log record is ``(t_ns, key, payload)``; ``event_of`` makes the event of it.  Ticks and
+operators' actions are records under ``muster/v1/station/...`` like any other message, so that
+a log replays without knowing anything else.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.channels import parse_key
+from shared.codec import decode
+from shared.errors import WireError
+from shared.messages import AlarmChange, FusedPosition, Message
+
+
+class Received(msgspec.Struct, frozen=True):
+    """A message that could be read."""
+
+    t_ns: int  # station time (UTC, never going back) at which it came
+    unit_id: str  # from the key
+    message: Message
+
+
+class Rejected(msgspec.Struct, frozen=True):
+    """Bytes that could not be read; they are in the log all the same."""
+
+    t_ns: int
+    key: str
+    reason: str
+
+
+StationEvent = Received | Rejected
+
+
+class UnitTouched(msgspec.Struct, frozen=True):
+    """Something that the console shows of this unit may have changed."""
+
+    unit_id: str
+
+
+Output = FusedPosition | AlarmChange | UnitTouched
+
+
+def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
+    """The event that a log record stands for; never raises for what a sender may do."""
+    try:
+        unit_id, channel = parse_key(key)
+        message = decode(channel, payload)
+    except WireError as error:
+        return Rejected(t_ns, key, str(error))
+    if message.header.unit_id != unit_id:
+        return Rejected(
+            t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
+        )
+    return Received(t_ns, unit_id, message)

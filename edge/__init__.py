@@ -1,0 +1,1 @@
+"""The edge agent: one per wearable; tracks its wearer and publishes what it knows."""

@@ -1,0 +1,96 @@
+"""What a wearable's sensors deliver: batches of samples with their own time.
+
+Axes are the sensor's own (any mount); at rest the accelerometer shows the
+specific force that holds the sensor up, about +9.81 m/s^2 pointing away from
+the ground.  Times are the unit's monotonic clock in integer nanoseconds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Nanoseconds = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImuBatch:
+    """Consecutive inertial samples of one unit; ``n`` may be 1.
+
+    Optional columns are ``None`` when the unit has no such sensor and hold NaN
+    where a sample was missed.
+    """
+
+    t_ns: Nanoseconds  # (n,) monotonic
+    accel_mps2: Floats  # (n, 3) specific force, sensor axes
+    gyro_radps: Floats  # (n, 3) angular rate, sensor axes
+    mag_ut: Floats | None = None  # (n, 3) magnetic flux density, sensor axes
+    pressure_pa: Floats | None = None  # (n,) static air pressure
+    imu_temperature_degc: Floats | None = None  # (n,) inside the sensor
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+
+@dataclass(frozen=True, slots=True)
+class AmbientSample:
+    """The temperature around the equipment (not of the wearer)."""
+
+    t_ns: int
+    temperature_degc: float
+
+
+@dataclass(frozen=True, slots=True)
+class GpsSample:
+    """One fix of a satellite receiver, WGS-84; ``nan`` where it does not say."""
+
+    t_ns: int  # monotonic time at which the fix is valid
+    lat_deg: float
+    lon_deg: float
+    height_m: float  # above the ellipsoid
+    horizontal_std_m: float
+    vertical_std_m: float
+    fix_type: int  # 0 none, 2 two-dimensional, 3 three-dimensional (as gpsd's mode)
+    satellites: int
+    speed_mps: float
+    course_rad: float  # clockwise from true north
+
+
+@dataclass(frozen=True, slots=True)
+class BatterySample:
+    t_ns: int
+    level: float  # 0 empty ... 1 full
+
+
+@dataclass(frozen=True, slots=True)
+class ButtonPress:
+    """The wearer pressed the unit's button: ``mayday`` or ``cancel``."""
+
+    t_ns: int
+    button: str
+
+
+OtherSample = AmbientSample | GpsSample | BatterySample | ButtonPress
+
+
+@dataclass(frozen=True, slots=True)
+class SensorBatch:
+    """What a source hands over at once: inertial samples and whatever came with them."""
+
+    imu: ImuBatch
+    others: tuple[OtherSample, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SensorDescription:
+    """What a unit's data sheet says; all a tracker may know about a recording in advance."""
+
+    name: str
+    rate_hz: float
+    accel_full_scale_mps2: float | None = None
+    gyro_full_scale_radps: float | None = None
+    mag_present: bool = False
+    barometer_present: bool = False

@@ -1,0 +1,40 @@
+"""The port every sample source implements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from edge.samples import SensorBatch, SensorDescription
+
+
+@dataclass(frozen=True, slots=True)
+class Outage:
+    """A time during which a source's (simulated) radio is down, since the start."""
+
+    start_s: float
+    duration_s: float
+
+
+class Source(Protocol):
+    """Where samples come from.
+
+    ``batches`` yields in time order, as fast as the consumer asks; pacing to
+    real time is the runtime's business.  A real driver blocks until it has samples.
+    """
+
+    @property
+    def description(self) -> SensorDescription: ...
+
+    @property
+    def is_live(self) -> bool:
+        """True for hardware, which paces itself; false for anything replayed or simulated."""
+        ...
+
+    @property
+    def radio_outages(self) -> tuple[Outage, ...]: ...
+
+    def batches(self) -> Iterator[SensorBatch]: ...
+
+    def close(self) -> None: ...

@@ -1,0 +1,54 @@
+"""The port every tracker implements: inertial samples in, estimates of the foot's path out.
+
+The navigation frame is NED with its origin at the first sample and, until
+something better is known, an arbitrary but constant heading of "north".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from edge.samples import Floats, ImuBatch, Nanoseconds
+from shared.quality import Quality, Reason
+
+__all__ = ["Quality", "Reason", "TrackBatch", "Tracker"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackBatch:
+    """Estimates for consecutive samples, one row a sample, possibly none.
+
+    A tracker may hold samples back for at most one second (fixed lag); the
+    rows say their own time, in order, each sample's row exactly once.
+    """
+
+    t_ns: Nanoseconds  # (n,) the sample's own time
+    position_n_m: Floats  # (n, 3) north, east, down
+    velocity_n_mps: Floats  # (n, 3)
+    quaternion_nb: Floats  # (n, 4) Hamilton w, x, y, z; takes sensor axes to navigation axes
+    position_cov_m2: Floats  # (n, 3, 3)
+    heading_std_rad: Floats  # (n,)
+    stationary: NDArray[np.bool_]  # (n,) the foot stands still
+    distance_m: Floats  # (n,) horizontal path length since the start, stance to stance
+    steps: NDArray[np.int64]  # (n,) strides of this foot counted since the start
+    quality: NDArray[np.uint8]  # (n,) Quality
+    reasons: NDArray[np.uint32]  # (n,) Reason bits
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+
+class Tracker(Protocol):
+    """``push`` in any batching gives the same rows to the last bit."""
+
+    def push(self, batch: ImuBatch) -> TrackBatch:
+        """Take samples; return the rows that have become final."""
+        ...
+
+    def finish(self) -> TrackBatch:
+        """Return the rows still held back; the tracker is used up."""
+        ...

@@ -1,0 +1,136 @@
+"""THE table of channels: what travels under which key, how often, how urgently, and whether
+it is kept.  Liveness, logging, decoding and the documentation are derived from it.
+
+Keys: ``muster/v1/{unit}/up/...`` from a unit, ``muster/v1/{unit}/alert/...`` from a unit and
+urgent, ``muster/v1/{unit}/command/...`` to a unit (``all`` for every unit), and
+``muster/v1/station/...`` what the station itself decides.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+from shared.errors import ConfigError, UnknownChannelError
+from shared.messages import (
+    AlarmChange,
+    Command,
+    CommandReply,
+    FusedPosition,
+    GpsFix,
+    Heartbeat,
+    Message,
+    OperatorAction,
+    Position,
+    RawImu,
+    Status,
+    Temperature,
+    Tick,
+    UnitDescription,
+    UnitEvent,
+)
+
+ROOT = "muster/v1"
+EVERY_UNIT = "all"
+
+
+class Qos(Enum):
+    """How a channel's messages are queued on the way."""
+
+    LIVE = "live"  # dropped rather than delayed; the journal brings what was dropped
+    ALERT = "alert"  # ahead of everything else, sent at once
+    LOCAL = "local"  # never on the bus: the station's own, for its log and its console
+
+
+class Direction(Enum):
+    UP = "up"  # unit to station
+    DOWN = "down"  # station to unit
+    STATION = "station"  # inside the station
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One row of the table."""
+
+    name: str
+    suffix: str  # the key after ``muster/v1/{unit}/``
+    message: type[Message]
+    direction: Direction
+    qos: Qos
+    rate_hz: float | None  # None: when something happens
+    logged: bool
+    stale_after_s: float | None  # None: silence means nothing
+
+    def key(self, unit_id: str) -> str:
+        return f"{ROOT}/{unit_id}/{self.suffix}"
+
+
+_UP, _DOWN, _STATION = Direction.UP, Direction.DOWN, Direction.STATION
+POSITION = Channel("position", "up/position", Position, _UP, Qos.LIVE, 5.0, True, 10.0)
+STATUS = Channel("status", "up/status", Status, _UP, Qos.LIVE, 1.0, True, 10.0)
+TEMPERATURE = Channel("temperature", "up/temperature", Temperature, _UP, Qos.LIVE, 1.0, True, 10.0)
+DESCRIPTION = Channel(
+    "description", "up/description", UnitDescription, _UP, Qos.LIVE, 1 / 60, True, None
+)
+GPS = Channel("gps", "up/gps", GpsFix, _UP, Qos.LIVE, 1.0, True, None)
+IMU = Channel("imu", "up/imu", RawImu, _UP, Qos.LIVE, 20.0, True, None)
+HEARTBEAT = Channel("heartbeat", "heartbeat", Heartbeat, _UP, Qos.LIVE, 1.0, False, 10.0)
+EVENT = Channel("event", "alert/event", UnitEvent, _UP, Qos.ALERT, None, True, None)
+REPLY = Channel("reply", "alert/reply", CommandReply, _UP, Qos.ALERT, None, True, None)
+COMMAND = Channel("command", "command/send", Command, _DOWN, Qos.ALERT, None, True, None)
+FUSED = Channel("fused", "fused", FusedPosition, _STATION, Qos.LOCAL, 5.0, True, None)
+ALARM = Channel("alarm", "alarm", AlarmChange, _STATION, Qos.LOCAL, None, True, None)
+OPERATOR = Channel("operator", "operator", OperatorAction, _STATION, Qos.LOCAL, None, True, None)
+TICK = Channel("tick", "tick", Tick, _STATION, Qos.LOCAL, 1.0, True, None)
+
+CHANNELS: tuple[Channel, ...] = (
+    POSITION,
+    STATUS,
+    TEMPERATURE,
+    DESCRIPTION,
+    GPS,
+    IMU,
+    HEARTBEAT,
+    EVENT,
+    REPLY,
+    COMMAND,
+    FUSED,
+    ALARM,
+    OPERATOR,
+    TICK,
+)
+
+_BY_SUFFIX = {channel.suffix: channel for channel in CHANNELS}
+_BY_MESSAGE = {channel.message: channel for channel in CHANNELS}
+_UNIT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+
+
+def channel_of(message: Message) -> Channel:
+    """The channel that carries messages of this type."""
+    return _BY_MESSAGE[type(message)]
+
+
+def parse_key(key: str) -> tuple[str, Channel]:
+    """``(unit_id, channel)`` of a key; UnknownChannelError where no row of the table has it."""
+    parts = key.split("/", 3)
+    if len(parts) == 4 and f"{parts[0]}/{parts[1]}" == ROOT:
+        channel = _BY_SUFFIX.get(parts[3])
+        if channel is not None:
+            return parts[2], channel
+    raise UnknownChannelError(f"no channel has the key {key!r}")
+
+
+def alive_key(unit_id: str) -> str:
+    """The key of the liveliness token that a unit holds while it is linked."""
+    return f"{ROOT}/{unit_id}/alive"
+
+
+def validate_unit_id(unit_id: str) -> str:
+    """Return ``unit_id`` when it can stand in a key, else raise ConfigError."""
+    if _UNIT_ID.fullmatch(unit_id) is None or unit_id in (EVERY_UNIT, "station"):
+        raise ConfigError(
+            f"unit id {unit_id!r} cannot be used: take 1 to 64 letters, digits, '-', '_' or '.', "
+            "beginning with a letter or digit, and neither 'all' nor 'station'"
+        )
+    return unit_id

@@ -1,0 +1,62 @@
+"""Every exception Muster raises on purpose.
+
+    MusterError
+      ├─ ConfigError        a setting is unknown, missing or out of range
+      ├─ RecordingError     a recording cannot be read as sensor samples
+      ├─ WireError          bytes cannot be understood as a message
+      │    ├─ UnknownChannelError   no channel has this key
+      │    └─ UnknownSchemaError    a schema revision newer than this program
+      ├─ BusError           the message bus cannot do what was asked
+      ├─ LogError           a log segment or folder cannot be read or written
+      │    └─ DataFolderInUseError  another station writes to this folder
+      ├─ StoreError         the database cannot do what was asked
+      └─ UserError          a person asked for something impossible
+
+Each message says what happened and what to do about it.
+"""
+
+from __future__ import annotations
+
+
+class MusterError(Exception):
+    """Base of every error raised on purpose; its text is meant for a person."""
+
+
+class ConfigError(MusterError):
+    """A setting is unknown, missing or out of range."""
+
+
+class RecordingError(MusterError):
+    """A recording cannot be read as sensor samples."""
+
+
+class WireError(MusterError):
+    """Bytes cannot be understood as a message."""
+
+
+class UnknownChannelError(WireError):
+    """No channel has this key."""
+
+
+class UnknownSchemaError(WireError):
+    """The message was written by a program newer than this one."""
+
+
+class BusError(MusterError):
+    """The message bus cannot do what was asked."""
+
+
+class LogError(MusterError):
+    """A log segment or folder cannot be read or written."""
+
+
+class DataFolderInUseError(LogError):
+    """Another station writes to this data folder."""
+
+
+class StoreError(MusterError):
+    """The database cannot do what was asked."""
+
+
+class UserError(MusterError):
+    """A person asked for something impossible."""

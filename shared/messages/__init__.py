@@ -1,0 +1,60 @@
+"""The typed view of every message: SI units, frozen, with ``to_wire`` and ``from_wire``."""
+
+from __future__ import annotations
+
+from shared.messages.alarm import AlarmChange, AlarmState
+from shared.messages.command import Command, CommandKind, CommandReply, CommandState
+from shared.messages.event import EventKind, Heartbeat, UnitEvent
+from shared.messages.fused import FusedPosition
+from shared.messages.gps import FixType, GpsFix
+from shared.messages.header import SCHEMA_REVISION, STATION_ID, Header
+from shared.messages.imu import RawImu
+from shared.messages.position import Position
+from shared.messages.station import OperatorAction, Tick
+from shared.messages.status import Activity, Status
+from shared.messages.temperature import Temperature
+from shared.messages.unit_description import UnitDescription
+
+Message = (
+    Position
+    | Status
+    | Temperature
+    | UnitDescription
+    | RawImu
+    | GpsFix
+    | UnitEvent
+    | Heartbeat
+    | Command
+    | CommandReply
+    | FusedPosition
+    | AlarmChange
+    | OperatorAction
+    | Tick
+)
+
+__all__ = [
+    "SCHEMA_REVISION",
+    "STATION_ID",
+    "Activity",
+    "AlarmChange",
+    "AlarmState",
+    "Command",
+    "CommandKind",
+    "CommandReply",
+    "CommandState",
+    "EventKind",
+    "FixType",
+    "FusedPosition",
+    "GpsFix",
+    "Header",
+    "Heartbeat",
+    "Message",
+    "OperatorAction",
+    "Position",
+    "RawImu",
+    "Status",
+    "Temperature",
+    "Tick",
+    "UnitDescription",
+    "UnitEvent",
+]

@@ -1,0 +1,60 @@
+"""One change in the life of an alarm, as the station decided it."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import alarm_pb2
+
+
+class AlarmState(IntEnum):
+    UNKNOWN = 0
+    RAISED = 1
+    ACKNOWLEDGED = 2
+    RESOLVED = 3
+
+
+class AlarmChange(msgspec.Struct, frozen=True):
+    header: Header  # the station's; t_utc_ns is the station time of the change
+    alarm_id: str  # the same through the alarm's life
+    rule: str  # as in base_station.alarms.ALARMS
+    unit_id: str  # empty: the station itself
+    priority: int  # 1 immediate, 2 soon, 3 information
+    state: AlarmState
+    level: str  # within the rule: "pre-alert", "critical" ...
+    text: str  # for a person
+    by: str  # who acknowledged, or what resolved it
+    raised_ns: int  # station time of the first change
+
+    def to_wire(self) -> alarm_pb2.AlarmChange:
+        return alarm_pb2.AlarmChange(
+            header=self.header.to_wire(),
+            alarm_id=self.alarm_id,
+            rule=self.rule,
+            unit_id=self.unit_id,
+            priority=self.priority,
+            state=int(self.state),  # type: ignore[arg-type]  # stubs want the generated enum
+            level=self.level,
+            text=self.text,
+            by=self.by,
+            raised_ns=self.raised_ns,
+        )
+
+    @staticmethod
+    def from_wire(wire: alarm_pb2.AlarmChange) -> AlarmChange:
+        return AlarmChange(
+            header=Header.from_wire(wire.header),
+            alarm_id=wire.alarm_id,
+            rule=wire.rule,
+            unit_id=wire.unit_id,
+            priority=wire.priority,
+            state=known(AlarmState, wire.state),
+            level=wire.level,
+            text=wire.text,
+            by=wire.by,
+            raised_ns=wire.raised_ns,
+        )

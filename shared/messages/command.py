@@ -1,0 +1,86 @@
+"""What the station tells a unit, and the unit's answer."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import command_pb2
+from shared.messages.quantise import unsigned32
+
+
+class CommandKind(IntEnum):
+    UNKNOWN = 0
+    EVACUATE = 1
+    PAR_REQUEST = 2
+    TEXT = 3
+    LOCATE = 4
+    SET_POSITION_RATE = 5
+    RESET_ALARM = 6
+
+
+class CommandState(IntEnum):
+    UNKNOWN = 0
+    RECEIVED = 1
+    ACKNOWLEDGED = 2  # by the wearer
+    REFUSED = 3
+
+
+class Command(msgspec.Struct, frozen=True):
+    header: Header
+    command_id: str
+    kind: CommandKind
+    issued_by: str
+    expires_utc_ns: int
+    text: str = ""
+    position_rate_hz: float = 0.0
+
+    def to_wire(self) -> command_pb2.Command:
+        return command_pb2.Command(
+            header=self.header.to_wire(),
+            command_id=self.command_id,
+            kind=int(self.kind),  # type: ignore[arg-type]  # stubs want the generated enum
+            issued_by=self.issued_by,
+            expires_utc_ns=self.expires_utc_ns,
+            text=self.text,
+            position_rate_mhz=unsigned32(self.position_rate_hz, 1e3),
+        )
+
+    @staticmethod
+    def from_wire(wire: command_pb2.Command) -> Command:
+        return Command(
+            header=Header.from_wire(wire.header),
+            command_id=wire.command_id,
+            kind=known(CommandKind, wire.kind),
+            issued_by=wire.issued_by,
+            expires_utc_ns=wire.expires_utc_ns,
+            text=wire.text,
+            position_rate_hz=wire.position_rate_mhz * 1e-3,
+        )
+
+
+class CommandReply(msgspec.Struct, frozen=True):
+    header: Header
+    command_id: str
+    state: CommandState
+    detail: str = ""
+
+    def to_wire(self) -> command_pb2.CommandReply:
+        return command_pb2.CommandReply(
+            header=self.header.to_wire(),
+            command_id=self.command_id,
+            state=int(self.state),  # type: ignore[arg-type]  # stubs want the generated enum
+            detail=self.detail,
+        )
+
+    @staticmethod
+    def from_wire(wire: command_pb2.CommandReply) -> CommandReply:
+        return CommandReply(
+            header=Header.from_wire(wire.header),
+            command_id=wire.command_id,
+            state=known(CommandState, wire.state),
+            detail=wire.detail,
+        )

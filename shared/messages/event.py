@@ -1,0 +1,63 @@
+"""Things that happened to a unit and must not be missed, and its sign of life."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import event_pb2
+
+
+class EventKind(IntEnum):
+    UNKNOWN = 0
+    MAYDAY = 1
+    MAYDAY_CANCELLED = 2
+    FALL = 3
+    STARTED = 4
+    STOPPED = 5
+    SENSOR_FAULT = 6
+    STORAGE_FAULT = 7
+    SOURCE_ENDED = 8
+
+
+class UnitEvent(msgspec.Struct, frozen=True):
+    header: Header
+    kind: EventKind
+    detail: str = ""
+
+    def to_wire(self) -> event_pb2.UnitEvent:
+        return event_pb2.UnitEvent(
+            header=self.header.to_wire(),
+            kind=int(self.kind),  # type: ignore[arg-type]  # stubs want the generated enum
+            detail=self.detail,
+        )
+
+    @staticmethod
+    def from_wire(wire: event_pb2.UnitEvent) -> UnitEvent:
+        return UnitEvent(
+            header=Header.from_wire(wire.header),
+            kind=known(EventKind, wire.kind),
+            detail=wire.detail,
+        )
+
+
+class Heartbeat(msgspec.Struct, frozen=True):
+    """The unit is alive and can still serve its journal from ``first_seq`` to ``last_seq``."""
+
+    header: Header
+    first_seq: int
+    last_seq: int
+
+    def to_wire(self) -> event_pb2.Heartbeat:
+        return event_pb2.Heartbeat(
+            header=self.header.to_wire(), first_seq=self.first_seq, last_seq=self.last_seq
+        )
+
+    @staticmethod
+    def from_wire(wire: event_pb2.Heartbeat) -> Heartbeat:
+        return Heartbeat(
+            header=Header.from_wire(wire.header), first_seq=wire.first_seq, last_seq=wire.last_seq
+        )

@@ -1,0 +1,84 @@
+"""Where the station believes a unit's wearer is, in the incident frame."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import fused_pb2
+from shared.messages.quantise import (
+    angle_std_to_cdeg,
+    cdeg_to_heading,
+    heading_to_cdeg,
+    signed32,
+    unsigned32,
+)
+from shared.quality import Quality
+
+
+class FusedPosition(msgspec.Struct, frozen=True):
+    """NED metres about the site anchor."""
+
+    header: Header  # the station's
+    unit_id: str
+    t_meas_ns: int  # station time to which the position belongs
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    correlation_ne: float
+    heading_rad: float
+    heading_std_rad: float  # pi and above: unknown
+    floor: int | None
+    quality: Quality
+    quality_reason: str
+    fuser: str
+    since_gps_s: float | None  # None: no fix ever
+
+    def to_wire(self) -> fused_pb2.FusedPosition:
+        return fused_pb2.FusedPosition(
+            header=self.header.to_wire(),
+            unit_id=self.unit_id,
+            t_meas_ns=self.t_meas_ns,
+            north_mm=signed32(self.north_m, 1e3),
+            east_mm=signed32(self.east_m, 1e3),
+            down_mm=signed32(self.down_m, 1e3),
+            std_north_mm=unsigned32(self.std_north_m, 1e3),
+            std_east_mm=unsigned32(self.std_east_m, 1e3),
+            std_down_mm=unsigned32(self.std_down_m, 1e3),
+            correlation_ne_permille=signed32(self.correlation_ne, 1e3),
+            heading_cdeg=heading_to_cdeg(self.heading_rad),
+            heading_std_cdeg=angle_std_to_cdeg(self.heading_std_rad),
+            floor=self.floor or 0,
+            floor_known=self.floor is not None,
+            quality=int(self.quality),  # type: ignore[arg-type]  # stubs want the generated enum
+            quality_reason=self.quality_reason,
+            fuser=self.fuser,
+            seconds_since_gps=unsigned32(self.since_gps_s or 0.0, 1.0),
+            gps_ever=self.since_gps_s is not None,
+        )
+
+    @staticmethod
+    def from_wire(wire: fused_pb2.FusedPosition) -> FusedPosition:
+        return FusedPosition(
+            header=Header.from_wire(wire.header),
+            unit_id=wire.unit_id,
+            t_meas_ns=wire.t_meas_ns,
+            north_m=wire.north_mm * 1e-3,
+            east_m=wire.east_mm * 1e-3,
+            down_m=wire.down_mm * 1e-3,
+            std_north_m=wire.std_north_mm * 1e-3,
+            std_east_m=wire.std_east_mm * 1e-3,
+            std_down_m=wire.std_down_mm * 1e-3,
+            correlation_ne=wire.correlation_ne_permille * 1e-3,
+            heading_rad=cdeg_to_heading(wire.heading_cdeg),
+            heading_std_rad=cdeg_to_heading(wire.heading_std_cdeg),
+            floor=wire.floor if wire.floor_known else None,
+            quality=known(Quality, wire.quality),
+            quality_reason=wire.quality_reason,
+            fuser=wire.fuser,
+            since_gps_s=float(wire.seconds_since_gps) if wire.gps_ever else None,
+        )

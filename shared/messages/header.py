@@ -1,0 +1,45 @@
+"""Who said a message, when, and which of its messages it is."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages.muster.v1 import header_pb2
+
+SCHEMA_REVISION = 1
+STATION_ID = "station"
+
+
+class Header(msgspec.Struct, frozen=True):
+    """First part of every message; ``(unit_id, boot_id, seq)`` names it for ever."""
+
+    unit_id: str
+    boot_id: int  # random 64 bits at each start of the sender
+    seq: int  # from 1, one sequence a boot over all channels
+    t_mono_ns: int  # capture time on the sender's monotonic clock
+    t_utc_ns: int = 0  # capture time as the sender estimates UTC; 0 unknown
+    utc_std_s: float = 0.0  # standard deviation of that estimate; 0 unknown
+    schema: int = SCHEMA_REVISION
+
+    def to_wire(self) -> header_pb2.Header:
+        return header_pb2.Header(
+            schema=self.schema,
+            unit_id=self.unit_id,
+            boot_id=self.boot_id,
+            seq=self.seq,
+            t_mono_ns=self.t_mono_ns,
+            t_utc_ns=self.t_utc_ns,
+            utc_std_ms=min(round(self.utc_std_s * 1e3), 0xFFFFFFFF),
+        )
+
+    @staticmethod
+    def from_wire(wire: header_pb2.Header) -> Header:
+        return Header(
+            unit_id=wire.unit_id,
+            boot_id=wire.boot_id,
+            seq=wire.seq,
+            t_mono_ns=wire.t_mono_ns,
+            t_utc_ns=wire.t_utc_ns,
+            utc_std_s=wire.utc_std_ms * 1e-3,
+            schema=wire.schema,
+        )

@@ -1,0 +1,88 @@
+"""Where a unit believes its wearer is, in its own frame."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import position_pb2
+from shared.messages.quantise import (
+    angle_std_to_cdeg,
+    cdeg_to_heading,
+    heading_to_cdeg,
+    signed32,
+    unsigned32,
+)
+from shared.quality import Quality, Reason
+
+
+class Position(msgspec.Struct, frozen=True):
+    """NED about the unit's start; the frame's north is the unit's own unless it has a compass."""
+
+    header: Header
+    north_m: float
+    east_m: float
+    down_m: float
+    velocity_north_mps: float
+    velocity_east_mps: float
+    velocity_down_mps: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    correlation_ne: float  # -1..1, of the north and east errors
+    heading_rad: float  # of travel, clockwise from the frame's north
+    heading_std_rad: float
+    distance_m: float  # walked since the start, horizontal
+    pressure_pa: float | None
+    stationary: bool
+    quality: Quality
+    reasons: Reason
+
+    def to_wire(self) -> position_pb2.Position:
+        return position_pb2.Position(
+            header=self.header.to_wire(),
+            north_mm=signed32(self.north_m, 1e3),
+            east_mm=signed32(self.east_m, 1e3),
+            down_mm=signed32(self.down_m, 1e3),
+            velocity_north_mmps=signed32(self.velocity_north_mps, 1e3),
+            velocity_east_mmps=signed32(self.velocity_east_mps, 1e3),
+            velocity_down_mmps=signed32(self.velocity_down_mps, 1e3),
+            std_north_mm=unsigned32(self.std_north_m, 1e3),
+            std_east_mm=unsigned32(self.std_east_m, 1e3),
+            std_down_mm=unsigned32(self.std_down_m, 1e3),
+            correlation_ne_permille=signed32(self.correlation_ne, 1e3),
+            heading_cdeg=heading_to_cdeg(self.heading_rad),
+            heading_std_cdeg=angle_std_to_cdeg(self.heading_std_rad),
+            distance_cm=unsigned32(self.distance_m, 1e2),
+            pressure_dpa=0 if self.pressure_pa is None else unsigned32(self.pressure_pa, 10.0),
+            stationary=self.stationary,
+            quality=int(self.quality),  # type: ignore[arg-type]  # stubs want the generated enum
+            reasons=int(self.reasons),
+        )
+
+    @staticmethod
+    def from_wire(wire: position_pb2.Position) -> Position:
+        return Position(
+            header=Header.from_wire(wire.header),
+            north_m=wire.north_mm * 1e-3,
+            east_m=wire.east_mm * 1e-3,
+            down_m=wire.down_mm * 1e-3,
+            velocity_north_mps=wire.velocity_north_mmps * 1e-3,
+            velocity_east_mps=wire.velocity_east_mmps * 1e-3,
+            velocity_down_mps=wire.velocity_down_mmps * 1e-3,
+            std_north_m=wire.std_north_mm * 1e-3,
+            std_east_m=wire.std_east_mm * 1e-3,
+            std_down_m=wire.std_down_mm * 1e-3,
+            correlation_ne=wire.correlation_ne_permille * 1e-3,
+            heading_rad=cdeg_to_heading(wire.heading_cdeg),
+            heading_std_rad=cdeg_to_heading(wire.heading_std_cdeg),
+            distance_m=wire.distance_cm * 1e-2,
+            pressure_pa=wire.pressure_dpa * 0.1 if wire.pressure_dpa else None,
+            stationary=wire.stationary,
+            quality=known(Quality, wire.quality),
+            reasons=Reason(wire.reasons & _ALL_REASONS),
+        )
+
+
+_ALL_REASONS = int(sum(Reason))

@@ -1,0 +1,38 @@
+"""Numbers to and from the integers on the wire; out of range saturates, never wraps."""
+
+from __future__ import annotations
+
+import math
+
+_TWO_PI = 2.0 * math.pi
+_CDEG_PER_RAD = 18_000.0 / math.pi
+
+
+def signed32(value: float, scale: float) -> int:
+    """``value * scale`` rounded into a sint32; NaN is a caller's mistake and raises ValueError."""
+    return max(-(2**31) + 1, min(2**31 - 1, _rounded(value * scale)))
+
+
+def unsigned32(value: float, scale: float) -> int:
+    """``value * scale`` rounded into a uint32; negative becomes 0."""
+    return max(0, min(2**32 - 1, _rounded(value * scale)))
+
+
+def heading_to_cdeg(heading_rad: float) -> int:
+    """Any heading into 0..35999 hundredths of a degree."""
+    return _rounded(math.fmod(heading_rad, _TWO_PI) * _CDEG_PER_RAD) % 36_000
+
+
+def cdeg_to_heading(cdeg: int) -> float:
+    return cdeg / _CDEG_PER_RAD
+
+
+def angle_std_to_cdeg(std_rad: float) -> int:
+    """An angle's standard deviation; past half a turn nothing is known: 18000."""
+    return min(18_000, unsigned32(std_rad, _CDEG_PER_RAD))
+
+
+def _rounded(value: float) -> int:
+    if math.isinf(value):
+        return 2**62 if value > 0 else -(2**62)
+    return round(value)

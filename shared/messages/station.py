@@ -1,0 +1,151 @@
+"""Time and people as events: what steps the station's pipeline beside the units' messages."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.muster.v1 import station_pb2
+
+
+class Tick(msgspec.Struct, frozen=True):
+    """Whatever the pipeline does because time passed, it does at a tick."""
+
+    header: Header
+    t_ns: int  # station time
+
+    def to_wire(self) -> station_pb2.Tick:
+        return station_pb2.Tick(header=self.header.to_wire(), t_ns=self.t_ns)
+
+    @staticmethod
+    def from_wire(wire: station_pb2.Tick) -> Tick:
+        return Tick(header=Header.from_wire(wire.header), t_ns=wire.t_ns)
+
+
+class AcknowledgeAlarm(msgspec.Struct, frozen=True):
+    alarm_id: str
+
+
+class ResolveAlarm(msgspec.Struct, frozen=True):
+    alarm_id: str
+    note: str
+
+
+class OpenIncident(msgspec.Struct, frozen=True):
+    incident_id: str
+    name: str
+
+
+class CloseIncident(msgspec.Struct, frozen=True):
+    incident_id: str
+
+
+class Assign(msgspec.Struct, frozen=True):
+    """Who wears which unit from now on."""
+
+    unit_id: str
+    person_id: str
+    person_name: str
+    crew: str
+    role: str
+
+
+class Unassign(msgspec.Struct, frozen=True):
+    unit_id: str
+
+
+class RegisterUnit(msgspec.Struct, frozen=True):
+    """This unit belongs to us; messages of other units are kept but not believed."""
+
+    unit_id: str
+    label: str
+
+
+class SetAnchor(msgspec.Struct, frozen=True):
+    """Where the incident frame's origin lies on the Earth, and how the plan is turned."""
+
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    plan_rotation_rad: float
+
+
+class SetStart(msgspec.Struct, frozen=True):
+    """A unit's own frame begins here, with this heading, as well as the commander knows."""
+
+    unit_id: str
+    north_m: float
+    east_m: float
+    down_m: float
+    heading_rad: float
+    std_m: float
+    heading_std_rad: float
+
+
+class SetPlan(msgspec.Struct, frozen=True):
+    """The building's plan, metre-based site GeoJSON."""
+
+    geojson: bytes
+
+
+Action = (
+    AcknowledgeAlarm
+    | ResolveAlarm
+    | OpenIncident
+    | CloseIncident
+    | Assign
+    | Unassign
+    | RegisterUnit
+    | SetAnchor
+    | SetStart
+    | SetPlan
+)
+
+_FIELD_OF_ACTION: dict[type, str] = {
+    AcknowledgeAlarm: "acknowledge_alarm",
+    ResolveAlarm: "resolve_alarm",
+    OpenIncident: "open_incident",
+    CloseIncident: "close_incident",
+    Assign: "assign",
+    Unassign: "unassign",
+    RegisterUnit: "register_unit",
+    SetAnchor: "set_anchor",
+    SetStart: "set_start",
+    SetPlan: "set_plan",
+}
+_ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
+
+
+class OperatorAction(msgspec.Struct, frozen=True):
+    """What a person did at the console, or the station for itself."""
+
+    header: Header
+    action_id: str
+    by: str
+    action: Action
+
+    def to_wire(self) -> station_pb2.OperatorAction:
+        wire = station_pb2.OperatorAction(
+            header=self.header.to_wire(), action_id=self.action_id, by=self.by
+        )
+        part = getattr(wire, _FIELD_OF_ACTION[type(self.action)])
+        part.SetInParent()
+        for name in self.action.__struct_fields__:
+            setattr(part, name, getattr(self.action, name))
+        return wire
+
+    @staticmethod
+    def from_wire(wire: station_pb2.OperatorAction) -> OperatorAction:
+        """Raises ValueError where the action is one that this program does not know."""
+        field = wire.WhichOneof("action")
+        if field is None:
+            raise ValueError("an operator's action of a kind that this program does not know")
+        part = getattr(wire, field)
+        action_type = _ACTION_OF_FIELD[field]
+        action = action_type(**{name: getattr(part, name) for name in action_type.__struct_fields__})
+        return OperatorAction(
+            header=Header.from_wire(wire.header),
+            action_id=wire.action_id,
+            by=wire.by,
+            action=action,
+        )

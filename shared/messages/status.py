@@ -1,0 +1,67 @@
+"""How the wearer and the unit are."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.known import known
+from shared.messages.muster.v1 import status_pb2
+from shared.messages.quantise import signed32, unsigned32
+
+
+class Activity(IntEnum):
+    UNKNOWN = 0
+    STILL = 1
+    WALKING = 2
+    RUNNING = 3
+    STAIRS_UP = 4
+    STAIRS_DOWN = 5
+    CRAWLING = 6
+    LYING = 7
+    FALLING = 8
+
+
+class Status(msgspec.Struct, frozen=True):
+    header: Header
+    activity: Activity
+    motionless_s: float  # since the last motion
+    battery: float | None  # 0 empty ... 1 full; None: the unit cannot tell
+    mayday: bool  # the wearer's button is latched
+    steps: int
+    cadence_hz: float  # steps a second
+    floors_climbed: int  # net, up positive
+    tracker_rows_dropped: int
+    journal_pending: int  # messages written but not known to have arrived
+
+    def to_wire(self) -> status_pb2.Status:
+        return status_pb2.Status(
+            header=self.header.to_wire(),
+            activity=int(self.activity),  # type: ignore[arg-type]  # stubs want the generated enum
+            motionless_ds=unsigned32(self.motionless_s, 10.0),
+            battery_permille=0 if self.battery is None else unsigned32(self.battery, 1e3),
+            battery_known=self.battery is not None,
+            mayday=self.mayday,
+            steps=self.steps,
+            cadence_mhz=unsigned32(self.cadence_hz, 1e3),
+            floors_climbed=signed32(self.floors_climbed, 1.0),
+            tracker_rows_dropped=self.tracker_rows_dropped,
+            journal_pending=self.journal_pending,
+        )
+
+    @staticmethod
+    def from_wire(wire: status_pb2.Status) -> Status:
+        return Status(
+            header=Header.from_wire(wire.header),
+            activity=known(Activity, wire.activity),
+            motionless_s=wire.motionless_ds * 0.1,
+            battery=wire.battery_permille * 1e-3 if wire.battery_known else None,
+            mayday=wire.mayday,
+            steps=wire.steps,
+            cadence_hz=wire.cadence_mhz * 1e-3,
+            floors_climbed=wire.floors_climbed,
+            tracker_rows_dropped=wire.tracker_rows_dropped,
+            journal_pending=wire.journal_pending,
+        )

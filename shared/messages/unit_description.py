@@ -1,0 +1,57 @@
+"""What a unit is: said at its start and every minute."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages.header import Header
+from shared.messages.muster.v1 import unit_description_pb2
+from shared.messages.quantise import unsigned32
+
+
+class UnitDescription(msgspec.Struct, frozen=True):
+    header: Header
+    software_version: str
+    source: str  # where its samples come from
+    sensor_name: str
+    rate_hz: float
+    accel_full_scale_mps2: float | None
+    gyro_full_scale_radps: float | None
+    tracker: str
+    calibration: str  # identity of the calibration in use; empty: none
+    has_magnetometer: bool
+    has_barometer: bool
+    has_gps: bool
+
+    def to_wire(self) -> unit_description_pb2.UnitDescription:
+        return unit_description_pb2.UnitDescription(
+            header=self.header.to_wire(),
+            software_version=self.software_version,
+            source=self.source,
+            sensor_name=self.sensor_name,
+            rate_mhz=unsigned32(self.rate_hz, 1e3),
+            accel_full_scale_mmps2=unsigned32(self.accel_full_scale_mps2 or 0.0, 1e3),
+            gyro_full_scale_mradps=unsigned32(self.gyro_full_scale_radps or 0.0, 1e3),
+            tracker=self.tracker,
+            calibration=self.calibration,
+            has_magnetometer=self.has_magnetometer,
+            has_barometer=self.has_barometer,
+            has_gps=self.has_gps,
+        )
+
+    @staticmethod
+    def from_wire(wire: unit_description_pb2.UnitDescription) -> UnitDescription:
+        return UnitDescription(
+            header=Header.from_wire(wire.header),
+            software_version=wire.software_version,
+            source=wire.source,
+            sensor_name=wire.sensor_name,
+            rate_hz=wire.rate_mhz * 1e-3,
+            accel_full_scale_mps2=wire.accel_full_scale_mmps2 * 1e-3 or None,
+            gyro_full_scale_radps=wire.gyro_full_scale_mradps * 1e-3 or None,
+            tracker=wire.tracker,
+            calibration=wire.calibration,
+            has_magnetometer=wire.has_magnetometer,
+            has_barometer=wire.has_barometer,
+            has_gps=wire.has_gps,
+        )
