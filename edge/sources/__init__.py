@@ -1,0 +1,42 @@
+"""Where samples come from.  A new kind of source is a file and a line in ``SOURCES``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from edge.sources.port import Source
+from edge.sources.recording import RecordingSource
+from shared.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class SourceKind:
+    """One kind of source, as written ``scheme:argument``."""
+
+    scheme: str
+    make: Callable[[str], Source]  # from the text after the colon
+    argument: str  # what stands after the colon, for help texts
+
+
+SOURCES: tuple[SourceKind, ...] = (SourceKind("recording", RecordingSource, "PATH"),)
+
+
+def open_source(text: str) -> Source:
+    """Open what ``scheme:argument`` names, as in ``recording:PATH``.
+
+    Raises ``ConfigError`` for a text that names no source, and whatever
+    ``MusterError`` the source itself raises for its argument.
+    """
+    scheme, colon, argument = text.partition(":")
+    for kind in SOURCES:
+        if colon and argument and kind.scheme == scheme:
+            return kind.make(argument)
+    choices = ", ".join(f"{kind.scheme}:{kind.argument}" for kind in SOURCES)
+    schemes = [kind.scheme for kind in SOURCES]
+    if scheme in schemes:
+        raise ConfigError(f"source {text!r} says nothing after {scheme}:; write one of {choices}")
+    near = get_close_matches(scheme, schemes, n=1)
+    hint = f"did you mean {near[0]}:? " if near else ""
+    raise ConfigError(f"unknown source {text!r}; {hint}Known are {choices}")
