@@ -1,4 +1,4 @@
-"""Messages to bytes and back, by the channel table.  Bytes on the bus and in the log are the same."""
+"""Messages to bytes and back, by the channel table; the same bytes on the bus and in the log."""
 
 from __future__ import annotations
 

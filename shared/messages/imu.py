@@ -72,8 +72,8 @@ def _quantised(column: Floats | None, scale: float) -> list[int]:
         return []
     with np.errstate(invalid="ignore"):
         scaled = np.clip(np.rint(column * scale), _MISSED + 1, -_MISSED - 1)
-    integers: list[int] = np.where(np.isnan(scaled), _MISSED, scaled).astype(np.int64).ravel().tolist()
-    return integers
+    integers = np.where(np.isnan(scaled), _MISSED, scaled).astype(np.int64)
+    return integers.ravel().tolist()
 
 
 def _scalars(numbers: object, scale: float) -> Floats | None:

@@ -88,6 +88,13 @@ class SetPlan(msgspec.Struct, frozen=True):
     geojson: bytes
 
 
+class ReportProblem(msgspec.Struct, frozen=True):
+    """The station says of itself that a part of it fails, or (no text) is well again."""
+
+    part: str  # "log", "store" ...
+    text: str  # a sentence for a person
+
+
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -99,9 +106,10 @@ Action = (
     | SetAnchor
     | SetStart
     | SetPlan
+    | ReportProblem
 )
 
-_FIELD_OF_ACTION: dict[type, str] = {
+_FIELD_OF_ACTION: dict[type[Action], str] = {
     AcknowledgeAlarm: "acknowledge_alarm",
     ResolveAlarm: "resolve_alarm",
     OpenIncident: "open_incident",
@@ -112,6 +120,7 @@ _FIELD_OF_ACTION: dict[type, str] = {
     SetAnchor: "set_anchor",
     SetStart: "set_start",
     SetPlan: "set_plan",
+    ReportProblem: "report_problem",
 }
 _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 
@@ -142,7 +151,8 @@ class OperatorAction(msgspec.Struct, frozen=True):
             raise ValueError("an operator's action of a kind that this program does not know")
         part = getattr(wire, field)
         action_type = _ACTION_OF_FIELD[field]
-        action = action_type(**{name: getattr(part, name) for name in action_type.__struct_fields__})
+        fields = action_type.__struct_fields__
+        action = action_type(**{name: getattr(part, name) for name in fields})
         return OperatorAction(
             header=Header.from_wire(wire.header),
             action_id=wire.action_id,
