@@ -40,7 +40,14 @@ class UnitTouched(msgspec.Struct, frozen=True):
     unit_id: str
 
 
-Output = FusedPosition | AlarmChange | UnitTouched
+class Refused(msgspec.Struct, frozen=True):
+    """A person's action that had no effect."""
+
+    action_id: str
+    reason: str  # for that person
+
+
+Output = FusedPosition | AlarmChange | UnitTouched | Refused
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:

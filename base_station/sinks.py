@@ -1,0 +1,88 @@
+"""What leaves the station's drive thread, and how people's actions get into it.
+
+The drive (or a replay) is the only one that touches the live state.  Everything below is called
+in its thread unless said otherwise, so an implementation takes what it is given and returns at
+once: a queue and a thread or loop of its own do the slow part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Protocol
+
+import msgspec
+
+from base_station.api.wire import Delta, Snapshot
+from base_station.events import Refused
+from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
+from shared.messages.station import Action
+
+PhotoUrls = Callable[[str], str | None]  # person id -> where the console finds the photo
+
+
+class LiveSink(Protocol):
+    """The console hub.  ``seq`` counts deltas; a snapshot carries that of the last delta before
+    it, so a client that has just got a snapshot goes on with the very next delta.
+    """
+
+    def delta(self, delta: Delta) -> None:
+        """At most 20 a second, for every client that is up to date."""
+        ...
+
+    def reset(self, snapshot: Snapshot) -> None:
+        """Plan, anchor or incident changed, or a replay jumped: every client begins again."""
+        ...
+
+
+class LiveSource(Protocol):
+    """What a client of the console listens to: the live drive, or one replay."""
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        """From any thread.  ``deliver`` is called once in the source's thread, in order with the
+        calls of its ``LiveSink``; after the source has stopped it is never called.
+        """
+        ...
+
+
+class Projection(msgspec.Struct, frozen=True):
+    """What one step of the drive changes in the queryable store; every part is idempotent, so
+    that a log may be projected again.
+    """
+
+    t_ns: int  # station time
+    alarms: tuple[AlarmChange, ...] = ()
+    tracks: tuple[FusedPosition, ...] = ()  # at most one a second and unit
+    actions: tuple[OperatorAction, ...] = ()  # that were accepted
+    descriptions: tuple[UnitDescription, ...] = ()
+    heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), about once a second
+
+
+class ProjectionSink(Protocol):
+    """The SQL store's writer."""
+
+    def project(self, projection: Projection) -> None:
+        """Never raises for a store that fails: it says so in ``problem`` and tries again."""
+        ...
+
+    def problem(self) -> str:
+        """Why the store is not keeping up, as a sentence for a person; empty: all is well."""
+        ...
+
+
+class ActionDone(msgspec.Struct, frozen=True):
+    """A person's action was recorded and stepped."""
+
+    action_id: str
+    t_ns: int  # station time
+    refused: Refused | None  # why it had no effect
+
+
+class OperatorGate(Protocol):
+    """How the API hands people's actions to the drive."""
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        """From any thread.  The future is done once the action is in the log and in the live
+        state; it carries ``StoreError`` where the station is stopping.
+        """
+        ...
