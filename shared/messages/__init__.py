@@ -9,6 +9,7 @@ from shared.messages.fused import FusedPosition
 from shared.messages.gps import FixType, GpsFix
 from shared.messages.header import SCHEMA_REVISION, STATION_ID, Header
 from shared.messages.imu import RawImu
+from shared.messages.journal import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.messages.position import Position
 from shared.messages.station import OperatorAction, Tick
 from shared.messages.status import Activity, Status
@@ -48,6 +49,10 @@ __all__ = [
     "GpsFix",
     "Header",
     "Heartbeat",
+    "JournalBoot",
+    "JournalChunk",
+    "JournalEntry",
+    "JournalIndex",
     "Message",
     "OperatorAction",
     "Position",
