@@ -1,0 +1,70 @@
+"""What tests of every kind share."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from shared.clock import ManualClock
+from shared.envelope import Stamper
+from shared.messages import Position
+from shared.quality import Quality, Reason
+
+PROJECT_ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def walks() -> Path:
+    """The folder of recorded walks; the test is skipped where it is not there."""
+    data = Path(os.environ.get("MUSTER_DATA", PROJECT_ROOT.parent / "shared" / "data"))
+    folder = data / "walks"
+    if not folder.is_dir():
+        pytest.skip(
+            f"no recorded walks in {data} (set MUSTER_DATA to the folder that holds 'walks')"
+        )
+    return folder
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+def stamper(clock: ManualClock) -> Stamper:
+    """Headers of a unit called FF-01."""
+    return Stamper("FF-01", boot_id=0xB007, clock=clock)
+
+
+@pytest.fixture
+def make_position(stamper: Stamper) -> Callable[..., Position]:
+    """A plausible position of FF-01; keyword arguments replace fields."""
+
+    def make(**changes: object) -> Position:
+        position = Position(
+            header=stamper.header(),
+            north_m=1.0,
+            east_m=2.0,
+            down_m=-3.0,
+            velocity_north_mps=0.1,
+            velocity_east_mps=0.2,
+            velocity_down_mps=0.0,
+            std_north_m=0.1,
+            std_east_m=0.1,
+            std_down_m=0.2,
+            correlation_ne=0.0,
+            heading_rad=0.5,
+            heading_std_rad=0.1,
+            distance_m=12.3,
+            pressure_pa=None,
+            stationary=True,
+            quality=Quality.GOOD,
+            reasons=Reason.NONE,
+        )
+        return msgspec.structs.replace(position, **changes)
+
+    return make
