@@ -1,0 +1,93 @@
+"""The demo's child processes: started with their output in a file, watched, ended in order."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+from shared.errors import UserError
+
+_PATIENCE_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Child:
+    """One running ``muster`` command."""
+
+    name: str
+    process: subprocess.Popen[bytes]
+    output_path: Path
+
+    @property
+    def exit_code(self) -> int | None:
+        """None while it runs."""
+        return self.process.poll()
+
+    def last_words(self) -> str:
+        """The end of what it printed, for an error message."""
+        return self.output_path.read_text(errors="replace").strip()[-2000:]
+
+
+class Children:
+    """Starts commands and, as a context manager, ends them all, the last started first."""
+
+    def __init__(self, output_folder: Path) -> None:
+        output_folder.mkdir(parents=True, exist_ok=True)
+        self._output_folder = output_folder
+        self._children: list[Child] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for child in reversed(self._children):
+            if child.exit_code is None:
+                child.process.send_signal(signal.SIGTERM)
+        deadline = time.monotonic() + _PATIENCE_S
+        for child in reversed(self._children):
+            try:
+                child.process.wait(max(0.1, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                child.process.kill()
+                child.process.wait()
+
+    def start(self, name: str, arguments: Sequence[str]) -> Child:
+        """Start ``muster ARGUMENTS`` in a process of its own."""
+        output_path = self._output_folder / f"{name}.txt"
+        with output_path.open("wb") as output:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "shared.command_line", *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                # A Ctrl-C in the terminal reaches the demo alone, which then ends them in order.
+                start_new_session=True,
+            )
+        child = Child(name, process, output_path)
+        self._children.append(child)
+        return child
+
+    def dead(self) -> tuple[Child, ...]:
+        """Those that ended although nobody asked them to."""
+        return tuple(child for child in self._children if child.exit_code is not None)
+
+
+def wait_for_line(child: Child, beginning: str, patience_s: float) -> str:
+    """The first line of the child's output with this beginning; UserError if it does not come."""
+    deadline = time.monotonic() + patience_s
+    while time.monotonic() < deadline:
+        for line in child.output_path.read_text(errors="replace").splitlines():
+            if line.startswith(beginning):
+                return line
+        if child.exit_code is not None:
+            raise UserError(f"{child.name} ended before it was ready:\n{child.last_words()}")
+        time.sleep(0.05)
+    raise UserError(
+        f"{child.name} was not ready within {patience_s:g} s; it printed:\n{child.last_words()}"
+    )
