@@ -1,0 +1,96 @@
+"""Whether the wearer moves at all, from the inertial samples alone.
+
+A no-motion alarm must not depend on a tracker that may have lost its way, so this looks only
+at how much the samples vary within short windows.  A unit on the foot sees steps, kicks and
+shifting weight; it does not see arms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from edge.samples import Floats, ImuBatch
+from shared.clock import NS_PER_S
+
+_WINDOW_NS = NS_PER_S // 2
+_ENOUGH_SAMPLES = 5
+
+# Spread within a window, root of the summed variances of three axes: several times what
+# MEMS sensors show at rest, far below what any step shows.
+_MOVING_ACCEL_MPS2 = 0.4
+_MOVING_GYRO_RADPS = 0.12
+_TURNED_COS = 0.99  # the mean specific force has turned by 8 degrees since the window before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionWindow:
+    """Half a second of samples in one glance."""
+
+    end_ns: int
+    moving: bool
+    force_mps2: Floats  # (3,) mean specific force, sensor axes
+
+
+class BodyMotion:
+    """Cuts the samples into windows of half a second, however they are batched."""
+
+    def __init__(self) -> None:
+        self._cell: int | None = None
+        self._parts: list[Floats] = []  # (m, 6) accel, gyro of the window not yet full
+        self._force_before_mps2: Floats | None = None
+        self._still_ns = 0
+
+    @property
+    def motionless_s(self) -> float:
+        """How long nothing has moved; windows without usable samples say neither."""
+        return self._still_ns / NS_PER_S
+
+    def push(self, imu: ImuBatch) -> list[MotionWindow]:
+        """Take samples; return the windows that they complete."""
+        samples = np.hstack((imu.accel_mps2, imu.gyro_radps))
+        cells = imu.t_ns // _WINDOW_NS
+        starts = [0, *(np.flatnonzero(np.diff(cells)) + 1).tolist(), len(cells)]
+        windows = []
+        for start, stop in pairwise(starts):
+            if start == stop:
+                continue
+            cell = int(cells[start])
+            if cell != self._cell:
+                window = self._close_window()
+                if window is not None:
+                    windows.append(window)
+                self._cell = cell
+            self._parts.append(samples[start:stop])
+        return windows
+
+    def _close_window(self) -> MotionWindow | None:
+        if self._cell is None:
+            return None
+        samples = np.vstack(self._parts)
+        self._parts = []
+        samples = samples[np.isfinite(samples).all(axis=1)]
+        if len(samples) < _ENOUGH_SAMPLES:
+            return None
+        spread = np.sqrt(samples.var(axis=0).reshape(2, 3).sum(axis=1))
+        force_mps2 = samples[:, :3].mean(axis=0)
+        moving = bool(
+            spread[0] > _MOVING_ACCEL_MPS2
+            or spread[1] > _MOVING_GYRO_RADPS
+            or self._has_turned(force_mps2)
+        )
+        self._force_before_mps2 = force_mps2
+        self._still_ns = 0 if moving else self._still_ns + _WINDOW_NS
+        return MotionWindow((self._cell + 1) * _WINDOW_NS, moving, force_mps2)
+
+    def _has_turned(self, force_mps2: Floats) -> bool:
+        before = self._force_before_mps2
+        return before is not None and cosine(before, force_mps2) < _TURNED_COS
+
+
+def cosine(first: Floats, second: Floats) -> float:
+    """Of the angle between two vectors (3,); 1 where one of them is nothing."""
+    lengths = float(np.linalg.norm(first) * np.linalg.norm(second))
+    return float(first @ second) / lengths if lengths > 0.0 else 1.0

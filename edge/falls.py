@@ -1,0 +1,70 @@
+"""Falls: a moment without weight, a blow, and then someone who does not walk on.
+
+The first two alone are a jump from a step.  Bourke et al., "Evaluation of a threshold-based
+tri-axial accelerometer fall detection algorithm", 2007, use the same order of events; the
+thresholds here are for a unit on the foot.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from edge.samples import ImuBatch
+from shared.clock import NS_PER_S
+
+_WEIGHTLESS_MPS2 = 4.0
+_WEIGHTLESS_NS = NS_PER_S // 4  # a drop of 0.3 m
+_BLOW_MPS2 = 30.0
+_BLOW_WITHIN_NS = NS_PER_S // 2
+_DOWN_FOR_S = 2.0  # motionless after the blow
+_DOWN_WITHIN_NS = 8 * NS_PER_S
+
+
+class FallDetector:
+    """``falling`` from the blow until it is clear whether the wearer got up."""
+
+    def __init__(self) -> None:
+        self._weightless_since_ns: int | None = None
+        self._weightless_until_ns: int | None = None
+        self._blow_ns: int | None = None
+
+    @property
+    def falling(self) -> bool:
+        return self._blow_ns is not None
+
+    def push(self, imu: ImuBatch) -> None:
+        force_mps2 = np.linalg.norm(imu.accel_mps2, axis=1)
+        # Most batches hold nothing of interest; NaN compares false both times.
+        notable = (force_mps2 < _WEIGHTLESS_MPS2) | (force_mps2 > _BLOW_MPS2)
+        if not notable.any() and self._weightless_since_ns is None:
+            return
+        for t_ns, force in zip(imu.t_ns.tolist(), force_mps2.tolist(), strict=True):
+            self._step(t_ns, force)
+
+    def confirm(self, t_ns: int, motionless_s: float) -> bool:
+        """Whether the wearer stayed down after the blow: True once a fall."""
+        if self._blow_ns is None:
+            return False
+        if motionless_s >= _DOWN_FOR_S:
+            self._blow_ns = None
+            return True
+        if not 0 <= t_ns - self._blow_ns <= _DOWN_WITHIN_NS:
+            self._blow_ns = None
+        return False
+
+    def _step(self, t_ns: int, force_mps2: float) -> None:
+        if force_mps2 < _WEIGHTLESS_MPS2:
+            if self._weightless_since_ns is None:
+                self._weightless_since_ns = t_ns
+            if t_ns - self._weightless_since_ns >= _WEIGHTLESS_NS:
+                self._weightless_until_ns = t_ns
+            return
+        self._weightless_since_ns = None
+        dropped_ns = self._weightless_until_ns
+        if (
+            force_mps2 > _BLOW_MPS2
+            and dropped_ns is not None
+            and 0 <= t_ns - dropped_ns <= _BLOW_WITHIN_NS
+        ):
+            self._blow_ns = t_ns
+            self._weightless_until_ns = None

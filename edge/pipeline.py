@@ -1,0 +1,192 @@
+"""From sensor batches to outgoing messages: the whole of what a unit decides by itself.
+
+Pure: no input, output, threads or waiting.  Time comes with the samples; the same batches
+give the same messages.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from edge.activity import ActivityMonitor
+from edge.decimation import Decimator
+from edge.position_stream import PositionStream
+from edge.raw_stream import gps_fix
+from edge.samples import (
+    AmbientSample,
+    BatterySample,
+    ButtonPress,
+    GpsSample,
+    OtherSample,
+    SensorBatch,
+    SensorDescription,
+)
+from edge.sensor_health import SensorHealth
+from edge.timeline import Timeline
+from edge.tracker.port import Tracker
+from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
+from shared.envelope import Stamper
+from shared.messages import EventKind, Message, Status, Temperature, UnitDescription, UnitEvent
+
+LIVE = Timeline()
+
+
+@dataclass(frozen=True, slots=True)
+class UnitIdentity:
+    """What a unit says of itself."""
+
+    software_version: str
+    source: str
+    tracker: str
+    sensor: SensorDescription
+
+
+class TrackerPipeline:
+    """One unit's state.  Call ``start`` once, ``step`` for each batch, ``finish`` at the end."""
+
+    def __init__(
+        self,
+        identity: UnitIdentity,
+        tracker: Tracker,
+        stamper: Stamper,
+        position_rate_hz: float,
+    ) -> None:
+        self._identity = identity
+        self._tracker = tracker
+        self._stamper = stamper
+        self._positions = PositionStream(stamper, position_rate_hz)
+        self._monitor = ActivityMonitor()
+        self._health = SensorHealth()
+        self._status_times = _decimator(STATUS)
+        self._description_times = _decimator(DESCRIPTION)
+        self._gps_times = _decimator(GPS)
+        self._temperature_times = _decimator(TEMPERATURE)
+        self._battery: float | None = None
+        self._mayday = False
+        self._has_gps = False
+        self._journal_pending = 0
+
+    def start(self) -> tuple[Message, ...]:
+        """The unit's first words."""
+        return (self._event(EventKind.STARTED, None, self._identity.source), self._describe(None))
+
+    def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
+        """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""
+        track = self._tracker.push(batch.imu)
+        messages: list[Message] = [
+            self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
+            for fault in self._health.push(batch.imu)
+        ]
+        for sample in batch.others:
+            messages += self._take_other(sample, timeline)
+        self._positions.take_pressure(batch.imu)
+        messages += self._positions.push(track, timeline)
+        if self._monitor.push(batch.imu, track):
+            detail = "fell and has not moved since"
+            messages.append(self._event(EventKind.FALL, _last_ns(batch, timeline), detail))
+        messages += self._periodic(batch, timeline)
+        return tuple(messages)
+
+    def finish(self, timeline: Timeline = LIVE) -> tuple[Message, ...]:
+        """The rows that the tracker still held back."""
+        return tuple(self._positions.push(self._tracker.finish(), timeline))
+
+    def set_position_rate(self, rate_hz: float) -> None:
+        self._positions.set_rate(rate_hz)
+
+    def note_journal(self, pending: int) -> None:
+        """How many messages are not known to have arrived, for the next status."""
+        self._journal_pending = pending
+
+    def _take_other(self, sample: OtherSample, timeline: Timeline) -> list[Message]:
+        mono_ns = timeline.to_mono_ns(sample.t_ns)
+        match sample:
+            case AmbientSample():
+                return self._take_ambient(sample, mono_ns)
+            case GpsSample():
+                self._has_gps = True
+                if self._gps_times.takes(sample.t_ns):
+                    return [gps_fix(self._stamper.header(mono_ns), sample)]
+            case BatterySample():
+                self._battery = sample.level
+            case ButtonPress():
+                return self._take_button(sample, mono_ns)
+        return []
+
+    def _take_ambient(self, sample: AmbientSample, mono_ns: int) -> list[Message]:
+        if not math.isfinite(sample.temperature_degc):
+            return []
+        if not self._temperature_times.takes(sample.t_ns):
+            return []
+        return [Temperature(self._stamper.header(mono_ns), sample.temperature_degc)]
+
+    def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
+        """A mayday stays until the wearer takes it back."""
+        pressed = press.button == "mayday"
+        if pressed == self._mayday:
+            return []
+        self._mayday = pressed
+        kind = EventKind.MAYDAY if pressed else EventKind.MAYDAY_CANCELLED
+        return [self._event(kind, mono_ns, "button")]
+
+    def _periodic(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
+        t_ns = _last_source_ns(batch)
+        if t_ns is None:
+            return []
+        messages: list[Message] = []
+        if self._status_times.takes(t_ns):
+            messages.append(self._status(t_ns, timeline))
+        if self._description_times.takes(t_ns):
+            messages.append(self._describe(timeline.to_mono_ns(t_ns)))
+        return messages
+
+    def _status(self, t_ns: int, timeline: Timeline) -> Status:
+        return Status(
+            header=self._stamper.header(timeline.to_mono_ns(t_ns)),
+            activity=self._monitor.activity(t_ns),
+            motionless_s=self._monitor.motionless_s,
+            battery=self._battery,
+            mayday=self._mayday,
+            steps=self._monitor.steps,
+            cadence_hz=self._monitor.cadence_hz(t_ns),
+            floors_climbed=self._positions.floors_climbed,
+            tracker_rows_dropped=self._positions.rows_dropped,
+            journal_pending=self._journal_pending,
+        )
+
+    def _describe(self, mono_ns: int | None) -> UnitDescription:
+        sensor = self._identity.sensor
+        return UnitDescription(
+            header=self._stamper.header(mono_ns),
+            software_version=self._identity.software_version,
+            source=self._identity.source,
+            sensor_name=sensor.name,
+            rate_hz=sensor.rate_hz,
+            accel_full_scale_mps2=sensor.accel_full_scale_mps2,
+            gyro_full_scale_radps=sensor.gyro_full_scale_radps,
+            tracker=self._identity.tracker,
+            calibration="",
+            has_magnetometer=sensor.mag_present,
+            has_barometer=sensor.barometer_present,
+            has_gps=self._has_gps,
+        )
+
+    def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:
+        return UnitEvent(self._stamper.header(mono_ns), kind, detail)
+
+
+def _decimator(channel: Channel) -> Decimator:
+    assert channel.rate_hz is not None
+    return Decimator(channel.rate_hz)
+
+
+def _last_source_ns(batch: SensorBatch) -> int | None:
+    if len(batch.imu):
+        return int(batch.imu.t_ns[-1])
+    return max((sample.t_ns for sample in batch.others), default=None)
+
+
+def _last_ns(batch: SensorBatch, timeline: Timeline) -> int | None:
+    t_ns = _last_source_ns(batch)
+    return None if t_ns is None else timeline.to_mono_ns(t_ns)

@@ -1,0 +1,109 @@
+"""Tracker rows as Position messages, at the rate that was asked for."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+
+import numpy as np
+
+from edge.decimation import Decimator
+from edge.samples import ImuBatch
+from edge.timeline import Timeline
+from edge.tracker.port import Quality, Reason, TrackBatch
+from shared.clock import NS_PER_S
+from shared.envelope import Stamper
+from shared.messages import Position
+
+_PRESSURE_KEPT_NS = 3 * NS_PER_S  # longer than a tracker may hold rows back
+_HEADING_BASE_M = 0.5  # a shorter way says little of its direction
+_STOREY_M = 3.0
+_STOREY_HYSTERESIS_M = 0.5
+
+
+class PositionStream:
+    """Decimates rows by their own time, so that batching changes nothing."""
+
+    def __init__(self, stamper: Stamper, rate_hz: float) -> None:
+        self._stamper = stamper
+        self._times = Decimator(rate_hz)
+        self._pressures: list[tuple[int, float]] = []
+        self._turned_at_m = (0.0, 0.0)
+        self._heading_rad = 0.0
+        self.rows_dropped = 0  # rows that were no numbers
+        self.floors_climbed = 0
+
+    def set_rate(self, rate_hz: float) -> None:
+        self._times.set_rate(rate_hz)
+
+    def take_pressure(self, imu: ImuBatch) -> None:
+        if imu.pressure_pa is None or not len(imu):
+            return
+        pairs = zip(imu.t_ns.tolist(), imu.pressure_pa.tolist(), strict=True)
+        self._pressures += [(t_ns, value) for t_ns, value in pairs if math.isfinite(value)]
+        oldest_ns = int(imu.t_ns[-1]) - _PRESSURE_KEPT_NS
+        self._pressures = [pair for pair in self._pressures if pair[0] >= oldest_ns]
+
+    def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
+        """The positions to publish among these rows."""
+        usable = (
+            np.isfinite(track.position_n_m).all(axis=1)
+            & np.isfinite(track.velocity_n_mps).all(axis=1)
+            & np.isfinite(track.position_cov_m2).all(axis=(1, 2))
+        )
+        self.rows_dropped += int(len(track) - usable.sum())
+        rows = np.flatnonzero(usable)
+        picked = rows[self._times.picks(track.t_ns[rows])].tolist()
+        return [self._position(track, row, timeline) for row in picked]
+
+    def _position(self, track: TrackBatch, row: int, timeline: Timeline) -> Position:
+        t_ns = int(track.t_ns[row])
+        north_m, east_m, down_m = track.position_n_m[row].tolist()
+        velocity_mps = track.velocity_n_mps[row].tolist()
+        covariance = track.position_cov_m2[row]
+        std_m = np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist()
+        self._turn(north_m, east_m)
+        self._climb(-down_m)
+        heading_std_rad = float(track.heading_std_rad[row])
+        return Position(
+            header=self._stamper.header(timeline.to_mono_ns(t_ns)),
+            north_m=north_m,
+            east_m=east_m,
+            down_m=down_m,
+            velocity_north_mps=velocity_mps[0],
+            velocity_east_mps=velocity_mps[1],
+            velocity_down_mps=velocity_mps[2],
+            std_north_m=std_m[0],
+            std_east_m=std_m[1],
+            std_down_m=std_m[2],
+            correlation_ne=_correlation(float(covariance[0, 1]), std_m[0] * std_m[1]),
+            heading_rad=self._heading_rad,
+            heading_std_rad=heading_std_rad if math.isfinite(heading_std_rad) else math.pi,
+            distance_m=float(track.distance_m[row]),
+            pressure_pa=self._pressure_at(t_ns),
+            stationary=bool(track.stationary[row]),
+            quality=Quality(int(track.quality[row])),
+            reasons=Reason(int(track.reasons[row])),
+        )
+
+    def _turn(self, north_m: float, east_m: float) -> None:
+        """The heading of travel is that of the last half metre."""
+        moved_north_m = north_m - self._turned_at_m[0]
+        moved_east_m = east_m - self._turned_at_m[1]
+        if math.hypot(moved_north_m, moved_east_m) >= _HEADING_BASE_M:
+            self._heading_rad = math.atan2(moved_east_m, moved_north_m) % math.tau
+            self._turned_at_m = (north_m, east_m)
+
+    def _climb(self, height_m: float) -> None:
+        """Count storeys, with enough hysteresis that standing on a landing counts once."""
+        off_m = height_m - self.floors_climbed * _STOREY_M
+        if abs(off_m) > 0.5 * _STOREY_M + _STOREY_HYSTERESIS_M:
+            self.floors_climbed = round(height_m / _STOREY_M)
+
+    def _pressure_at(self, t_ns: int) -> float | None:
+        after = bisect_right(self._pressures, (t_ns, math.inf))
+        return self._pressures[after - 1][1] if after else None
+
+
+def _correlation(covariance: float, product: float) -> float:
+    return max(-1.0, min(1.0, covariance / product)) if product > 0.0 else 0.0

@@ -1,0 +1,215 @@
+"""The journal of everything a unit sends: on disk before it is on the air.
+
+One SQLite file in WAL mode with ``synchronous=FULL``: what ``append`` has returned from
+survives ``kill -9`` and power loss.  Messages are named by boot id and sequence number, as
+in their headers.  Rows are clustered by how much they are worth, so that making room frees
+whole pages: what the station is known to have goes first, then the oldest of the least worth.
+"""
+
+from __future__ import annotations
+
+import heapq
+import sqlite3
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Lock
+from typing import NamedTuple
+
+from shared.channels import GPS, IMU, POSITION, Channel, Qos
+from shared.errors import StoreError
+from shared.messages import JournalBoot, JournalEntry
+
+_SCHEMA = """
+CREATE TABLE IF NOT EXISTS boot (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    boot_id INTEGER NOT NULL UNIQUE,
+    started_utc_ns INTEGER NOT NULL,
+    acknowledged_seq INTEGER NOT NULL DEFAULT 0
+);
+CREATE TABLE IF NOT EXISTS message (
+    worth INTEGER NOT NULL,
+    boot INTEGER NOT NULL REFERENCES boot(number),
+    seq INTEGER NOT NULL,
+    suffix TEXT NOT NULL,
+    t_utc_ns INTEGER NOT NULL,
+    payload BLOB NOT NULL,
+    PRIMARY KEY (worth, boot, seq)
+) WITHOUT ROWID;
+"""
+_RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = range(4)
+_ROWS_FREED_AT_ONCE = 500
+_FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append
+
+
+class Journaled(NamedTuple):
+    """One message on its way into the journal."""
+
+    seq: int
+    channel: Channel
+    t_utc_ns: int
+    payload: bytes
+
+
+class Spool:
+    """The journal of one unit; one process writes it.
+
+    ``append`` belongs to one thread; the rest may be called from any.  Every method raises
+    StoreError when the disk does not do as asked.
+    """
+
+    def __init__(
+        self, path: Path, new_boot_id: Callable[[], int], started_utc_ns: int, limit_bytes: int
+    ) -> None:
+        """Open or make the journal and begin a boot with an id that no earlier boot had."""
+        self._path = path
+        self._limit_bytes = limit_bytes
+        self._write_lock = Lock()
+        self._read_lock = Lock()
+        self.last_seq = 0  # the newest that is on disk
+        self.rows_freed = 0  # unacknowledged messages given up for room
+        with _in_words(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._writer = _connect(path)
+            self._writer.executescript(_SCHEMA)
+            self._boot, self.boot_id = self._begin_boot(new_boot_id, started_utc_ns)
+            self._reader = _connect(path)
+
+    def append(self, messages: Sequence[Journaled]) -> None:
+        """Put messages on disk, all or none; returns when they are safe."""
+        rows = [
+            (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
+             each.payload)
+            for each in messages
+        ]  # fmt: skip
+        with _in_words(self._path), self._write_lock:
+            with self._writer:
+                self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
+            self.last_seq = max(self.last_seq, *(each.seq for each in messages))
+            if self._bytes_used() > self._limit_bytes:
+                self._make_room()
+
+    def read(self, boot_id: int, from_seq: int, to_seq: int) -> Iterator[JournalEntry]:
+        """What is kept of these sequence numbers, in order; both ends belong to the range."""
+        with _in_words(self._path), self._read_lock:
+            parts = [
+                self._reader.execute(
+                    "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
+                    "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
+                    "seq BETWEEN ? AND ? ORDER BY seq",
+                    (worth, boot_id, from_seq, to_seq),
+                )
+                for worth in _WORTHS
+            ]
+            for row in heapq.merge(*parts, key=lambda row: row[0]):
+                yield JournalEntry(*row)
+
+    def boots(self) -> tuple[JournalBoot, ...]:
+        """What can be served, oldest boot first; boots of which nothing is left are not named."""
+        with _in_words(self._path), self._read_lock:
+            rows = self._reader.execute(
+                "SELECT boot_id, MIN(seq), MAX(seq), acknowledged_seq, started_utc_ns "
+                "FROM message JOIN boot ON boot = number GROUP BY number ORDER BY number"
+            ).fetchall()
+        return tuple(JournalBoot(*row) for row in rows)
+
+    def first_seq(self) -> int:
+        """The oldest number of this boot that is kept; one past the last when nothing is."""
+        with _in_words(self._path), self._read_lock:
+            found = [
+                self._reader.execute(
+                    "SELECT MIN(seq) FROM message WHERE worth = ? AND boot = ?", (worth, self._boot)
+                ).fetchone()[0]
+                for worth in _WORTHS
+            ]
+        return min((seq for seq in found if seq is not None), default=self.last_seq + 1)
+
+    def acknowledge(self, boot_id: int, to_seq: int) -> None:
+        """The station has everything of this boot up to ``to_seq`` on its own disk."""
+        with _in_words(self._path), self._write_lock, self._writer:
+            self._writer.execute(
+                "UPDATE boot SET acknowledged_seq = MAX(acknowledged_seq, ?) WHERE boot_id = ?",
+                (to_seq, boot_id),
+            )
+
+    def pending(self) -> int:
+        """Messages of this boot that the station is not known to have."""
+        with _in_words(self._path), self._read_lock:
+            (acknowledged,) = self._reader.execute(
+                "SELECT acknowledged_seq FROM boot WHERE number = ?", (self._boot,)
+            ).fetchone()
+        return max(0, self.last_seq - int(acknowledged))
+
+    def close(self) -> None:
+        with self._write_lock, self._read_lock:
+            self._reader.close()
+            self._writer.close()
+
+    def _begin_boot(self, new_boot_id: Callable[[], int], started_utc_ns: int) -> tuple[int, int]:
+        while True:
+            boot_id = new_boot_id()
+            try:
+                with self._writer:
+                    cursor = self._writer.execute(
+                        "INSERT INTO boot (boot_id, started_utc_ns) VALUES (?, ?)",
+                        (boot_id, started_utc_ns),
+                    )
+            except sqlite3.IntegrityError:
+                continue
+            assert cursor.lastrowid is not None
+            return cursor.lastrowid, boot_id
+
+    def _bytes_used(self) -> int:
+        (pages,) = self._writer.execute("PRAGMA page_count").fetchone()
+        (free,) = self._writer.execute("PRAGMA freelist_count").fetchone()
+        (page_bytes,) = self._writer.execute("PRAGMA page_size").fetchone()
+        return int((pages - free) * page_bytes)
+
+    def _make_room(self) -> None:
+        while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
+            if not (self._free_acknowledged() or self._free_least_worth()):
+                return
+
+    def _free_acknowledged(self) -> bool:
+        return self._free("seq <= acknowledged_seq", ()) > 0
+
+    def _free_least_worth(self) -> bool:
+        for worth in _WORTHS:
+            freed = self._free("worth = ?", (worth,))
+            if freed:
+                self.rows_freed += freed
+                return True
+        return False
+
+    def _free(self, condition: str, arguments: tuple[int, ...]) -> int:
+        with self._writer:
+            cursor = self._writer.execute(
+                "DELETE FROM message WHERE (worth, boot, seq) IN (SELECT worth, boot, seq "  # noqa: S608  # both texts are ours
+                f"FROM message JOIN boot ON boot = number WHERE {condition} "
+                "ORDER BY worth, boot, seq LIMIT ?)",
+                (*arguments, _ROWS_FREED_AT_ONCE),
+            )
+        return cursor.rowcount
+
+
+def _worth(channel: Channel) -> int:
+    if channel is IMU:
+        return _RAW
+    if channel in (POSITION, GPS):
+        return _TRACK
+    return _ALERT if channel.qos is Qos.ALERT else _ROUTINE
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    connection = sqlite3.connect(path, check_same_thread=False, timeout=5.0)
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
+    return connection
+
+
+@contextmanager
+def _in_words(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (sqlite3.Error, OSError) as error:
+        raise StoreError(f"the journal {path} cannot be used: {error}") from error
