@@ -1,0 +1,32 @@
+"""Foot trackers: the registry.  A new tracker is a file and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from edge.samples import SensorDescription
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.port import Tracker
+from shared.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerEntry:
+    name: str
+    summary: str
+    make: Callable[[SensorDescription], Tracker]
+
+
+TRACKERS: tuple[TrackerEntry, ...] = (
+    TrackerEntry("eskf", "error-state filter with stride-adaptive stance (default)", EskfTracker),
+)
+
+
+def make_tracker(name: str, description: SensorDescription) -> Tracker:
+    """Return a new tracker by its name in ``TRACKERS``; ``ConfigError`` if there is none."""
+    for entry in TRACKERS:
+        if entry.name == name:
+            return entry.make(description)
+    known = ", ".join(entry.name for entry in TRACKERS)
+    raise ConfigError(f"There is no tracker '{name}'. Known trackers: {known}.")

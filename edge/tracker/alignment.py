@@ -1,0 +1,96 @@
+"""Which way is down: levelling from the stillest moment at hand.
+
+Nobody stands still on command, and a unit may be switched on while its wearer
+runs.  The attitude comes from the mean specific force of the stillest short
+window, and its standard deviation from how still that window was.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.config import EskfConfig
+from edge.tracker.state import Ring
+from edge.tracker.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
+
+
+@njit(cache=True)
+def stillest_window(ring: Ring, first: int, stop: int, window_s: float) -> tuple[int, int]:
+    """Return the first sample and one past the last of the window with the least motion."""
+    mask = len(ring.t_ns) - 1
+    best = np.inf
+    best_first = first
+    best_stop = first + 1
+    end = first
+    total = 0.0
+    for begin in range(first, stop):
+        while end < stop and ring.t_s[end & mask] - ring.t_s[begin & mask] <= window_s:
+            total += ring.motion_m2ps4[end & mask]
+            end += 1
+        mean = total / (end - begin)
+        if mean < best:
+            best, best_first, best_stop = mean, begin, end
+        if end == stop:
+            break
+        total -= ring.motion_m2ps4[begin & mask]
+    return best_first, best_stop
+
+
+@njit(cache=True)
+def level(ring: Ring, first: int, stop: int, config: EskfConfig, quaternion_nb: Floats) -> float:
+    """Turn ``quaternion_nb`` (in place) so that it is level at sample ``first``.
+
+    The smallest turn that does it is taken, so the heading stays as good as it was.
+    Returns the tilt's standard deviation in rad.
+    """
+    mask = len(ring.t_ns) - 1
+    begin, end = stillest_window(ring, first, stop, config.start_window_s)
+    middle = (begin + end) // 2
+    mean_b = np.zeros(3)
+    motion = 0.0
+    for i in range(begin, end):
+        motion += ring.motion_m2ps4[i & mask] / (end - begin)
+        for j in range(3):
+            mean_b[j] += ring.accel_mps2[i & mask, j] / (end - begin)
+    turn_by_gyro(ring, first, middle, quaternion_nb)
+    _turn_upright(quaternion_nb, mean_b)
+    turn_by_gyro(ring, middle, first, quaternion_nb)
+    return config.start_tilt_std_rad + config.start_tilt_per_motion * min(math.sqrt(motion), 5.0)
+
+
+@njit(cache=True)
+def turn_by_gyro(ring: Ring, first: int, last: int, quaternion_nb: Floats) -> None:
+    """Carry an attitude from sample ``first`` to ``last``, forward or backward, in place."""
+    mask = len(ring.t_ns) - 1
+    angle_rad = np.zeros(3)
+    step = 1 if last > first else -1
+    for k in range(first, last, step):
+        here, there = k & mask, (k + step) & mask
+        dt_s = ring.t_s[there] - ring.t_s[here]
+        for j in range(3):
+            angle_rad[j] = 0.5 * dt_s * (ring.gyro_radps[here, j] + ring.gyro_radps[there, j])
+        rotate_attitude(quaternion_nb, angle_rad)
+
+
+@njit(cache=True)
+def _turn_upright(quaternion_nb: Floats, force_b_mps2: Floats) -> None:
+    """Turn an attitude the shortest way so that the force at rest points up."""
+    rotation_nb = np.zeros((3, 3))
+    for _ in range(4):  # rotate_navigation is exact for small turns only
+        rotation_matrix(quaternion_nb, rotation_nb)
+        x = (rotation_nb[0] * force_b_mps2).sum()
+        y = (rotation_nb[1] * force_b_mps2).sum()
+        z = (rotation_nb[2] * force_b_mps2).sum()
+        horizontal = math.sqrt(x * x + y * y)
+        angle = math.atan2(horizontal, -z)
+        if horizontal > 0.0:
+            y, x = y / horizontal, x / horizontal
+        else:
+            y, x = 1.0, 0.0
+        # Up is (0, 0, -1); the axis of the shortest turn is force x up = (-y, x, 0).
+        half = 2.0 * math.tan(0.5 * angle) if angle < 3.1 else 40.0
+        rotate_navigation(quaternion_nb, -y * half, x * half, 0.0)

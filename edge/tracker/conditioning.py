@@ -1,0 +1,163 @@
+"""What enters the ring: samples checked one by one, the bad ones marked and left out.
+
+A bad sample keeps its row: it holds the values and the time of the last good
+one, so that the filter stands still over it and the next good sample spans the
+hole.  Times are put right in ``regular_time``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from edge.samples import Floats, SensorDescription
+from edge.tracker.port import Reason
+from edge.tracker.state import Ring
+
+ACCEL_SATURATED = int(Reason.ACCEL_SATURATED)
+BAD_SAMPLES = int(Reason.BAD_SAMPLES)
+GYRO_SATURATED = int(Reason.GYRO_SATURATED)
+SAMPLE_GAP = int(Reason.SAMPLE_GAP)
+
+NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock was set back
+STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
+PERIOD_WEIGHT = 0.005  # of one interval in the mean period
+
+GATE = np.dtype(
+    [
+        ("last_ns", np.int64),
+        ("arrival_s", np.float64),
+        ("accel_mps2", np.float64, 3),
+        ("gyro_radps", np.float64, 3),
+        ("backward", np.int64),  # stamps before the last one, in a row
+        ("repeats", np.int64),  # equal samples in a row
+        ("started", np.bool_),
+    ]
+)
+
+
+class Limits(NamedTuple):
+    """Readings at which a sensor clips, and readings that cannot be true."""
+
+    accel_clip_mps2: float
+    gyro_clip_radps: float
+    accel_absurd_mps2: float
+    gyro_absurd_radps: float
+
+
+def limits_of(description: SensorDescription, saturation_ratio: float) -> Limits:
+    """Return the limits of a described sensor; without a full scale nothing clips."""
+    accel = description.accel_full_scale_mps2
+    gyro = description.gyro_full_scale_radps
+    return Limits(
+        accel_clip_mps2=saturation_ratio * accel if accel else np.inf,
+        gyro_clip_radps=saturation_ratio * gyro if gyro else np.inf,
+        accel_absurd_mps2=1.5 * accel if accel else 4000.0,
+        gyro_absurd_radps=1.5 * gyro if gyro else 150.0,
+    )
+
+
+@njit(cache=True)
+def admit(
+    ring: Ring,
+    progress: NDArray[Any],
+    gate: NDArray[Any],
+    limits: Limits,
+    gap_s: float,
+    t_ns: NDArray[np.int64],
+    accel_mps2: Floats,
+    gyro_radps: Floats,
+) -> None:
+    """Append samples (n,), (n, 3), (n, 3) to the ring with their flags and arrival times."""
+    mask = len(ring.t_ns) - 1
+    for i in range(len(t_ns)):
+        slot = progress[0].received & mask
+        ring.t_ns[slot] = t_ns[i]
+        flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
+        if flags & BAD_SAMPLES == 0:
+            flags |= _time_flags(progress, gate, t_ns[i], gap_s)
+        if flags & BAD_SAMPLES == 0:
+            for j in range(3):
+                gate[0].accel_mps2[j] = accel_mps2[i, j]
+                gate[0].gyro_radps[j] = gyro_radps[i, j]
+        for j in range(3):
+            ring.accel_mps2[slot, j] = gate[0].accel_mps2[j]
+            ring.gyro_radps[slot, j] = gate[0].gyro_radps[j]
+        ring.arrival_s[slot] = gate[0].arrival_s
+        ring.flags[slot] = flags
+        progress[0].received += 1
+
+
+@njit(cache=True)
+def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floats) -> int:
+    flags = 0
+    same = gate[0].started
+    accel_square = 0.0
+    rate_square = 0.0
+    for j in range(3):
+        a, w = accel[j], gyro[j]
+        if not (abs(a) <= limits.accel_absurd_mps2 and abs(w) <= limits.gyro_absurd_radps):
+            return BAD_SAMPLES  # also when not finite
+        if abs(a) >= limits.accel_clip_mps2:
+            flags |= ACCEL_SATURATED
+        if abs(w) >= limits.gyro_clip_radps:
+            flags |= GYRO_SATURATED
+        same = same and a == gate[0].accel_mps2[j] and w == gate[0].gyro_radps[j]
+        accel_square += a * a
+        rate_square += w * w
+    gate[0].repeats = gate[0].repeats + 1 if same else 0
+    resting = 81.0 < accel_square < 115.0 and rate_square < 0.04
+    if gate[0].repeats >= STUCK_SAMPLES and not resting:
+        return BAD_SAMPLES
+    return flags
+
+
+@njit(cache=True)
+def _time_flags(progress: NDArray[Any], gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
+    if not gate[0].started:
+        gate[0].started = True
+        gate[0].last_ns = t_ns
+        return 0
+    step_s = 1e-9 * (t_ns - gate[0].last_ns)
+    flags = 0
+    if step_s < 0.0:
+        gate[0].backward += 1
+        if gate[0].backward < NEW_CLOCK_SAMPLES:
+            return BAD_SAMPLES
+        flags = SAMPLE_GAP  # of unknown length
+        step_s = NEW_CLOCK_SAMPLES * progress[0].period_s
+    elif step_s == 0.0 and gate[0].repeats > 0:
+        return BAD_SAMPLES  # the same sample twice
+    gate[0].backward = 0
+    gate[0].last_ns = t_ns
+    gate[0].arrival_s += step_s
+    if step_s > gap_s:
+        return SAMPLE_GAP
+    progress[0].period_s += PERIOD_WEIGHT * (step_s - progress[0].period_s)
+    return flags
+
+
+@njit(cache=True)
+def regular_time(ring: Ring, k: int, stop: int, period_s: float, late_s: float) -> float:
+    """Return the time of sample ``k`` without late delivery, in s since the first sample.
+
+    A stamp may be late (polled or quantised transport) but not early, so samples
+    that follow on time, counted back by the mean period, bound when ``k`` was taken.
+    """
+    mask = len(ring.t_ns) - 1
+    arrival_s = ring.arrival_s[k & mask]
+    best_s = arrival_s
+    back_s = 0.0
+    for j in range(k + 1, stop):
+        slot = j & mask
+        if ring.arrival_s[slot] - arrival_s > late_s:
+            break
+        if ring.flags[slot] & (BAD_SAMPLES | SAMPLE_GAP) == 0:
+            back_s += period_s
+            best_s = min(best_s, ring.arrival_s[slot] - back_s)
+    if k > 0:
+        best_s = max(best_s, ring.t_s[(k - 1) & mask])
+    return best_s

@@ -1,0 +1,65 @@
+"""Every parameter of the default tracker, in one place, with its unit.
+
+Named tuples rather than dataclasses because the compiled kernels take them as
+they are; they are as frozen.  ``rthz`` marks a noise density: a value per
+square root of hertz, so that nothing depends on the sample rate.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class EskfConfig(NamedTuple):
+    """The one default configuration; nothing here is set per recording."""
+
+    gravity_mps2: float = 9.80665
+
+    # Time: what may pass before a row is final is lookahead + lag, below 1 s.
+    lookahead_s: float = 0.5  # the stance detector sees this far ahead of the filter
+    lag_s: float = 0.45  # the smoother corrects this far behind the filter
+    stance_release_s: float = 0.1  # in stance, rows are released this often
+    late_delivery_s: float = 0.04  # a stamp may be late by this and is put right
+    gap_s: float = 0.1  # a longer silence counts as a gap
+
+    # Stance detection (zero_velocity.py).
+    half_window_s: float = 0.02
+    rate_weight_m2ps2: float = 32.8  # weight of (rad/s)^2 against (m/s^2)^2
+    stride_past_s: float = 0.65
+    threshold_ratio: float = 4.0
+    threshold_min_m2ps4: float = 1.0
+    threshold_max_m2ps4: float = 150.0
+
+    # Pseudo-measurements in stance.
+    stance_velocity_mps_rthz: float = 7.1e-4
+    stance_rate_radps_rthz: float = 3.5e-4
+    stance_rate_per_motion: float = 0.7  # grows with the statistic to the power 1.5
+
+    # Process noise.
+    accel_noise_mps2_rthz: float = 0.2
+    gyro_noise_radps_rthz: float = 6.2e-4
+    gyro_bias_walk_radps2_rthz: float = 1e-5
+    accel_bias_walk_mps3_rthz: float = 1e-4
+    saturated_rate_radps_rthz: float = 0.2  # what a clipped gyroscope hides
+
+    # What is known at the start.
+    start_gyro_bias_std_radps: float = 0.005
+    start_accel_bias_std_mps2: float = 0.2
+    start_tilt_std_rad: float = 0.02
+    start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
+    start_speed_std_mps: float = 1.0  # when the recording starts on the move
+    start_still_std_mps: float = 0.02  # when it starts at rest
+    start_window_s: float = 0.3
+
+    # A gap: what may have happened meanwhile.
+    gap_speed_std_mps: float = 1.5
+    gap_turn_std_radps: float = 1.0
+
+    # Quality.
+    saturation_ratio: float = 0.985  # of full scale
+    no_stance_degraded_s: float = 3.0
+    no_stance_lost_s: float = 10.0
+    fault_memory_s: float = 2.0  # a fault marks the rows that follow for so long
+    degraded_std_m: float = 3.0
+    lost_std_m: float = 15.0
+    aligned_tilt_std_rad: float = 0.05

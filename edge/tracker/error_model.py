@@ -1,0 +1,106 @@
+"""The error state: how errors grow from sample to sample and shrink with a measurement.
+
+Fifteen errors, true minus estimated, in this order: position (m, NED), velocity
+(m/s, NED), attitude (rad, small rotation in NED axes: ``R_true = (1 + [a x]) R``),
+gyroscope bias (rad/s, sensor axes), accelerometer bias (m/s^2, sensor axes).
+Formulas: Sola, "Quaternion kinematics for the error-state Kalman filter", 2017,
+chapter 7 (global angular error).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from edge.samples import Floats
+
+POSITION = 0
+VELOCITY = 3
+ATTITUDE = 6
+GYRO_BIAS = 9
+ACCEL_BIAS = 12
+SIZE = 15
+
+
+def transition_matrix(rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) -> Floats:
+    """Return the dense transition (15, 15) of one interval; ``propagate`` applies the same."""
+    x, y, z = force_n_mps2
+    matrix = np.eye(SIZE)
+    matrix[0:3, 3:6] = dt_s * np.eye(3)
+    matrix[3:6, 6:9] = -dt_s * np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix[3:6, 12:15] = -dt_s * rotation_nb
+    matrix[6:9, 9:12] = -dt_s * rotation_nb
+    return matrix
+
+
+@njit(cache=True)
+def propagate(
+    covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_s: float
+) -> None:
+    """Replace ``covariance`` P (15, 15) by ``F P F'``, using what is zero and one in F."""
+    fx = dt_s * force_n_mps2[0]
+    fy = dt_s * force_n_mps2[1]
+    fz = dt_s * force_n_mps2[2]
+    p = covariance
+    r = dt_s * rotation_nb
+    # Rows: M = F P, top down so that every row reads rows not yet changed.
+    for j in range(15):
+        v0, v1, v2 = p[3, j], p[4, j], p[5, j]
+        a0, a1, a2 = p[6, j], p[7, j], p[8, j]
+        g0, g1, g2 = p[9, j], p[10, j], p[11, j]
+        b0, b1, b2 = p[12, j], p[13, j], p[14, j]
+        p[0, j] += dt_s * v0
+        p[1, j] += dt_s * v1
+        p[2, j] += dt_s * v2
+        p[3, j] = v0 + fz * a1 - fy * a2 - (r[0, 0] * b0 + r[0, 1] * b1 + r[0, 2] * b2)
+        p[4, j] = v1 + fx * a2 - fz * a0 - (r[1, 0] * b0 + r[1, 1] * b1 + r[1, 2] * b2)
+        p[5, j] = v2 + fy * a0 - fx * a1 - (r[2, 0] * b0 + r[2, 1] * b1 + r[2, 2] * b2)
+        p[6, j] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
+        p[7, j] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
+        p[8, j] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
+    # Columns of the nine rows that changed: P = M F'; the lower triangle is the mirror.
+    for i in range(9):
+        row = p[i]
+        v0, v1, v2 = row[3], row[4], row[5]
+        a0, a1, a2 = row[6], row[7], row[8]
+        g0, g1, g2 = row[9], row[10], row[11]
+        b0, b1, b2 = row[12], row[13], row[14]
+        row[0] += dt_s * v0
+        row[1] += dt_s * v1
+        row[2] += dt_s * v2
+        row[3] = v0 + fz * a1 - fy * a2 - (r[0, 0] * b0 + r[0, 1] * b1 + r[0, 2] * b2)
+        row[4] = v1 + fx * a2 - fz * a0 - (r[1, 0] * b0 + r[1, 1] * b1 + r[1, 2] * b2)
+        row[5] = v2 + fy * a0 - fx * a1 - (r[2, 0] * b0 + r[2, 1] * b1 + r[2, 2] * b2)
+        row[6] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
+        row[7] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
+        row[8] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
+    for i in range(9):
+        for j in range(i + 1, 15):
+            p[j, i] = p[i, j]
+
+
+@njit(cache=True)
+def update_one(
+    covariance: Floats,
+    error: Floats,
+    index: int,
+    residual: float,
+    variance: float,
+    gain: Floats,
+) -> float:
+    """Use one scalar measurement of error number ``index``.
+
+    ``residual`` is measured minus predicted for the state before any of this
+    instant's updates; ``error`` (15,) gathers the correction.  ``gain`` (15,)
+    leaves as the Kalman gain.  Returns the innovation's inverse variance.
+    """
+    inverse = 1.0 / (covariance[index, index] + variance)
+    innovation = residual - error[index]
+    for i in range(15):
+        gain[i] = covariance[i, index] * inverse
+        error[i] += gain[i] * innovation
+    for i in range(15):
+        scaled = covariance[i, index]
+        for j in range(15):
+            covariance[i, j] -= scaled * gain[j]
+    return inverse

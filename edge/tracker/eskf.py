@@ -1,0 +1,160 @@
+"""The default tracker: error-state filter, stride-adaptive stance, fixed-lag smoothing.
+
+Samples pass through stages, each a few samples to half a second behind the one
+before: admitted, put in time, measured for stillness, filtered, smoothed and
+released.  Every stage looks at sample numbers and sample times only, so the rows
+do not depend on how the samples were batched.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from edge.samples import Floats, ImuBatch, SensorDescription
+from edge.tracker.conditioning import GATE, admit, limits_of, regular_time
+from edge.tracker.config import EskfConfig
+from edge.tracker.filter import filter_sample
+from edge.tracker.port import TrackBatch
+from edge.tracker.rows import empty_rows, join_rows
+from edge.tracker.smoothing import smooth
+from edge.tracker.state import FilterState, Ring, new_filter_state, new_progress, new_ring
+from edge.tracker.zero_velocity import motion_statistic, stride_minimum
+
+RING_S = 4.0  # of samples in the ring at the described rate
+KEEP_OF_LAG = 0.66  # a release in swing keeps rows younger than this share of the lag
+
+
+class EskfTracker:
+    """Fifteen-state error-state filter for a sensor anywhere on the foot; see ``Tracker``."""
+
+    def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
+        self.description = description
+        self.config = config or EskfConfig()
+        rate_hz = max(description.rate_hz, 20.0)
+        slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
+        self._ring = new_ring(slots)
+        self._progress = new_progress()
+        self._progress["period_s"] = 1.0 / rate_hz
+        self._gate = np.zeros(1, GATE)
+        self._limits = limits_of(description, self.config.saturation_ratio)
+        self._state = new_filter_state()
+        self._block = slots // 4
+
+    def push(self, batch: ImuBatch) -> TrackBatch:
+        """Take samples; return the rows that have become final."""
+        released = []
+        for first in range(0, len(batch), self._block):
+            stop = first + self._block
+            admit(
+                self._ring,
+                self._progress,
+                self._gate,
+                self._limits,
+                self.config.gap_s,
+                batch.t_ns[first:stop],
+                batch.accel_mps2[first:stop],
+                batch.gyro_radps[first:stop],
+            )
+            rows = self._work(final=False)
+            if len(rows):
+                released.append(rows)
+        return join_rows(released)
+
+    def finish(self) -> TrackBatch:
+        """Return the rows still held back; the tracker is used up."""
+        return self._work(final=True)
+
+    def _work(self, *, final: bool) -> TrackBatch:
+        first = int(self._progress["released"][0])
+        stop = work(self._ring, self._progress, self._state, self.config, final)
+        return self._rows(first, stop) if stop > first else empty_rows()
+
+    def _rows(self, first: int, stop: int) -> TrackBatch:
+        ring = self._ring
+        slots = np.arange(first, stop) & (len(ring.t_ns) - 1)
+        return TrackBatch(
+            t_ns=ring.t_ns[slots],
+            position_n_m=ring.position_n_m[slots],
+            velocity_n_mps=ring.velocity_n_mps[slots],
+            quaternion_nb=ring.quaternion_nb[slots],
+            position_cov_m2=ring.covariance[slots, :3, :3],
+            heading_std_rad=ring.heading_std_rad[slots],
+            stationary=ring.stationary[slots],
+            distance_m=ring.distance_m[slots],
+            steps=ring.steps[slots],
+            quality=ring.quality[slots],
+            reasons=ring.reasons[slots],
+        )
+
+
+@njit(cache=True)
+def work(
+    ring: Ring, progress: NDArray[Any], state: FilterState, config: EskfConfig, final: bool
+) -> int:
+    """Take every sample as far as it can go; return one past the last released row."""
+    memory = progress[0]
+    while memory.timed < memory.received:
+        k = memory.timed
+        if not final and not _is_past(ring.arrival_s, memory.received, k, config.late_delivery_s):
+            break
+        slot = k & (len(ring.t_ns) - 1)
+        ring.t_s[slot] = regular_time(
+            ring, k, memory.received, memory.period_s, config.late_delivery_s
+        )
+        memory.timed = k + 1
+    while memory.measured < memory.timed:
+        k = memory.measured
+        if not final and not _is_past(ring.t_s, memory.timed, k, config.half_window_s):
+            break
+        slot = k & (len(ring.t_ns) - 1)
+        ring.motion_m2ps4[slot] = motion_statistic(ring, k, memory.timed, config)
+        memory.measured = k + 1
+    while memory.filtered < memory.measured:
+        k = memory.filtered
+        ahead_s = config.lookahead_s + (config.lag_s if k == 0 else 0.0)
+        if not final and not _is_past(ring.t_s, memory.measured, k, ahead_s):
+            break
+        slot = k & (len(ring.t_ns) - 1)
+        ring.stride_minimum_m2ps4[slot] = stride_minimum(ring, progress, k, config)
+        filter_sample(ring, progress, state, k, config)
+        memory.filtered = k + 1
+        _release(ring, progress, k, config)
+    if final and memory.released < memory.filtered:
+        smooth(ring, memory.released, memory.filtered, memory.filtered - 1)
+        memory.released = memory.filtered
+    return memory.released
+
+
+@njit(cache=True)
+def _is_past(t_s: Floats, count: int, k: int, wait_s: float) -> bool:
+    """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
+    mask = len(t_s) - 1
+    return t_s[(count - 1) & mask] - t_s[k & mask] > wait_s or count - k > mask // 4
+
+
+@njit(cache=True)
+def _release(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> None:
+    """Smooth and release rows once sample ``k`` is filtered.
+
+    Firm stance adds little to what is known of the rows before it, so they go at
+    once; a long swing is released from its old end when the lag is used up.
+    """
+    mask = len(ring.t_ns) - 1
+    memory = progress[0]
+    now_s = ring.t_s[k & mask]
+    first = memory.released
+    stop = first
+    if memory.in_stance and now_s - memory.stance_since_s >= config.stance_release_s:
+        memory.stance_since_s = now_s
+        stop = k + 1
+    elif now_s - ring.t_s[first & mask] >= config.lag_s or k - first > mask // 4:
+        while stop <= k and now_s - ring.t_s[stop & mask] >= KEEP_OF_LAG * config.lag_s:
+            stop += 1
+        stop = max(stop, first + 1)
+    if stop > first:
+        smooth(ring, first, stop, k)
+        memory.released = stop

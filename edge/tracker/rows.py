@@ -1,0 +1,40 @@
+"""Putting row batches together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+
+import numpy as np
+
+from edge.tracker.port import TrackBatch
+
+
+def empty_rows() -> TrackBatch:
+    return TrackBatch(
+        t_ns=np.zeros(0, np.int64),
+        position_n_m=np.zeros((0, 3)),
+        velocity_n_mps=np.zeros((0, 3)),
+        quaternion_nb=np.zeros((0, 4)),
+        position_cov_m2=np.zeros((0, 3, 3)),
+        heading_std_rad=np.zeros(0),
+        stationary=np.zeros(0, np.bool_),
+        distance_m=np.zeros(0),
+        steps=np.zeros(0, np.int64),
+        quality=np.zeros(0, np.uint8),
+        reasons=np.zeros(0, np.uint32),
+    )
+
+
+def join_rows(batches: Sequence[TrackBatch]) -> TrackBatch:
+    """Return one batch with the rows of all, in order."""
+    if len(batches) == 1:
+        return batches[0]
+    if not batches:
+        return empty_rows()
+    return TrackBatch(
+        **{
+            field.name: np.concatenate([getattr(batch, field.name) for batch in batches])
+            for field in fields(TrackBatch)
+        }
+    )

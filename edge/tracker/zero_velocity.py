@@ -1,0 +1,91 @@
+"""When the foot stands: a stillness statistic and a threshold that follows each stride.
+
+The statistic is SHOE's (Skog et al., "Zero-velocity detection: an algorithm
+evaluation", 2010) in m^2/s^4: the mean square of what the accelerometer shows
+beyond gravity, plus the mean square rate times a fixed weight, over a short
+window.  Shoes, gaits and sensors differ by orders of magnitude in how still
+the stillest instant of a stride is, so the threshold is a multiple of the
+smallest statistic in the surrounding stride, within bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from numba import njit
+from numpy.typing import NDArray
+
+from edge.tracker.config import EskfConfig
+from edge.tracker.state import Ring
+
+
+@njit(cache=True)
+def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float:
+    """Return the statistic of sample ``k``; samples from ``stop`` on are not looked at."""
+    mask = len(ring.t_ns) - 1
+    now_s = ring.t_s[k & mask]
+    first = k
+    while first > 0 and now_s - ring.t_s[(first - 1) & mask] <= config.half_window_s:
+        first -= 1
+        if k - first > mask // 4:
+            break
+    mean_x = 0.0
+    mean_y = 0.0
+    mean_z = 0.0
+    squares = 0.0
+    rates = 0.0
+    count = 0
+    for i in range(first, stop):
+        slot = i & mask
+        if ring.t_s[slot] - now_s > config.half_window_s:
+            break
+        x, y, z = ring.accel_mps2[slot, 0], ring.accel_mps2[slot, 1], ring.accel_mps2[slot, 2]
+        mean_x += x
+        mean_y += y
+        mean_z += z
+        squares += x * x + y * y + z * z
+        x, y, z = ring.gyro_radps[slot, 0], ring.gyro_radps[slot, 1], ring.gyro_radps[slot, 2]
+        rates += x * x + y * y + z * z
+        count += 1
+    mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
+    gravity = config.gravity_mps2
+    spread = squares / count - 2.0 * gravity * mean_norm + gravity * gravity
+    return max(spread, 0.0) + config.rate_weight_m2ps2 * rates / count
+
+
+@njit(cache=True)
+def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> float:
+    """Return the smallest statistic from ``stride_past_s`` before to ``lookahead_s`` after ``k``.
+
+    Called for every ``k`` in turn; ``progress`` keeps the sliding window.
+    """
+    mask = len(ring.t_ns) - 1
+    now_s = ring.t_s[k & mask]
+    state = progress[0]
+    motion = ring.motion_m2ps4
+    at = state.minimum_at
+    to = state.minimum_to
+    while to < state.measured and ring.t_s[to & mask] - now_s <= config.lookahead_s:
+        if to == 0 or motion[to & mask] <= motion[at & mask]:
+            at = to
+        to += 1
+    begin = max(state.minimum_from, to - mask)
+    while now_s - ring.t_s[begin & mask] > config.stride_past_s:
+        begin += 1
+    if at < begin:
+        at = begin
+        for i in range(begin, to):
+            if motion[i & mask] <= motion[at & mask]:
+                at = i
+    state.minimum_at = at
+    state.minimum_from = begin
+    state.minimum_to = to
+    return motion[at & mask]
+
+
+@njit(cache=True)
+def stance_threshold(stride_minimum_m2ps4: float, config: EskfConfig) -> float:
+    """Return the statistic up to which a sample counts as standing."""
+    threshold = config.threshold_ratio * stride_minimum_m2ps4
+    return min(max(threshold, config.threshold_min_m2ps4), config.threshold_max_m2ps4)
