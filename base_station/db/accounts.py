@@ -1,0 +1,219 @@
+"""Users, their login sessions and API tokens.
+
+Passwords are argon2 hashes.  Sessions and tokens are 256 random bits, of which only the
+SHA-256 is stored: who reads the database cannot log in with it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections.abc import Sequence
+from enum import IntEnum
+
+import msgspec
+from pwdlib import PasswordHash
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from base_station.db.models import ApiToken, LoginSession, User
+from base_station.db.store import Store
+from shared.clock import NS_PER_S, Clock
+from shared.errors import UserError
+
+SESSION_S = 12 * 3600
+MIN_PASSWORD = 10
+TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
+
+
+class Role(IntEnum):
+    """Each may do what those below it may."""
+
+    VIEWER = 1
+    COMMANDER = 2
+    ADMINISTRATOR = 3
+
+    @property
+    def word(self) -> str:
+        return self.name.lower()
+
+    @staticmethod
+    def of(word: str) -> Role:
+        try:
+            return Role[word.upper()]
+        except KeyError:
+            known = ", ".join(role.word for role in Role)
+            raise UserError(f"there is no role {word!r}; roles are {known}") from None
+
+
+class Principal(msgspec.Struct, frozen=True):
+    """Who is asking."""
+
+    username: str
+    role: Role
+
+
+class Accounts:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store, clock: Clock) -> None:
+        self._store = store
+        self._clock = clock
+        self._hasher = PasswordHash.recommended()
+        # Checked for names that do not exist, so that the answer takes as long.
+        self._nobody = self._hasher.hash(secrets.token_urlsafe())
+
+    # ---- users
+
+    def add_user(self, username: str, password: str, role: Role) -> None:
+        _check_password(password)
+        if not username.strip():
+            raise UserError("a user needs a name")
+        with self._store.write() as session:
+            if session.get(User, username) is not None:
+                raise UserError(f"there is a user {username!r} already")
+            session.add(
+                User(
+                    username=username,
+                    password_hash=self._hasher.hash(password),
+                    role=role.word,
+                    created_ns=self._clock.utc_ns(),
+                )
+            )
+
+    def change_user(self, username: str, password: str | None, role: Role | None) -> None:
+        """A new password ends the user's sessions and tokens."""
+        with self._store.write() as session:
+            user = _user(session, username)
+            if role is not None and role is not Role.ADMINISTRATOR:
+                _keep_an_administrator(session, user)
+            if role is not None:
+                user.role = role.word
+            if password is not None:
+                _check_password(password)
+                user.password_hash = self._hasher.hash(password)
+                session.execute(delete(LoginSession).where(LoginSession.username == username))
+                session.execute(delete(ApiToken).where(ApiToken.username == username))
+
+    def remove_user(self, username: str) -> None:
+        with self._store.write() as session:
+            user = _user(session, username)
+            _keep_an_administrator(session, user)
+            session.delete(user)
+
+    def users(self) -> Sequence[User]:
+        with self._store.read() as session:
+            return session.scalars(select(User).order_by(User.username)).all()
+
+    # ---- sessions
+
+    def log_in(self, username: str, password: str) -> str | None:
+        """The secret of a new session; None where name or password is wrong."""
+        with self._store.read() as session:
+            user = session.get(User, username)
+            stored = self._nobody if user is None else user.password_hash
+        if not self._hasher.verify(password, stored) or user is None:
+            return None
+        secret, now_ns = secrets.token_urlsafe(32), self._clock.utc_ns()
+        with self._store.write() as session:
+            session.execute(delete(LoginSession).where(LoginSession.expires_ns <= now_ns))
+            session.add(
+                LoginSession(
+                    token_hash=_sha256(secret),
+                    username=username,
+                    created_ns=now_ns,
+                    expires_ns=now_ns + SESSION_S * NS_PER_S,
+                )
+            )
+        return secret
+
+    def log_out(self, secret: str) -> None:
+        with self._store.write() as session:
+            session.execute(delete(LoginSession).where(LoginSession.token_hash == _sha256(secret)))
+
+    def of_session(self, secret: str) -> Principal | None:
+        with self._store.read() as session:
+            found = session.execute(
+                select(User.username, User.role)
+                .join(LoginSession, LoginSession.username == User.username)
+                .where(
+                    LoginSession.token_hash == _sha256(secret),
+                    LoginSession.expires_ns > self._clock.utc_ns(),
+                )
+            ).one_or_none()
+        return None if found is None else Principal(found.username, Role.of(found.role))
+
+    # ---- API tokens
+
+    def add_token(
+        self, username: str, name: str, role: Role, expires_ns: int | None
+    ) -> tuple[str, str]:
+        """``(token_id, secret)``; the secret is never to be had again."""
+        secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
+        with self._store.write() as session:
+            if role > Role.of(_user(session, username).role):
+                raise UserError("a token can have its owner's role or a lower one, not a higher")
+            session.add(
+                ApiToken(
+                    token_id=token_id,
+                    token_hash=_sha256(secret),
+                    username=username,
+                    name=name,
+                    role=role.word,
+                    created_ns=self._clock.utc_ns(),
+                    expires_ns=expires_ns,
+                )
+            )
+        return token_id, secret
+
+    def remove_token(self, username: str, token_id: str) -> bool:
+        with self._store.write() as session:
+            token = session.get(ApiToken, token_id)
+            if token is None or token.username != username:
+                return False
+            session.delete(token)
+            return True
+
+    def tokens(self, username: str) -> Sequence[ApiToken]:
+        with self._store.read() as session:
+            mine = select(ApiToken).where(ApiToken.username == username)
+            return session.scalars(mine.order_by(ApiToken.created_ns)).all()
+
+    def of_token(self, secret: str) -> Principal | None:
+        with self._store.read() as session:
+            found = session.execute(
+                select(ApiToken, User.role)
+                .join(User, User.username == ApiToken.username)
+                .where(ApiToken.token_hash == _sha256(secret))
+            ).one_or_none()
+        if found is None:
+            return None
+        token, owner_role = found
+        if token.expires_ns is not None and token.expires_ns <= self._clock.utc_ns():
+            return None
+        # An owner who was demoted takes the tokens along.
+        return Principal(token.username, min(Role.of(token.role), Role.of(owner_role)))
+
+
+def _user(session: Session, username: str) -> User:
+    user = session.get(User, username)
+    if user is None:
+        raise UserError(f"there is no user {username!r}")
+    return user
+
+
+def _keep_an_administrator(session: Session, user: User) -> None:
+    administrators = session.scalar(
+        select(func.count()).where(User.role == Role.ADMINISTRATOR.word)
+    )
+    if user.role == Role.ADMINISTRATOR.word and administrators == 1:
+        raise UserError(f"{user.username!r} is the only administrator; make another one first")
+
+
+def _check_password(password: str) -> None:
+    if len(password) < MIN_PASSWORD:
+        raise UserError(f"a password needs at least {MIN_PASSWORD} characters")
+
+
+def _sha256(secret: str) -> str:
+    return hashlib.sha256(secret.encode()).hexdigest()

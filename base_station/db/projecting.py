@@ -1,0 +1,188 @@
+"""What one projection changes in the tables.  Every statement may run again."""
+
+from __future__ import annotations
+
+import msgspec
+from sqlalchemy import func, update
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import Session
+
+from base_station.db.models import (
+    Alarm,
+    AlarmLife,
+    Anchor,
+    Assignment,
+    AuditEntry,
+    Incident,
+    Plan,
+    TrackPoint,
+    Unit,
+    UnitStart,
+)
+from base_station.sinks import Projection
+from shared.clock import NS_PER_S
+from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    CloseIncident,
+    OpenIncident,
+    RegisterUnit,
+    ResolveAlarm,
+    SetAnchor,
+    SetPlan,
+    SetStart,
+    Unassign,
+)
+
+_NEW_UNIT = {
+    "label": "",
+    "registered_ns": None,
+    "last_heard_ns": None,
+    "software_version": "",
+    "source": "",
+    "sensor_name": "",
+    "tracker": "",
+    "calibration": "",
+    "has_gps": False,
+}
+
+
+def project_into(session: Session, projection: Projection) -> None:
+    """Write one projection."""
+    for action in projection.actions:
+        _audit(session, projection.t_ns, action)
+        _action(session, projection.t_ns, action)
+    for change in projection.alarms:
+        _alarm(session, change)
+    if projection.tracks:
+        _tracks(session, projection.tracks)
+    for description in projection.descriptions:
+        _unit(session, description.header.unit_id, **_described(description))
+    for unit_id, t_ns in projection.heard:
+        _unit(session, unit_id, last_heard_ns=t_ns)
+
+
+def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
+    key = {"action_id": done.action_id, "t_ns": t_ns}
+    match done.action:
+        case OpenIncident(incident_id=incident_id, name=name):
+            _add(
+                session, Incident, incident_id=incident_id, name=name, opened_ns=t_ns,
+                opened_by=done.by, closed_ns=None, closed_by="",
+            )  # fmt: skip
+        case CloseIncident(incident_id=incident_id):
+            session.execute(
+                update(Incident)
+                .where(Incident.incident_id == incident_id, Incident.closed_ns.is_(None))
+                .values(closed_ns=t_ns, closed_by=done.by)
+            )
+        case Assign() as assign:
+            _end_assignment(session, t_ns, assign.unit_id)
+            _add(
+                session, Assignment, action_id=done.action_id, from_ns=t_ns, until_ns=None,
+                **msgspec.structs.asdict(assign),
+            )  # fmt: skip
+        case Unassign(unit_id=unit_id):
+            _end_assignment(session, t_ns, unit_id)
+        case RegisterUnit(unit_id=unit_id, label=label):
+            _unit(session, unit_id, label=label, registered_ns=t_ns)
+        case SetAnchor() as anchor:
+            _add(session, Anchor, **key, **msgspec.structs.asdict(anchor))
+        case SetPlan(geojson=geojson):
+            _add(session, Plan, **key, geojson=geojson)
+        case SetStart() as start:
+            columns = {name: getattr(start, name) for name in _START_COLUMNS}
+            _add(session, UnitStart, **key, **columns)
+        case AcknowledgeAlarm() | ResolveAlarm():
+            pass  # the alarm's change comes with the same step
+
+
+_START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
+
+
+def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
+    said = msgspec.structs.asdict(done.action)
+    if isinstance(done.action, SetPlan):
+        said = {"bytes": len(done.action.geojson)}
+    _add(
+        session, AuditEntry, entry_id=done.action_id, t_ns=t_ns, by=done.by,
+        action=type(done.action).__name__, detail=msgspec.json.encode(said).decode(),
+    )  # fmt: skip
+
+
+def _alarm(session: Session, change: AlarmChange) -> None:
+    t_ns, state = change.header.t_utc_ns, change.state.name.lower()
+    current = {
+        "rule": change.rule,
+        "unit_id": change.unit_id,
+        "priority": change.priority,
+        "state": state,
+        "level": change.level,
+        "text": change.text,
+        "by": change.by,
+        "raised_ns": change.raised_ns,
+        "changed_ns": t_ns,
+    }
+    session.execute(
+        insert(Alarm)
+        .values(alarm_id=change.alarm_id, **current)
+        .on_conflict_do_update(
+            index_elements=[Alarm.alarm_id], set_=current, where=Alarm.changed_ns <= t_ns
+        )
+    )
+    _add(
+        session, AlarmLife, alarm_id=change.alarm_id, t_ns=t_ns, state=state,
+        level=change.level, text=change.text, by=change.by,
+    )  # fmt: skip
+
+
+def _tracks(session: Session, tracks: tuple[FusedPosition, ...]) -> None:
+    rows = [
+        {
+            "unit_id": fused.unit_id,
+            "t_s": fused.t_meas_ns // NS_PER_S,
+            "t_ns": fused.t_meas_ns,
+            "north_m": fused.north_m,
+            "east_m": fused.east_m,
+            "down_m": fused.down_m,
+            "std_north_m": fused.std_north_m,
+            "std_east_m": fused.std_east_m,
+            "std_down_m": fused.std_down_m,
+            "heading_rad": fused.heading_rad,
+            "floor": fused.floor,
+            "quality": fused.quality.name.lower(),
+        }
+        for fused in tracks
+    ]
+    session.execute(insert(TrackPoint).on_conflict_do_nothing(), rows)
+
+
+def _described(description: UnitDescription) -> dict[str, object]:
+    names = ("software_version", "source", "sensor_name", "tracker", "calibration", "has_gps")
+    return {name: getattr(description, name) for name in names}
+
+
+def _unit(session: Session, unit_id: str, **columns: object) -> None:
+    statement = insert(Unit).values(unit_id=unit_id, **(_NEW_UNIT | columns))
+    changed: dict[str, object] = dict(columns)
+    if "last_heard_ns" in columns:
+        changed["last_heard_ns"] = func.max(
+            func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns
+        )
+    session.execute(statement.on_conflict_do_update(index_elements=[Unit.unit_id], set_=changed))
+
+
+def _end_assignment(session: Session, t_ns: int, unit_id: str) -> None:
+    session.execute(
+        update(Assignment)
+        .where(
+            Assignment.unit_id == unit_id, Assignment.until_ns.is_(None), Assignment.from_ns < t_ns
+        )
+        .values(until_ns=t_ns)
+    )
+
+
+def _add(session: Session, table: type, **columns: object) -> None:
+    """Insert unless it is there already."""
+    session.execute(insert(table).values(**columns).on_conflict_do_nothing())

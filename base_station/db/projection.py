@@ -1,0 +1,111 @@
+"""Writes what the drive decided into the tables, in a thread of its own.
+
+The drive never waits for the database: projections queue up and go in together, one
+transaction every half second or when someone asks for them (``flush``).
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Sequence
+
+from sqlalchemy.orm import Session
+
+from base_station.db.projecting import project_into
+from base_station.db.store import Store
+from base_station.sinks import Projection
+from shared.errors import StoreError
+
+PERIOD_S = 0.5
+BATCH = 2_000
+MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
+
+
+class SqlProjection:
+    """A ``base_station.sinks.ProjectionSink`` on the store."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+        self._pending: deque[Projection] = deque()
+        self._changed = threading.Condition()
+        self._taken = 0  # projections given to ``project`` so far
+        self._settled = 0  # of these, written or given up
+        self._dropped = 0
+        self._wanted = False  # somebody waits in ``flush``
+        self._stopping = False
+        self._failure = ""
+        self._thread = threading.Thread(target=self._run, name="sql-projection", daemon=True)
+        self._thread.start()
+
+    def project(self, projection: Projection) -> None:
+        with self._changed:
+            self._pending.append(projection)
+            self._taken += 1
+            if len(self._pending) > MAX_PENDING:
+                self._pending.popleft()
+                self._dropped += 1
+                self._settled += 1
+
+    def problem(self) -> str:
+        with self._changed:
+            if self._dropped:
+                return (
+                    f"{self._dropped} changes did not get into the database ({self._failure}); the "
+                    "log has them: run 'muster base rebuild' once the cause is gone"
+                )
+            return self._failure
+
+    def flush(self, timeout_s: float = 5.0) -> bool:
+        """Wait until all that was projected before this call is in the tables."""
+        with self._changed:
+            goal = self._taken
+            self._wanted = True
+            self._changed.notify_all()
+            return self._changed.wait_for(lambda: self._settled >= goal, timeout_s)
+
+    def close(self) -> None:
+        """Write what is left and end the thread."""
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._wanted or self._stopping, PERIOD_S)
+                stopping = self._stopping
+                batch = tuple(self._pending[index] for index in range(self._batch_size()))
+            if batch:
+                self._write(batch)
+            with self._changed:
+                self._wanted = self._wanted and bool(self._pending) and not self._failure
+                if stopping and (not self._pending or self._failure):
+                    return
+
+    def _batch_size(self) -> int:
+        return min(len(self._pending), BATCH)
+
+    def _write(self, batch: Sequence[Projection]) -> None:
+        try:
+            with self._store.write() as session:
+                write_projections(session, batch)
+        except StoreError as error:
+            with self._changed:
+                self._failure = str(error)
+            return
+        with self._changed:
+            self._failure = ""
+            # The oldest may have been dropped meanwhile.
+            written = {id(projection) for projection in batch}
+            while self._pending and id(self._pending[0]) in written:
+                self._pending.popleft()
+                self._settled += 1
+            self._changed.notify_all()
+
+
+def write_projections(session: Session, projections: Sequence[Projection]) -> None:
+    """Write in order; doing it again changes nothing."""
+    for projection in projections:
+        project_into(session, projection)

@@ -1,0 +1,122 @@
+"""Opens the database, and gives out sessions that read or write.
+
+SQLite in WAL mode: any number of readers beside one writer.  ``synchronous=FULL`` makes what
+was committed survive a power cut.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from base_station.db.migrate import migrate
+from shared.errors import StoreError
+
+BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
+_BEGIN = "muster_begin"
+
+
+class Store:
+    """The database of one data folder, migrated to what this program knows.
+
+    Thread-safe.  Raises StoreError where the file is no database, cannot be written, or was
+    written by a newer program.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._engine = _engine(path)
+        self._write_engine = self._engine.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
+        self._writing = threading.Lock()
+        try:
+            migrate(self._engine)
+        except SQLAlchemyError as error:
+            self._engine.dispose()
+            raise StoreError(
+                f"{path} cannot be opened as the station's database ({_cause(error)}); move it "
+                "away and run 'muster base rebuild' to make what the log knows again"
+            ) from error
+        except StoreError:
+            self._engine.dispose()
+            raise
+
+    @property
+    def engine(self) -> Engine:
+        return self._engine
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A consistent view for one reader."""
+        with Session(self._engine, expire_on_commit=False) as session:
+            yield session
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        """One transaction, committed at the end of the block; one at a time.
+
+        Raises StoreError where the database cannot take it (a full disk, a locked file).
+        """
+        with self._writing:
+            try:
+                with Session(self._write_engine, expire_on_commit=False) as session:
+                    yield session
+                    session.commit()
+            except SQLAlchemyError as error:
+                raise StoreError(f"the database did not take a change: {_cause(error)}") from error
+
+    def close(self) -> None:
+        self._engine.dispose()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def copy_database(source: Path, target: Path) -> None:
+    """Copy a database that a running station may be writing to; without one, do nothing."""
+    if not source.exists():
+        return
+    try:
+        with (
+            closing(sqlite3.connect(f"file:{source}?mode=ro", uri=True)) as reading,
+            closing(sqlite3.connect(target)) as writing,
+        ):
+            reading.backup(writing)
+    except sqlite3.Error as error:
+        raise StoreError(f"{source} cannot be read as the station's database: {error}") from error
+
+
+def _engine(path: Path) -> Engine:
+    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": BUSY_TIMEOUT_S})
+
+    @event.listens_for(engine, "connect")
+    def configure(connection: Any, _record: object) -> None:
+        # The driver must not begin transactions by itself: ``begin`` below says how.
+        connection.isolation_level = None
+        for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def begin(connection: Connection) -> None:
+        connection.exec_driver_sql(connection.get_execution_options().get(_BEGIN, "BEGIN"))
+
+    return engine
+
+
+def _cause(error: SQLAlchemyError) -> str:
+    return str(getattr(error, "orig", None) or error)
