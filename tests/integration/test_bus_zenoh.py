@@ -1,0 +1,60 @@
+"""Over real Zenoh: a unit that starts first, a station that restarts, a port that is taken."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable
+from contextlib import closing
+
+import pytest
+
+from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
+from shared.channels import Qos
+from shared.errors import BusError
+
+
+@pytest.fixture
+def address() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def until(holds: Callable[[], bool], what: str) -> None:
+    deadline = time.monotonic() + 30.0
+    while not holds():
+        assert time.monotonic() < deadline, f"never came: {what}"
+        time.sleep(0.01)
+
+
+def publish_until_heard(unit: ZenohBus, station: ZenohBus, what: str) -> None:
+    heard: list[str] = []
+    station.subscribe("muster/v1/**", lambda key, _: heard.append(key))
+
+    def arrived() -> bool:
+        unit.publish("muster/v1/anna/up/status", b"", Qos.LIVE)
+        return bool(heard)
+
+    until(arrived, what)
+
+
+def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(address: str) -> None:
+    with closing(ZenohBus(UnitEndpoint((address,)))) as unit:
+        unit.publish("muster/v1/anna/up/status", b"to nobody", Qos.LIVE)
+        for start in ("first start", "restart"):
+            with closing(ZenohBus(StationEndpoint((address,)))) as station:
+                publish_until_heard(unit, station, f"a message after the {start}")
+
+
+def test_a_taken_port_is_said_in_words(address: str) -> None:
+    with (
+        closing(ZenohBus(StationEndpoint((address,)))),
+        pytest.raises(BusError, match=r"another program uses this port.*choose another port"),
+    ):
+        ZenohBus(StationEndpoint((address,)))
+
+
+def test_an_address_that_makes_no_sense_is_said_in_words() -> None:
+    with pytest.raises(BusError, match="nonsense"):
+        ZenohBus(StationEndpoint(("nonsense",)))
