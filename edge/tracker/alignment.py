@@ -41,13 +41,22 @@ def stillest_window(ring: Ring, first: int, stop: int, window_s: float) -> tuple
 
 
 @njit(cache=True)
-def level(ring: Ring, first: int, stop: int, config: EskfConfig, quaternion_nb: Floats) -> float:
+def level(
+    ring: Ring,
+    first: int,
+    stop: int,
+    ahead_s: float,
+    config: EskfConfig,
+    quaternion_nb: Floats,
+) -> float:
     """Turn ``quaternion_nb`` (in place) so that it is level at sample ``first``.
 
-    The smallest turn that does it is taken, so the heading stays as good as it was.
+    Looks at samples before ``stop`` and at most ``ahead_s`` after ``first``.  The smallest turn that does it is taken, so the heading stays as good as it was.
     Returns the tilt's standard deviation in rad.
     """
     mask = len(ring.t_ns) - 1
+    while stop > first + 1 and ring.t_s[(stop - 1) & mask] - ring.t_s[first & mask] > ahead_s:
+        stop -= 1
     begin, end = stillest_window(ring, first, stop, config.start_window_s)
     middle = (begin + end) // 2
     mean_b = np.zeros(3)

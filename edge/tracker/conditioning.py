@@ -30,6 +30,7 @@ GATE = np.dtype(
     [
         ("last_ns", np.int64),
         ("arrival_s", np.float64),
+        ("period_s", np.float64),  # mean time between samples
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
         ("backward", np.int64),  # stamps before the last one, in a row
@@ -63,7 +64,7 @@ def limits_of(description: SensorDescription, saturation_ratio: float) -> Limits
 @njit(cache=True)
 def admit(
     ring: Ring,
-    progress: NDArray[Any],
+    received: int,
     gate: NDArray[Any],
     limits: Limits,
     gap_s: float,
@@ -71,14 +72,14 @@ def admit(
     accel_mps2: Floats,
     gyro_radps: Floats,
 ) -> None:
-    """Append samples (n,), (n, 3), (n, 3) to the ring with their flags and arrival times."""
+    """Append samples (n,), (n, 3), (n, 3) to the ring of ``received`` with flags and times."""
     mask = len(ring.t_ns) - 1
     for i in range(len(t_ns)):
-        slot = progress[0].received & mask
+        slot = (received + i) & mask
         ring.t_ns[slot] = t_ns[i]
         flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
         if flags & BAD_SAMPLES == 0:
-            flags |= _time_flags(progress, gate, t_ns[i], gap_s)
+            flags |= _time_flags(gate, t_ns[i], gap_s)
         if flags & BAD_SAMPLES == 0:
             for j in range(3):
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
@@ -87,8 +88,8 @@ def admit(
             ring.accel_mps2[slot, j] = gate[0].accel_mps2[j]
             ring.gyro_radps[slot, j] = gate[0].gyro_radps[j]
         ring.arrival_s[slot] = gate[0].arrival_s
+        ring.period_s[slot] = gate[0].period_s
         ring.flags[slot] = flags
-        progress[0].received += 1
 
 
 @njit(cache=True)
@@ -116,7 +117,7 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
 
 
 @njit(cache=True)
-def _time_flags(progress: NDArray[Any], gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
+def _time_flags(gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
     if not gate[0].started:
         gate[0].started = True
         gate[0].last_ns = t_ns
@@ -128,7 +129,7 @@ def _time_flags(progress: NDArray[Any], gate: NDArray[Any], t_ns: int, gap_s: fl
         if gate[0].backward < NEW_CLOCK_SAMPLES:
             return BAD_SAMPLES
         flags = SAMPLE_GAP  # of unknown length
-        step_s = NEW_CLOCK_SAMPLES * progress[0].period_s
+        step_s = NEW_CLOCK_SAMPLES * gate[0].period_s
     elif step_s == 0.0 and gate[0].repeats > 0:
         return BAD_SAMPLES  # the same sample twice
     gate[0].backward = 0
@@ -136,12 +137,12 @@ def _time_flags(progress: NDArray[Any], gate: NDArray[Any], t_ns: int, gap_s: fl
     gate[0].arrival_s += step_s
     if step_s > gap_s:
         return SAMPLE_GAP
-    progress[0].period_s += PERIOD_WEIGHT * (step_s - progress[0].period_s)
+    gate[0].period_s += PERIOD_WEIGHT * (step_s - gate[0].period_s)
     return flags
 
 
 @njit(cache=True)
-def regular_time(ring: Ring, k: int, stop: int, period_s: float, late_s: float) -> float:
+def regular_time(ring: Ring, k: int, stop: int, late_s: float) -> float:
     """Return the time of sample ``k`` without late delivery, in s since the first sample.
 
     A stamp may be late (polled or quantised transport) but not early, so samples
@@ -149,6 +150,7 @@ def regular_time(ring: Ring, k: int, stop: int, period_s: float, late_s: float) 
     """
     mask = len(ring.t_ns) - 1
     arrival_s = ring.arrival_s[k & mask]
+    period_s = ring.period_s[k & mask]
     best_s = arrival_s
     back_s = 0.0
     for j in range(k + 1, stop):
@@ -160,4 +162,4 @@ def regular_time(ring: Ring, k: int, stop: int, period_s: float, late_s: float) 
             best_s = min(best_s, ring.arrival_s[slot] - back_s)
     if k > 0:
         best_s = max(best_s, ring.t_s[(k - 1) & mask])
-    return best_s
+    return float(best_s)

@@ -16,8 +16,8 @@ class EskfConfig(NamedTuple):
     gravity_mps2: float = 9.80665
 
     # Time: what may pass before a row is final is lookahead + lag, below 1 s.
-    lookahead_s: float = 0.5  # the stance detector sees this far ahead of the filter
-    lag_s: float = 0.45  # the smoother corrects this far behind the filter
+    lookahead_s: float = 0.47  # the stance detector sees this far ahead of the filter
+    lag_s: float = 0.43  # the smoother corrects this far behind the filter
     stance_release_s: float = 0.1  # in stance, rows are released this often
     late_delivery_s: float = 0.04  # a stamp may be late by this and is put right
     gap_s: float = 0.1  # a longer silence counts as a gap

@@ -34,9 +34,7 @@ def transition_matrix(rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) ->
 
 
 @njit(cache=True)
-def propagate(
-    covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_s: float
-) -> None:
+def propagate(covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) -> None:
     """Replace ``covariance`` P (15, 15) by ``F P F'``, using what is zero and one in F."""
     fx = dt_s * force_n_mps2[0]
     fy = dt_s * force_n_mps2[1]
@@ -103,4 +101,4 @@ def update_one(
         scaled = covariance[i, index]
         for j in range(15):
             covariance[i, j] -= scaled * gain[j]
-    return inverse
+    return float(inverse)

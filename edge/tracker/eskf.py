@@ -21,7 +21,7 @@ from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import empty_rows, join_rows
 from edge.tracker.smoothing import smooth
-from edge.tracker.state import FilterState, Ring, new_filter_state, new_progress, new_ring
+from edge.tracker.state import FilterState, Ring, new_filter_state, new_progress, new_ring, reach
 from edge.tracker.zero_velocity import motion_statistic, stride_minimum
 
 RING_S = 4.0  # of samples in the ring at the described rate
@@ -38,8 +38,8 @@ class EskfTracker:
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = new_ring(slots)
         self._progress = new_progress()
-        self._progress["period_s"] = 1.0 / rate_hz
         self._gate = np.zeros(1, GATE)
+        self._gate["period_s"] = 1.0 / rate_hz
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._state = new_filter_state()
         self._block = slots // 4
@@ -51,7 +51,7 @@ class EskfTracker:
             stop = first + self._block
             admit(
                 self._ring,
-                self._progress,
+                int(self._progress["received"][0]),
                 self._gate,
                 self._limits,
                 self.config.gap_s,
@@ -59,6 +59,7 @@ class EskfTracker:
                 batch.accel_mps2[first:stop],
                 batch.gyro_radps[first:stop],
             )
+            self._progress["received"] += len(batch.t_ns[first:stop])
             rows = self._work(final=False)
             if len(rows):
                 released.append(rows)
@@ -102,16 +103,16 @@ def work(
         if not final and not _is_past(ring.arrival_s, memory.received, k, config.late_delivery_s):
             break
         slot = k & (len(ring.t_ns) - 1)
-        ring.t_s[slot] = regular_time(
-            ring, k, memory.received, memory.period_s, config.late_delivery_s
-        )
+        stop = min(memory.received, reach(ring, k))
+        ring.t_s[slot] = regular_time(ring, k, stop, config.late_delivery_s)
         memory.timed = k + 1
     while memory.measured < memory.timed:
         k = memory.measured
         if not final and not _is_past(ring.t_s, memory.timed, k, config.half_window_s):
             break
         slot = k & (len(ring.t_ns) - 1)
-        ring.motion_m2ps4[slot] = motion_statistic(ring, k, memory.timed, config)
+        stop = min(memory.timed, reach(ring, k))
+        ring.motion_m2ps4[slot] = motion_statistic(ring, k, stop, config)
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered
@@ -126,14 +127,14 @@ def work(
     if final and memory.released < memory.filtered:
         smooth(ring, memory.released, memory.filtered, memory.filtered - 1)
         memory.released = memory.filtered
-    return memory.released
+    return int(memory.released)
 
 
 @njit(cache=True)
 def _is_past(t_s: Floats, count: int, k: int, wait_s: float) -> bool:
     """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
     mask = len(t_s) - 1
-    return t_s[(count - 1) & mask] - t_s[k & mask] > wait_s or count - k > mask // 4
+    return t_s[(count - 1) & mask] - t_s[k & mask] > wait_s or count >= k + len(t_s) // 4
 
 
 @njit(cache=True)
@@ -151,7 +152,7 @@ def _release(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> 
     if memory.in_stance and now_s - memory.stance_since_s >= config.stance_release_s:
         memory.stance_since_s = now_s
         stop = k + 1
-    elif now_s - ring.t_s[first & mask] >= config.lag_s or k - first > mask // 4:
+    elif now_s - ring.t_s[first & mask] >= config.lag_s or k - first >= len(ring.t_ns) // 4:
         while stop <= k and now_s - ring.t_s[stop & mask] >= KEEP_OF_LAG * config.lag_s:
             stop += 1
         stop = max(stop, first + 1)

@@ -20,7 +20,7 @@ from edge.tracker.error_model import (
     propagate,
     update_one,
 )
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Ring, reach
 from edge.tracker.strapdown import advance, rotate_navigation, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
 from edge.tracker.zero_velocity import stance_threshold
@@ -53,7 +53,9 @@ def filter_sample(
 
 @njit(cache=True)
 def _start(ring: Ring, progress: NDArray[Any], state: FilterState, config: EskfConfig) -> None:
-    tilt_std_rad = level(ring, 0, progress[0].measured, config, state.quaternion_nb)
+    stop = min(progress[0].measured, reach(ring, 0))
+    ahead_s = config.lookahead_s + config.lag_s
+    tilt_std_rad = level(ring, 0, stop, ahead_s, config, state.quaternion_nb)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
     moving = ring.motion_m2ps4[0] > config.threshold_min_m2ps4
     speed_std_mps = config.start_speed_std_mps if moving else config.start_still_std_mps
@@ -131,7 +133,8 @@ def _bridge_gap(
     config: EskfConfig,
 ) -> None:
     """Stand where the samples ceased, level anew, and say how far the foot may have gone."""
-    tilt_std_rad = level(ring, k, progress[0].measured, config, state.quaternion_nb)
+    stop = min(progress[0].measured, reach(ring, k))
+    tilt_std_rad = level(ring, k, stop, config.lookahead_s, config, state.quaternion_nb)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
     turn_std_rad = min(config.gap_turn_std_radps * dt_s, math.pi)
     for i in range(3):

@@ -8,11 +8,8 @@ and ``L`` its information, a row becomes ``x - P l`` with covariance
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from edge.samples import Floats
 from edge.tracker.state import Ring
@@ -79,12 +76,8 @@ def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
     ax, ay, az = adjoint[6], adjoint[7], adjoint[8]
     for i in range(3):
         adjoint[3 + i] += dt_s * adjoint[i]
-        adjoint[9 + i] -= dt_s * (
-            rotation[0, i] * ax + rotation[1, i] * ay + rotation[2, i] * az
-        )
-        adjoint[12 + i] -= dt_s * (
-            rotation[0, i] * vx + rotation[1, i] * vy + rotation[2, i] * vz
-        )
+        adjoint[9 + i] -= dt_s * (rotation[0, i] * ax + rotation[1, i] * ay + rotation[2, i] * az)
+        adjoint[12 + i] -= dt_s * (rotation[0, i] * vx + rotation[1, i] * vy + rotation[2, i] * vz)
     adjoint[6] += fy * vz - fz * vy
     adjoint[7] += fz * vx - fx * vz
     adjoint[8] += fx * vy - fy * vx

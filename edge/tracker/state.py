@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats
@@ -26,7 +27,6 @@ PROGRESS = np.dtype(
         ("minimum_from", np.int64),  # first sample of the stride around
         ("minimum_to", np.int64),  # one past its last
         ("steps", np.int64),
-        ("period_s", np.float64),  # mean time between samples
         ("in_stance", np.bool_),
         ("aligned", np.bool_),
         ("stance_since_s", np.float64),
@@ -46,6 +46,7 @@ class Ring(NamedTuple):
 
     t_ns: NDArray[np.int64]  # (n,) as recorded
     arrival_s: Floats  # (n,) as recorded, since the first sample, without backward steps
+    period_s: Floats  # (n,) mean time between samples up to this one
     t_s: Floats  # (n,) regular
     accel_mps2: Floats  # (n, 3)
     gyro_radps: Floats  # (n, 3)
@@ -89,11 +90,22 @@ class FilterState(NamedTuple):
     angle_rad: Floats  # (3,) scratch
 
 
+@njit(cache=True)
+def reach(ring: Ring, k: int) -> int:
+    """Return one past the last sample that work on sample ``k`` may look at.
+
+    A ring made for a much lower rate than the samples have cannot hold the whole
+    look-ahead; the bound is the same however the samples come.
+    """
+    return k + len(ring.t_ns) // 4
+
+
 def new_ring(slots: int) -> Ring:
     """Return an empty ring of ``slots`` (a power of two) samples."""
     return Ring(
         t_ns=np.zeros(slots, np.int64),
         arrival_s=np.zeros(slots),
+        period_s=np.zeros(slots),
         t_s=np.zeros(slots),
         accel_mps2=np.zeros((slots, 3)),
         gyro_radps=np.zeros((slots, 3)),

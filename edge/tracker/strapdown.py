@@ -130,6 +130,6 @@ def quaternion_from_rotation(rotation_nb: Floats) -> Floats:
             [m[1, 0] - m[0, 1], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], squares[3]],
         ]
     )
-    quaternion = rows[int(np.argmax(squares))]
-    quaternion = quaternion / np.linalg.norm(quaternion)
+    row = rows[int(np.argmax(squares))]
+    quaternion: Floats = row / np.linalg.norm(row)
     return quaternion if quaternion[0] >= 0.0 else -quaternion

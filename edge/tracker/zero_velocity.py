@@ -17,7 +17,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.tracker.config import EskfConfig
-from edge.tracker.state import Ring
+from edge.tracker.state import Ring, reach
 
 
 @njit(cache=True)
@@ -66,7 +66,8 @@ def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfi
     motion = ring.motion_m2ps4
     at = state.minimum_at
     to = state.minimum_to
-    while to < state.measured and ring.t_s[to & mask] - now_s <= config.lookahead_s:
+    stop = min(state.measured, reach(ring, k))
+    while to < stop and ring.t_s[to & mask] - now_s <= config.lookahead_s:
         if to == 0 or motion[to & mask] <= motion[at & mask]:
             at = to
         to += 1
@@ -81,7 +82,7 @@ def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfi
     state.minimum_at = at
     state.minimum_from = begin
     state.minimum_to = to
-    return motion[at & mask]
+    return float(motion[at & mask])
 
 
 @njit(cache=True)

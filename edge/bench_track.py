@@ -1,0 +1,158 @@
+"""``muster bench track``: score the tracker on recorded walks, and time it."""
+
+from __future__ import annotations
+
+import json
+import statistics
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import track as progress_bar
+from rich.table import Table
+
+from edge.bench_speed import measure_speed, print_speed
+from edge.scoring import Score, score_track
+from edge.sources.recording import RecordingSource, read_truth
+from edge.track_command import run_tracker
+from edge.tracker import TRACKERS
+from shared.errors import UserError
+
+
+@dataclass(frozen=True, slots=True)
+class TrialScore:
+    dataset: str
+    trial: str
+    score: Score
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One figure of the table: its title, where it is in a score, its decimals."""
+
+    title: str
+    field: str
+    decimals: int
+
+
+COLUMNS = (
+    Column("distance m", "distance_m", 1),
+    Column("closure m", "closure_horizontal_m", 3),
+    Column("closure down m", "closure_vertical_m", 3),
+    Column("ATE m", "ate_m", 3),
+    Column("2D ARMSE m", "armse_2d_m", 4),
+    Column("% of distance", "per_cent_of_distance", 2),
+    Column("vertical RMS m", "vertical_rms_m", 3),
+    Column("in 95 % ellipse", "coverage_95", 3),
+    Column("... from start", "coverage_95_from_start", 3),
+)
+
+
+def bench_track(
+    data: Annotated[Path, typer.Argument(help="A folder of trials, such as shared/data/walks.")],
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="Also write the figures to this file.")
+    ] = None,
+    tracker: Annotated[
+        str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
+    ] = TRACKERS[0].name,
+    speed: Annotated[
+        bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
+    ] = False,
+) -> None:
+    """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
+    console = Console(width=max(Console().width, 150))
+    trials = find_trials(data)
+    scores = [
+        score_trial(path, tracker)
+        for path in progress_bar(
+            trials, description="Scoring", console=Console(stderr=True), transient=True
+        )
+    ]
+    console.print(trial_table(scores))
+    console.print(summary_table(scores))
+    report = {
+        "tracker": tracker,
+        "trials": [{"dataset": s.dataset, "trial": s.trial, **asdict(s.score)} for s in scores],
+        "datasets": summarise(scores),
+    }
+    if speed:
+        figures = measure_speed(RecordingSource(trials[0]), tracker)
+        print_speed(console, figures)
+        report["speed"] = asdict(figures)
+    if json_file is not None:
+        json_file.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+
+
+def find_trials(data: Path) -> list[Path]:
+    """Return every folder at or below ``data`` with samples in it; ``UserError`` if none."""
+    trials = sorted({path.parent for path in data.rglob("imu.csv*")})
+    if not trials:
+        raise UserError(f"no imu.csv.gz or imu.csv below {data}; give a folder of trials")
+    return trials
+
+
+def score_trial(path: Path, tracker: str) -> TrialScore:
+    """Run one trial folder through a tracker, in its source's batches, and score it."""
+    source = RecordingSource(path)
+    rows = run_tracker(source, tracker, quiet=True)
+    closed_loop = source.trial.truth_kind == "closed_loop"
+    return TrialScore(
+        dataset=source.trial.dataset or path.parent.name,
+        trial=source.trial.trial or path.name,
+        score=score_track(rows, read_truth(path), closed_loop=closed_loop),
+    )
+
+
+def trial_table(scores: Iterable[TrialScore]) -> Table:
+    table = Table(title="Trials")
+    table.add_column("dataset")
+    table.add_column("trial")
+    for column in COLUMNS:
+        table.add_column(column.title, justify="right")
+    for entry in scores:
+        values = (getattr(entry.score, column.field) for column in COLUMNS)
+        cells = (
+            "" if value is None else f"{value:.{column.decimals}f}"
+            for value, column in zip(values, COLUMNS, strict=True)
+        )
+        table.add_row(entry.dataset, entry.trial, *cells)
+    return table
+
+
+def summarise(scores: Sequence[TrialScore]) -> dict[str, dict[str, dict[str, float]]]:
+    """Return mean, median and worst of every figure that a dataset has, by dataset."""
+    summary: dict[str, dict[str, dict[str, float]]] = {}
+    for dataset in dict.fromkeys(entry.dataset for entry in scores):
+        members = [entry.score for entry in scores if entry.dataset == dataset]
+        summary[dataset] = {}
+        for column in COLUMNS:
+            values = [getattr(score, column.field) for score in members]
+            known = [value for value in values if value is not None]
+            if known:
+                worst: Callable[[list[float]], float] = (
+                    min if column.field.startswith("coverage") else max
+                )
+                summary[dataset][column.field] = {
+                    "mean": statistics.fmean(known),
+                    "median": statistics.median(known),
+                    "worst": worst(known),
+                }
+    return summary
+
+
+def summary_table(scores: Sequence[TrialScore]) -> Table:
+    table = Table(title="Datasets: mean / median / worst")
+    table.add_column("dataset")
+    for column in COLUMNS:
+        table.add_column(column.title, justify="right")
+    for dataset, figures in summarise(scores).items():
+        cells = []
+        for column in COLUMNS:
+            values = figures.get(column.field, {})
+            cells.append(" / ".join(f"{value:.{column.decimals}f}" for value in values.values()))
+        table.add_row(dataset, *cells)
+    return table

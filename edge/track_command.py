@@ -1,0 +1,65 @@
+"""``muster track``: a recording in, a track as CSV out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track as progress_bar
+
+from edge.sources.recording import RecordingSource
+from edge.tracker import TRACKERS, make_tracker
+from edge.tracker.port import Quality, TrackBatch
+from edge.tracker.rows import join_rows
+from shared.errors import UserError
+
+COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
+
+
+def track(
+    recording: Annotated[Path, typer.Argument(help="A trial folder or a CSV of samples.")],
+    out: Annotated[Path, typer.Option(help="The CSV file to write.")],
+    tracker: Annotated[
+        str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
+    ] = TRACKERS[0].name,
+) -> None:
+    """Track a recorded walk and write time, position and standard deviations."""
+    source = RecordingSource(recording)
+    rows = run_tracker(source, tracker, quiet=False)
+    write_csv(rows, out)
+    step_m = rows.position_n_m[-1] - rows.position_n_m[0]
+    doubtful = float(np.mean(rows.quality != Quality.GOOD))
+    Console(stderr=True).print(
+        f"{source.report}\n{len(rows)} rows to {out}: {rows.distance_m[-1]:.1f} m in "
+        f"{rows.steps[-1]} strides, ends {np.hypot(step_m[0], step_m[1]):.2f} m from its start "
+        f"and {-step_m[2]:+.2f} m higher; {100 * doubtful:.0f} % of the rows are not good."
+    )
+
+
+def run_tracker(source: RecordingSource, name: str, *, quiet: bool) -> TrackBatch:
+    """Push a whole recording through a new tracker, as its batches come."""
+    tracker = make_tracker(name, source.description)
+    batches = progress_bar(
+        list(source.batches()),
+        description="Tracking",
+        console=Console(stderr=True),
+        transient=True,
+        disable=quiet,
+    )
+    released = [tracker.push(batch.imu) for batch in batches]
+    return join_rows([*released, tracker.finish()])
+
+
+def write_csv(rows: TrackBatch, out: Path) -> None:
+    """Write one line a row; ``COLUMNS`` is the first line."""
+    std_m = np.sqrt(np.diagonal(rows.position_cov_m2, axis1=1, axis2=2))
+    table = np.column_stack(
+        (rows.t_ns * 1e-9, rows.position_n_m, std_m, rows.heading_std_rad, rows.quality)
+    )
+    try:
+        np.savetxt(out, table, "%.6f" + ",%.4f" * 6 + ",%.5f,%d", header=COLUMNS, comments="")
+    except OSError as error:
+        raise UserError(f"cannot write {out}: {error.strerror}; give another --out") from error
