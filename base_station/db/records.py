@@ -1,0 +1,159 @@
+"""What the projections are asked: incidents, tracks, alarms, the site, log segments, audit."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterable, Sequence
+
+import msgspec
+from sqlalchemy import delete, func, select
+from sqlalchemy.dialects.sqlite import insert
+
+from base_station.db.models import (
+    PROJECTIONS,
+    Alarm,
+    AlarmLife,
+    Anchor,
+    AuditEntry,
+    Incident,
+    LogSegment,
+    Plan,
+    TrackPoint,
+)
+from base_station.db.store import Store
+from shared.clock import Clock
+
+FOREVER_NS = 2**63 - 1
+
+
+class Window(msgspec.Struct, frozen=True):
+    """From (included) until (left out), station time."""
+
+    from_ns: int
+    until_ns: int
+
+
+class Records:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store, clock: Clock) -> None:
+        self._store = store
+        self._clock = clock
+
+    # ---- incidents
+
+    def incidents(self) -> Sequence[Incident]:
+        """Newest first."""
+        with self._store.read() as session:
+            return session.scalars(select(Incident).order_by(Incident.opened_ns.desc())).all()
+
+    def incident(self, incident_id: str) -> Incident | None:
+        with self._store.read() as session:
+            return session.get(Incident, incident_id)
+
+    # ---- tracks and alarms
+
+    def track_units(self, window: Window) -> Sequence[str]:
+        """Units that have a track in the window."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(TrackPoint.unit_id)
+                .where(TrackPoint.t_ns >= window.from_ns, TrackPoint.t_ns < window.until_ns)
+                .distinct()
+                .order_by(TrackPoint.unit_id)
+            ).all()
+
+    def track(self, unit_id: str, window: Window, every_s: int = 1) -> Sequence[TrackPoint]:
+        """By time; of every ``every_s`` seconds the first point."""
+        slot = TrackPoint.t_s // every_s
+        firsts = (
+            select(func.min(TrackPoint.t_s))
+            .where(
+                TrackPoint.unit_id == unit_id,
+                TrackPoint.t_ns >= window.from_ns,
+                TrackPoint.t_ns < window.until_ns,
+            )
+            .group_by(slot)
+        )
+        with self._store.read() as session:
+            return session.scalars(
+                select(TrackPoint)
+                .where(TrackPoint.unit_id == unit_id, TrackPoint.t_s.in_(firsts))
+                .order_by(TrackPoint.t_s)
+            ).all()
+
+    def alarms(self, window: Window) -> Sequence[Alarm]:
+        """Those raised in the window, oldest first."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Alarm)
+                .where(Alarm.raised_ns >= window.from_ns, Alarm.raised_ns < window.until_ns)
+                .order_by(Alarm.raised_ns, Alarm.alarm_id)
+            ).all()
+
+    def alarm(self, alarm_id: str) -> Alarm | None:
+        with self._store.read() as session:
+            return session.get(Alarm, alarm_id)
+
+    def alarm_life(self, alarm_id: str) -> Sequence[AlarmLife]:
+        with self._store.read() as session:
+            return session.scalars(
+                select(AlarmLife).where(AlarmLife.alarm_id == alarm_id).order_by(AlarmLife.t_ns)
+            ).all()
+
+    # ---- site
+
+    def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
+        """The last one set before ``until_ns``."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Anchor).where(Anchor.t_ns < until_ns).order_by(Anchor.t_ns.desc()).limit(1)
+            ).first()
+
+    def plan(self, until_ns: int = FOREVER_NS) -> bytes | None:
+        """The last one set before ``until_ns``, as site GeoJSON."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Plan.geojson).where(Plan.t_ns < until_ns).order_by(Plan.t_ns.desc()).limit(1)
+            ).first()
+
+    # ---- log segments
+
+    def segments(self) -> Sequence[LogSegment]:
+        with self._store.read() as session:
+            return session.scalars(select(LogSegment).order_by(LogSegment.first_ns)).all()
+
+    def put_segments(self, segments: Iterable[LogSegment]) -> None:
+        with self._store.write() as session:
+            for segment in segments:
+                session.merge(segment)
+
+    def forget_projections(self) -> None:
+        """Empty every table that the log can make again."""
+        with self._store.write() as session:
+            for table in PROJECTIONS:
+                session.execute(delete(table))
+
+    # ---- audit
+
+    def audit(self, by: str, action: str, detail: str) -> None:
+        with self._store.write() as session:
+            session.execute(
+                insert(AuditEntry).values(
+                    entry_id=secrets.token_hex(16),
+                    t_ns=self._clock.utc_ns(),
+                    by=by,
+                    action=action,
+                    detail=detail,
+                )
+            )
+
+    def audit_entries(self, before_ns: int, limit: int) -> Sequence[AuditEntry]:
+        """Newest first."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(AuditEntry)
+                .where(AuditEntry.t_ns < before_ns)
+                .order_by(AuditEntry.t_ns.desc())
+                .limit(limit)
+            ).all()
