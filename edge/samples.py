@@ -34,6 +34,21 @@ class ImuBatch:
     def __len__(self) -> int:
         return len(self.t_ns)
 
+    def part(self, rows: slice) -> ImuBatch:
+        """The samples of some rows, sharing memory with these."""
+
+        def of(values: Floats | None) -> Floats | None:
+            return None if values is None else values[rows]
+
+        return ImuBatch(
+            t_ns=self.t_ns[rows],
+            accel_mps2=self.accel_mps2[rows],
+            gyro_radps=self.gyro_radps[rows],
+            mag_ut=of(self.mag_ut),
+            pressure_pa=of(self.pressure_pa),
+            imu_temperature_degc=of(self.imu_temperature_degc),
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class AmbientSample:

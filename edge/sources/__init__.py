@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
+from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
 
 
@@ -20,7 +21,10 @@ class SourceKind:
     argument: str  # what stands after the colon, for help texts
 
 
-SOURCES: tuple[SourceKind, ...] = (SourceKind("recording", RecordingSource, "PATH"),)
+SOURCES: tuple[SourceKind, ...] = (
+    SourceKind("recording", RecordingSource, "PATH"),
+    SourceKind("simulated", SimulatedSource, "SCENARIO"),
+)
 
 
 def open_source(text: str) -> Source:

@@ -125,7 +125,7 @@ class RecordingSource:
 
     def batches(self) -> Iterator[SensorBatch]:
         for start in range(0, len(self._imu), self._rows_per_batch):
-            yield SensorBatch(_rows(self._imu, slice(start, start + self._rows_per_batch)))
+            yield SensorBatch(self._imu.part(slice(start, start + self._rows_per_batch)))
 
     def close(self) -> None:
         """Nothing is held open."""
@@ -247,18 +247,4 @@ def _inspect(imu: ImuBatch, description: SensorDescription) -> RecordingReport:
         gaps=len(gaps_s),
         longest_gap_s=float(gaps_s.max(initial=0.0)),
         saturated_samples=int(saturated.sum()),
-    )
-
-
-def _rows(imu: ImuBatch, rows: slice) -> ImuBatch:
-    def part(values: Floats | None) -> Floats | None:
-        return None if values is None else values[rows]
-
-    return ImuBatch(
-        t_ns=imu.t_ns[rows],
-        accel_mps2=imu.accel_mps2[rows],
-        gyro_radps=imu.gyro_radps[rows],
-        mag_ut=part(imu.mag_ut),
-        pressure_pa=part(imu.pressure_pa),
-        imu_temperature_degc=part(imu.imu_temperature_degc),
     )

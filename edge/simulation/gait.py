@@ -1,0 +1,50 @@
+"""How a foot moves in one stride, for every way of moving that is simulated.
+
+The shape follows the sagittal gait cycle (Perry, "Gait Analysis", 1992): the heel
+rises about the ball of the foot, the foot swings, strikes with the heel and
+rolls about it until it is flat.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import radians
+
+from shared.messages.status import Activity
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """One stride's measures; windows are fractions of the time the foot moves."""
+
+    activity: Activity
+    stride_m: float  # two steps
+    stride_s: float
+    flat: float  # fraction of the stride in which the foot is flat on the ground
+    toe_off_rad: float  # pitch when the toe leaves the ground, toe down negative
+    strike_rad: float  # pitch when the foot touches down, toe up positive
+    clearance_m: float  # extra height in mid-swing
+    forward: tuple[float, float] = (0.22, 0.95)  # when the foot goes forward
+    upward: tuple[float, float] = (0.25, 0.90)  # when it goes to another height
+
+
+WALK = Gait(Activity.WALKING, 1.36, 1.06, 0.34, radians(-62), radians(20), 0.04)
+SEARCH = Gait(Activity.WALKING, 0.95, 1.15, 0.42, radians(-45), radians(12), 0.05)
+HURRY = Gait(Activity.WALKING, 1.60, 0.96, 0.30, radians(-68), radians(24), 0.04)
+RUN = Gait(Activity.RUNNING, 2.10, 0.74, 0.20, radians(-75), radians(12), 0.10)
+SPRINT = Gait(Activity.RUNNING, 3.10, 0.60, 0.15, radians(-85), radians(5), 0.16)
+TURN = Gait(Activity.WALKING, 0.40, 0.95, 0.40, radians(-25), radians(4), 0.05)
+STAIRS_UP = Gait(
+    Activity.STAIRS_UP, 0.56, 1.30, 0.42, radians(-40), radians(3), 0.05, (0.35, 0.95), (0.2, 0.7)
+)
+STAIRS_DOWN = Gait(
+    Activity.STAIRS_DOWN, 0.56, 1.20, 0.40, radians(-32), radians(3), 0.04, (0.2, 0.7), (0.4, 0.96)
+)
+
+PACES: dict[str, Gait] = {
+    "search": SEARCH,
+    "walk": WALK,
+    "hurry": HURRY,
+    "run": RUN,
+    "sprint": SPRINT,
+}

@@ -1,0 +1,238 @@
+"""Plays a scenario: the truth at any time, and the stream of what the sensors say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import radians
+
+import numpy as np
+
+from edge.samples import (
+    AmbientSample,
+    BatterySample,
+    Floats,
+    GpsSample,
+    ImuBatch,
+    OtherSample,
+    SensorBatch,
+    SensorDescription,
+)
+from edge.simulation.building import load_building
+from edge.simulation.foot import Motion, Tremor, foot_motion
+from edge.simulation.gps import Gps
+from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, Imu, ImuErrors
+from edge.simulation.planner import FootPlan, Planner
+from edge.simulation.scenario import Scenario
+from edge.simulation.surroundings import (
+    CONSUMER_BARO,
+    CONSUMER_MAG,
+    IDEAL_BARO,
+    IDEAL_MAG,
+    BaroErrors,
+    Barometer,
+    MagErrors,
+    MagneticField,
+    Magnetometer,
+)
+from shared.messages.status import Activity
+
+_BLOCK_S = 2  # generated at once; the noise does not depend on how it is cut into batches
+
+
+@dataclass(frozen=True, slots=True)
+class SensorErrors:
+    """The errors of all sensors that are sampled with the inertial ones."""
+
+    imu: ImuErrors
+    mag: MagErrors
+    baro: BaroErrors
+
+
+IDEAL_SENSORS = SensorErrors(IDEAL_IMU, IDEAL_MAG, IDEAL_BARO)
+CONSUMER_SENSORS = SensorErrors(CONSUMER_IMU, CONSUMER_MAG, CONSUMER_BARO)
+
+
+class Simulation:
+    """One performance of a scenario; equal seeds give equal samples to the last bit.
+
+    The sensor sits on the instep at an angle drawn from the seed.  Navigation axes
+    are those of the site frame (NED, origin at its anchor); time starts at 0.
+    """
+
+    def __init__(
+        self, scenario: Scenario, seed: int = 0, sensors: SensorErrors = CONSUMER_SENSORS
+    ) -> None:
+        self.scenario = scenario
+        self._sensors = sensors
+        house = load_building()
+        self._building = house if scenario.building else None
+        self._anchor = scenario.anchor or house.anchor
+        walk_seed, mount_seed, self._sensor_seed = np.random.SeedSequence(seed).spawn(3)
+        walk_rng = np.random.default_rng(walk_seed)
+        self.plan = _plan(scenario, walk_rng)
+        self._tremor = Tremor(walk_rng)
+        self._rotation_bs = _random_rotation(np.random.default_rng(mount_seed))
+
+    @property
+    def duration_s(self) -> float:
+        return self.plan.duration_s
+
+    @property
+    def description(self) -> SensorDescription:
+        imu = self._sensors.imu
+        accel, gyro = imu.accel.full_scale, imu.gyro.full_scale
+        return SensorDescription(
+            name=f"simulated {self.scenario.name}",
+            rate_hz=self.scenario.rate_hz,
+            accel_full_scale_mps2=accel if np.isfinite(accel) else None,
+            gyro_full_scale_radps=gyro if np.isfinite(gyro) else None,
+            mag_present=True,
+            barometer_present=True,
+        )
+
+    def activity(self, t_s: float) -> Activity:
+        return self.plan.activity(t_s)
+
+    def truth(self, t_s: Floats) -> Motion:
+        """The sensor's true motion at times ``t_s`` (n,); body axes are the sensor's own."""
+        foot = foot_motion(self.plan, self._tremor, t_s)
+        return replace(
+            foot,
+            rotation_nb=foot.rotation_nb @ self._rotation_bs,
+            rate_b_radps=foot.rate_b_radps @ self._rotation_bs,
+        )
+
+    def batches(self, batch_s: float = 0.05) -> Iterator[SensorBatch]:
+        """The whole walk from its start, generated as it is asked for."""
+        rate_hz = self.scenario.rate_hz
+        rows = max(1, round(rate_hz * batch_s))
+        for block in self._blocks(max(1, round(_BLOCK_S * rate_hz / rows)) * rows):
+            yield from _cut(block, rows)
+
+    def _blocks(self, rows: int) -> Iterator[SensorBatch]:
+        rate_hz = self.scenario.rate_hz
+        imu_rng, mag_rng, baro_rng, gps_rng, other_rng = (
+            np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)
+        )
+        imu = Imu(self._sensors.imu, self._rotation_bs, rate_hz, imu_rng)
+        field = MagneticField(self._building, mag_rng)
+        mag = Magnetometer(self._sensors.mag, field, mag_rng)
+        baro = Barometer(
+            self._sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
+        )
+        others = _Others(self, Gps(self._anchor, self._building, gps_rng), other_rng)
+        total = int(self.duration_s * rate_hz)
+        for start in range(0, total, rows):
+            index = np.arange(start, min(start + rows, total))
+            t_s = index / rate_hz
+            foot = foot_motion(self.plan, self._tremor, t_s)
+            temperature_degc = self._imu_temperature_degc(t_s)
+            accel_mps2, gyro_radps = imu.measure(foot, temperature_degc)
+            rotation_ns = foot.rotation_nb @ self._rotation_bs
+            yield SensorBatch(
+                ImuBatch(
+                    t_ns=np.rint(t_s * 1e9).astype(np.int64),
+                    accel_mps2=accel_mps2,
+                    gyro_radps=gyro_radps,
+                    mag_ut=mag.measure(start, foot.position_n_m, rotation_ns),
+                    pressure_pa=baro.measure(start, t_s, foot.position_n_m),
+                    imu_temperature_degc=temperature_degc,
+                ),
+                others.between(float(t_s[0]), (start + len(index)) / rate_hz),
+            )
+
+    def ambient_degc(self, t_s: Floats) -> Floats:
+        """Temperature around the equipment at times ``t_s`` (n,)."""
+        times_s, values = np.array(self.scenario.ambient_degc).T
+        return np.asarray(np.interp(t_s, times_s, values), dtype=np.float64)
+
+    def _imu_temperature_degc(self, t_s: Floats) -> Floats:
+        """Self-heating after switching on, and a little of what is around."""
+        around = self.ambient_degc(t_s)
+        warming_degc = 9.0 * (1.0 - np.exp(-t_s / 240.0))
+        return 22.0 + warming_degc + 0.05 * (around - 22.0)
+
+
+class _Others:
+    """The slow sensors: ambient temperature and GPS every second, battery every ten."""
+
+    def __init__(self, simulation: Simulation, gps: Gps, rng: np.random.Generator) -> None:
+        self._simulation = simulation
+        self._gps = gps
+        self._rng = rng
+
+    def between(self, start_s: float, end_s: float) -> tuple[OtherSample, ...]:
+        samples: list[OtherSample] = []
+        for second in range(int(np.ceil(start_s)), int(np.ceil(end_s))):
+            if second % 10 == 0:
+                samples.append(BatterySample(second * 1_000_000_000, self._battery(second)))
+            samples.append(self._ambient(float(second)))
+            samples.append(self._fix(float(second)))
+        return tuple(samples)
+
+    def _battery(self, t_s: float) -> float:
+        scenario = self._simulation.scenario
+        return max(0.0, scenario.battery_start - t_s / scenario.battery_life_s)
+
+    def _ambient(self, t_s: float) -> AmbientSample:
+        true_degc = float(self._simulation.ambient_degc(np.array([t_s]))[0])
+        said_degc = true_degc + float(self._rng.normal(0.0, 0.15))
+        return AmbientSample(round(t_s * 1e9), round(said_degc, 2))
+
+    def _fix(self, t_s: float) -> GpsSample:
+        # The wearer's velocity is the foot's mean over a stride.
+        around_s = np.array([max(0.0, t_s - 0.55), t_s, t_s + 0.55])
+        place = self._simulation.truth(around_s).position_n_m
+        velocity = (place[2] - place[0]) / (around_s[2] - around_s[0])
+        return self._gps.fix(
+            t_s,
+            (float(place[1, 0]), float(place[1, 1]), float(place[1, 2])),
+            (float(velocity[0]), float(velocity[1])),
+        )
+
+
+def _plan(scenario: Scenario, rng: np.random.Generator) -> FootPlan:
+    planner = Planner(rng, scenario.start, scenario.down_m, radians(scenario.heading_deg))
+    for leg in scenario.legs:
+        planner.do(leg)
+    while scenario.loop and planner.t_s < scenario.duration_s:
+        before_s = planner.t_s
+        for leg in scenario.loop:
+            planner.do(leg)
+        if planner.t_s == before_s:
+            raise ValueError(f"the loop of scenario {scenario.name!r} takes no time")
+    return planner.plan
+
+
+def _children(seed: np.random.SeedSequence, count: int) -> list[np.random.SeedSequence]:
+    """As ``spawn``, but the same ones at every call."""
+    return [
+        np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, k)) for k in range(count)
+    ]
+
+
+def _random_rotation(rng: np.random.Generator) -> Floats:
+    """A matrix (3, 3) drawn evenly from all rotations (Shoemake 1992)."""
+    quaternion = rng.normal(0.0, 1.0, 4)
+    w, x, y, z = quaternion / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _cut(block: SensorBatch, rows: int) -> Iterator[SensorBatch]:
+    """Cut a block into batches; each other sample comes with the batch it fell into."""
+    imu = block.imu
+    for start in range(0, len(imu), rows):
+        last = start + rows >= len(imu)
+        begin_ns = imu.t_ns[start]
+        end_ns = np.iinfo(np.int64).max if last else imu.t_ns[start + rows]
+        yield SensorBatch(
+            imu.part(slice(start, start + rows)),
+            tuple(other for other in block.others if begin_ns <= other.t_ns < end_ns),
+        )
