@@ -1,0 +1,43 @@
+"""The programs' own log: one line a record, UTC, to standard error and, where asked, a file."""
+
+from __future__ import annotations
+
+import logging
+import time
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+
+_FILE_BYTES = 5_000_000
+_FILES_KEPT = 3
+
+
+class OneLineFormatter(logging.Formatter):
+    """``2026-03-01T10:00:00.123Z WARNING base_station.recorder  text``; a traceback follows."""
+
+    converter = staticmethod(time.gmtime)
+
+    def __init__(self) -> None:
+        super().__init__(
+            "%(asctime)s.%(msecs)03dZ %(levelname)-7s %(name)s  %(message)s", "%Y-%m-%dT%H:%M:%S"
+        )
+
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802  # logging's name
+        return super().formatMessage(record).replace("\r", "\\r").replace("\n", "\\n")
+
+
+def set_up_logging(level: str = "INFO", file: Path | None = None) -> None:
+    """For a program's start, once: replaces whatever handlers the root logger had.
+
+    ``level`` is a name of the standard library's ("DEBUG", "INFO", "WARNING", "ERROR").
+    """
+    handlers: list[logging.Handler] = [logging.StreamHandler()]
+    if file is not None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handlers.append(
+            RotatingFileHandler(
+                file, maxBytes=_FILE_BYTES, backupCount=_FILES_KEPT, encoding="utf-8"
+            )
+        )
+    for handler in handlers:
+        handler.setFormatter(OneLineFormatter())
+    logging.basicConfig(level=level.upper(), handlers=handlers, force=True)
