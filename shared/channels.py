@@ -75,7 +75,7 @@ DESCRIPTION = Channel(
 )
 GPS = Channel("gps", "up/gps", GpsFix, _UP, Qos.LIVE, 1.0, True, None)
 IMU = Channel("imu", "up/imu", RawImu, _UP, Qos.LIVE, 20.0, True, None)
-HEARTBEAT = Channel("heartbeat", "heartbeat", Heartbeat, _UP, Qos.LIVE, 1.0, False, 10.0)
+HEARTBEAT = Channel("heartbeat", "heartbeat", Heartbeat, _UP, Qos.LIVE, 1.0, True, 10.0)
 EVENT = Channel("event", "alert/event", UnitEvent, _UP, Qos.ALERT, None, True, None)
 REPLY = Channel("reply", "alert/reply", CommandReply, _UP, Qos.ALERT, None, True, None)
 COMMAND = Channel("command", "command/send", Command, _DOWN, Qos.ALERT, None, True, None)

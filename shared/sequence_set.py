@@ -1,0 +1,72 @@
+"""Which sequence numbers are there: a set of integers kept as runs.
+
+Messages come nearly in order, so a long history is a handful of runs.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import msgspec
+
+
+class Run(NamedTuple):
+    """Consecutive numbers; both ends belong to it."""
+
+    first: int
+    last: int
+
+
+class SequenceSet(msgspec.Struct, array_like=True):
+    """Sorted, disjoint and never adjacent runs."""
+
+    firsts: list[int] = msgspec.field(default_factory=list)
+    lasts: list[int] = msgspec.field(default_factory=list)
+
+    def __contains__(self, number: int) -> bool:
+        place = bisect_right(self.firsts, number) - 1
+        return place >= 0 and number <= self.lasts[place]
+
+    def add(self, number: int) -> bool:
+        """True where the number was not there yet."""
+        place = bisect_right(self.firsts, number)
+        if place and number <= self.lasts[place - 1]:
+            return False
+        joins_left = place > 0 and self.lasts[place - 1] == number - 1
+        joins_right = place < len(self.firsts) and self.firsts[place] == number + 1
+        if joins_left and joins_right:
+            self.lasts[place - 1] = self.lasts.pop(place)
+            del self.firsts[place]
+        elif joins_left:
+            self.lasts[place - 1] = number
+        elif joins_right:
+            self.firsts[place] = number
+        else:
+            self.firsts.insert(place, number)
+            self.lasts.insert(place, number)
+        return True
+
+    def runs(self) -> Iterator[Run]:
+        return map(Run, self.firsts, self.lasts)
+
+    def missing(self, first: int, last: int) -> Iterator[Run]:
+        """The runs between ``first`` and ``last``, both included, that are not there."""
+        for run in self.runs():
+            if run.last < first:
+                continue
+            if run.first > last:
+                break
+            if first < run.first:
+                yield Run(first, run.first - 1)
+            first = run.last + 1
+        if first <= last:
+            yield Run(first, last)
+
+    def complete_to(self, first: int) -> int:
+        """The last number up to which nothing is missing from ``first`` on; ``first - 1``: none."""
+        place = bisect_right(self.firsts, first) - 1
+        if place < 0 or self.lasts[place] < first:
+            return first - 1
+        return self.lasts[place]

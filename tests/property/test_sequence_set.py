@@ -1,0 +1,58 @@
+"""A set kept as runs is a set."""
+
+from __future__ import annotations
+
+import msgspec
+from hypothesis import given
+from hypothesis import strategies as st
+
+from shared.sequence_set import SequenceSet
+
+NUMBERS = st.lists(st.integers(0, 60))
+
+
+def filled(numbers: list[int]) -> SequenceSet:
+    held = SequenceSet()
+    for number in numbers:
+        held.add(number)
+    return held
+
+
+@given(NUMBERS)
+def test_it_holds_what_was_added_and_says_what_was_new(numbers):
+    held, plain = SequenceSet(), set()
+    for number in numbers:
+        assert held.add(number) == (number not in plain)
+        plain.add(number)
+    assert {number for number in range(-1, 62) if number in held} == plain
+
+
+@given(NUMBERS)
+def test_runs_are_sorted_and_apart(numbers):
+    runs = list(filled(numbers).runs())
+    assert all(run.first <= run.last for run in runs)
+    assert all(a.last + 1 < b.first for a, b in zip(runs, runs[1:], strict=False))
+
+
+@given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
+def test_what_is_missing_is_the_rest(numbers, first, last):
+    missing = [
+        number
+        for run in filled(numbers).missing(first, last)
+        for number in range(run.first, run.last + 1)
+    ]
+    assert missing == [n for n in range(first, last + 1) if n not in set(numbers)]
+
+
+@given(NUMBERS, st.integers(0, 60))
+def test_complete_to_is_where_the_first_gap_begins(numbers, first):
+    expected = first - 1
+    while expected + 1 in set(numbers):
+        expected += 1
+    assert filled(numbers).complete_to(first) == expected
+
+
+@given(NUMBERS)
+def test_it_survives_being_written_down(numbers):
+    held = filled(numbers)
+    assert msgspec.msgpack.decode(msgspec.msgpack.encode(held), type=SequenceSet) == held
