@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
@@ -31,7 +33,7 @@ def test_it_holds_what_was_added_and_says_what_was_new(numbers):
 def test_runs_are_sorted_and_apart(numbers):
     runs = list(filled(numbers).runs())
     assert all(run.first <= run.last for run in runs)
-    assert all(a.last + 1 < b.first for a, b in zip(runs, runs[1:], strict=False))
+    assert all(a.last + 1 < b.first for a, b in pairwise(runs))
 
 
 @given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
