@@ -1,0 +1,115 @@
+/** The station's REST API, as far as the console uses it. */
+
+export interface Me {
+  username: string;
+  role: "viewer" | "commander" | "administrator";
+}
+
+export interface Person {
+  person_id: string;
+  name: string;
+  crew: string;
+  role: string;
+  photo_url: string | null;
+}
+
+export interface Unit {
+  unit_id: string;
+  label: string;
+  registered: boolean;
+  person_id: string | null;
+}
+
+export interface Incident {
+  incident_id: string;
+  name: string;
+  opened_ms: number;
+  closed_ms: number | null;
+}
+
+export interface PastAlarm {
+  alarm_id: string;
+  unit_id: string;
+  priority: number;
+  text: string;
+  raised_ms: number;
+}
+
+export type ReplayChange = { playing?: boolean; speed?: number; at_ms?: number };
+
+/** The station refused or could not be reached; the text is for a person. */
+export class ApiError extends Error {
+  constructor(
+    message: string,
+    readonly status: number,
+  ) {
+    super(message);
+  }
+}
+
+const BASE = "/api/v1";
+
+async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
+  const init: RequestInit = { method, credentials: "same-origin" };
+  if (body instanceof Blob) init.body = body;
+  else if (body !== undefined) {
+    init.body = JSON.stringify(body);
+    init.headers = { "content-type": "application/json" };
+  }
+  const response = await fetch(BASE + path, init).catch(() => {
+    throw new ApiError("The station cannot be reached.", 0);
+  });
+  if (!response.ok) throw new ApiError(await reason(response), response.status);
+  return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
+}
+
+async function reason(response: Response): Promise<string> {
+  const body: unknown = await response.json().catch(() => null);
+  const detail = (body as { detail?: unknown } | null)?.detail;
+  if (typeof detail === "string") return detail;
+  if (Array.isArray(detail)) {
+    return detail.map((one: { msg?: string }) => one.msg ?? "").join("; ");
+  }
+  return `The station answered ${response.status}.`;
+}
+
+const id = encodeURIComponent;
+
+export const login = (username: string, password: string) =>
+  call<Me>("POST", "/login", { username, password });
+export const logout = () => call<void>("POST", "/logout");
+export const me = () => call<Me>("GET", "/me");
+
+export const people = () => call<Person[]>("GET", "/people");
+export const addPerson = (person: { name: string; crew: string; role: string }) =>
+  call<Person>("POST", "/people", person);
+export const setPhoto = (personId: string, photo: Blob) =>
+  call<void>("PUT", `/people/${id(personId)}/photo`, photo);
+
+export const units = () => call<Unit[]>("GET", "/units");
+export const registerUnit = (unitId: string, label: string) =>
+  call<Unit>("POST", "/units", { unit_id: unitId, label });
+export const assign = (unitId: string, personId: string) =>
+  call<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
+export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);
+
+export const incidents = () => call<Incident[]>("GET", "/incidents");
+export const openIncident = (name: string) => call<Incident>("POST", "/incidents", { name });
+export const closeIncident = (incidentId: string) =>
+  call<void>("POST", `/incidents/${id(incidentId)}/close`);
+export const incidentAlarms = (incidentId: string) =>
+  call<PastAlarm[]>("GET", `/incidents/${id(incidentId)}/alarms`);
+
+export const acknowledge = (alarmId: string) =>
+  call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
+export const resolve = (alarmId: string, note: string) =>
+  call<void>("POST", `/alarms/${id(alarmId)}/resolve`, { note });
+
+export const startReplay = (incidentId: string) =>
+  call<{ replay_id: string }>("POST", "/replays", { incident_id: incidentId });
+export const changeReplay = (replayId: string, change: ReplayChange) =>
+  call<void>("POST", `/replays/${id(replayId)}`, change);
+export const endReplay = (replayId: string) => call<void>("DELETE", `/replays/${id(replayId)}`);
+
+export const LIVE_PATH = `${BASE}/live`;
+export const replayPath = (replayId: string) => `${BASE}/replays/${id(replayId)}/live`;

@@ -1,0 +1,19 @@
+/** Which alarms are open, in the order in which they want a person. */
+import type { AlarmView } from "../wire";
+
+export function isOpen(alarm: AlarmView): boolean {
+  return alarm.state !== "resolved";
+}
+
+/** Highest priority first, then those nobody has taken yet, then the oldest. */
+export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
+  return [...alarms]
+    .filter(isOpen)
+    .sort(
+      (a, b) =>
+        a.priority - b.priority ||
+        Number(a.state === "acknowledged") - Number(b.state === "acknowledged") ||
+        a.raised_ms - b.raised_ms ||
+        (a.alarm_id < b.alarm_id ? -1 : 1),
+    );
+}

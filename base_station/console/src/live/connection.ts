@@ -1,0 +1,96 @@
+/** A WebSocket that comes back by itself.  It says what arrived and whether it is up. */
+
+export interface ConnectionEvents {
+  message(text: string): void;
+  up(): void;
+  down(retryInMs: number): void;
+}
+
+/** What of the browser is used; tests put their own in. */
+export interface Surroundings {
+  open(url: string): WebSocket;
+  later(action: () => void, delayMs: number): unknown;
+  cancel(timer: unknown): void;
+  random(): number;
+}
+
+export const BROWSER: Surroundings = {
+  open: (url) => new WebSocket(url),
+  later: (action, delayMs) => setTimeout(action, delayMs),
+  cancel: (timer) => clearTimeout(timer as number),
+  random: () => Math.random(),
+};
+
+const FIRST_RETRY_MS = 300;
+const LONGEST_RETRY_MS = 5000;
+/** The station speaks at least once a second: after this much silence the link is dead,
+ * even where the socket has not noticed. */
+export const SILENCE_MS = 5000;
+
+/** How long to wait before try number `attempt` (from 0), spread so that a hundred consoles do not
+ * return in the same instant. */
+export function retryDelayMs(attempt: number, random: number): number {
+  const longest = Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS);
+  return Math.round(longest * (0.5 + 0.5 * random));
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private retry: unknown = null;
+  private watchdog: unknown = null;
+  private attempt = 0;
+  private closed = false;
+
+  constructor(
+    private readonly url: string,
+    private readonly events: ConnectionEvents,
+    private readonly around: Surroundings = BROWSER,
+  ) {
+    this.connect();
+  }
+
+  send(message: object): void {
+    if (this.socket?.readyState === 1) this.socket.send(JSON.stringify(message));
+  }
+
+  close(): void {
+    this.closed = true;
+    this.around.cancel(this.retry);
+    this.drop();
+  }
+
+  private connect(): void {
+    const socket = this.around.open(this.url);
+    this.socket = socket;
+    this.listenForSilence();
+    socket.onopen = () => this.events.up();
+    socket.onmessage = (event: MessageEvent<string>) => {
+      this.attempt = 0;
+      this.listenForSilence();
+      this.events.message(event.data);
+    };
+    socket.onclose = () => this.lost();
+  }
+
+  private listenForSilence(): void {
+    this.around.cancel(this.watchdog);
+    this.watchdog = this.around.later(() => this.lost(), SILENCE_MS);
+  }
+
+  private lost(): void {
+    if (this.closed) return;
+    this.drop();
+    const delayMs = retryDelayMs(this.attempt++, this.around.random());
+    this.events.down(delayMs);
+    this.retry = this.around.later(() => this.connect(), delayMs);
+  }
+
+  private drop(): void {
+    this.around.cancel(this.watchdog);
+    const socket = this.socket;
+    this.socket = null;
+    if (socket === null) return;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close();
+  }
+}

@@ -1,0 +1,91 @@
+/** The picture as signals: what the screen shows, updated unit by unit. */
+import { batch, computed, signal, type ReadonlySignal, type Signal } from "@preact/signals";
+import type {
+  AlarmView,
+  AnchorView,
+  HealthView,
+  IncidentView,
+  Plan,
+  ReplayView,
+  TrailPoint,
+  UnitView,
+} from "../wire";
+import { openAlarms } from "./alarms";
+import type { State } from "./state";
+
+export interface LinkUp {
+  kind: "up";
+}
+export interface LinkDown {
+  kind: "down";
+  sinceMs: number; // by the console's own clock
+}
+export type LinkState = { kind: "connecting" } | LinkUp | LinkDown;
+
+export class Picture {
+  readonly link = signal<LinkState>({ kind: "connecting" });
+  readonly ready = signal(false);
+  /** Now, in station time; goes on by itself when the station is silent. */
+  readonly nowMs = signal(0);
+  readonly incident = signal<IncidentView | null>(null);
+  readonly alarms = signal<ReadonlyMap<string, AlarmView>>(new Map());
+  readonly plan = signal<Plan | null>(null);
+  readonly anchor = signal<AnchorView | null>(null);
+  readonly health = signal<HealthView | null>(null);
+  readonly replay = signal<ReplayView | null>(null);
+  readonly unitIds = signal<readonly string[]>([]);
+  readonly trails = signal<ReadonlyMap<string, readonly TrailPoint[]>>(new Map());
+  /** Changes with every message that touched a unit; the plan redraws on it. */
+  readonly unitsChanged = signal(0);
+
+  readonly openAlarms: ReadonlySignal<readonly AlarmView[]> = computed(() =>
+    openAlarms(this.alarms.value.values()),
+  );
+
+  private readonly units = new Map<string, Signal<UnitView>>();
+
+  /** The signal of one unit; it exists for every id in `unitIds`. */
+  unit(unitId: string): Signal<UnitView> | undefined {
+    return this.units.get(unitId);
+  }
+
+  /** All units as they are, without listening to them. */
+  allUnits(): UnitView[] {
+    return [...this.units.values()].map((unit) => unit.peek());
+  }
+
+  show(state: State): void {
+    batch(() => {
+      this.incident.value = state.incident;
+      this.alarms.value = state.alarms;
+      this.plan.value = state.plan;
+      this.anchor.value = state.anchor;
+      this.health.value = state.health;
+      this.replay.value = state.replay;
+      this.trails.value = state.trails;
+      this.showUnits(state.units);
+      this.ready.value = true;
+    });
+  }
+
+  private showUnits(units: State["units"]): void {
+    let changed = false;
+    for (const [unitId, unit] of units) {
+      const shown = this.units.get(unitId);
+      if (shown === undefined) this.units.set(unitId, signal(unit));
+      else if (shown.peek() === unit) continue;
+      else shown.value = unit;
+      changed = true;
+    }
+    for (const unitId of [...this.units.keys()]) {
+      if (!units.has(unitId)) changed = this.units.delete(unitId);
+    }
+    if (!changed) return;
+    this.unitsChanged.value += 1;
+    const ids = [...this.units.keys()];
+    const before = this.unitIds.peek();
+    if (ids.length !== before.length || ids.some((id, i) => id !== before[i])) {
+      this.unitIds.value = ids;
+    }
+  }
+}

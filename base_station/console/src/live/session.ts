@@ -1,0 +1,67 @@
+/** Keeps a picture as the station describes it: connection, messages, snapshots on a gap, time. */
+import { batch } from "@preact/signals";
+import type { Message } from "../wire";
+import { StationClock } from "./clock";
+import { Connection } from "./connection";
+import { Picture } from "./picture";
+import { apply, type State } from "./state";
+
+const CLOCK_STEP_MS = 500;
+
+export class Session {
+  readonly picture = new Picture();
+  private readonly clock = new StationClock();
+  private readonly connection: Connection;
+  private readonly timer: number;
+  private state: State | null = null;
+  private asked = false;
+
+  constructor(path: string) {
+    this.connection = new Connection(socketUrl(path), {
+      message: (text) => this.hear(JSON.parse(text) as Message),
+      up: () => undefined, // up means a picture: see hear
+      down: () => this.lose(),
+    });
+    this.timer = window.setInterval(() => this.tick(), CLOCK_STEP_MS);
+  }
+
+  close(): void {
+    window.clearInterval(this.timer);
+    this.connection.close();
+  }
+
+  private hear(message: Message): void {
+    const { state, missed } = apply(this.state, message);
+    if (missed) {
+      if (!this.asked) this.connection.send({ type: "snapshot" });
+      this.asked = true;
+      return;
+    }
+    if (message.type === "snapshot") this.asked = false;
+    this.state = state;
+    if (state === null) return;
+    const { replay } = state;
+    const speed = replay === null ? 1 : replay.playing ? replay.speed : 0;
+    this.clock.set(state.now_ms, performance.now(), speed);
+    batch(() => {
+      if (this.picture.link.peek().kind !== "up") this.picture.link.value = { kind: "up" };
+      this.picture.show(state);
+      this.tick();
+    });
+  }
+
+  private lose(): void {
+    this.asked = false;
+    if (this.picture.link.peek().kind === "down") return;
+    this.picture.link.value = { kind: "down", sinceMs: performance.now() };
+  }
+
+  private tick(): void {
+    if (this.state !== null) this.picture.nowMs.value = this.clock.now(performance.now());
+  }
+}
+
+function socketUrl(path: string): string {
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  return `${scheme}//${location.host}${path}`;
+}

@@ -1,0 +1,114 @@
+/** The picture that the station describes, and how each message changes it.  Pure. */
+import type {
+  AlarmView,
+  AnchorView,
+  Delta,
+  HealthView,
+  IncidentView,
+  Message,
+  Plan,
+  ReplayView,
+  Snapshot,
+  TrailPoint,
+  UnitView,
+} from "../wire";
+
+export interface State {
+  seq: number;
+  now_ms: number;
+  incident: IncidentView | null;
+  units: ReadonlyMap<string, UnitView>;
+  alarms: ReadonlyMap<string, AlarmView>;
+  trails: ReadonlyMap<string, readonly TrailPoint[]>;
+  plan: Plan | null;
+  anchor: AnchorView | null;
+  health: HealthView;
+  replay: ReplayView | null;
+}
+
+export interface Applied {
+  state: State | null;
+  missed: boolean; // something did not arrive: ask for a snapshot
+}
+
+// As the station thins its own trails out (base_station/live_state.py).
+const TRAIL_STEP_MS = 1000;
+const TRAIL_STEP_M = 0.5;
+const TRAIL_REST_MS = 15_000;
+export const TRAIL_POINTS = 900;
+const RESOLVED_KEPT = 50;
+
+/** The state after a message.  A delta that does not follow leaves the state as it was. */
+export function apply(state: State | null, message: Message): Applied {
+  if (message.type === "snapshot") return { state: fromSnapshot(message), missed: false };
+  if (state === null || message.seq !== state.seq + 1) return { state, missed: true };
+  return { state: withDelta(state, message), missed: false };
+}
+
+function fromSnapshot(message: Snapshot): State {
+  return {
+    seq: message.seq,
+    now_ms: message.now_ms,
+    incident: message.incident,
+    units: new Map(message.units.map((unit) => [unit.unit_id, unit])),
+    alarms: new Map(message.alarms.map((alarm) => [alarm.alarm_id, alarm])),
+    trails: new Map(Object.entries(message.trails)),
+    plan: message.plan,
+    anchor: message.anchor,
+    health: message.health,
+    replay: message.replay,
+  };
+}
+
+function withDelta(state: State, delta: Delta): State {
+  return {
+    ...state,
+    seq: delta.seq,
+    now_ms: delta.now_ms,
+    incident: delta.incident ?? state.incident,
+    health: delta.health ?? state.health,
+    replay: delta.replay ?? state.replay,
+    units: delta.units ? withUnits(state.units, delta.units) : state.units,
+    trails: delta.units ? withPositions(state.trails, delta.units) : state.trails,
+    alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
+  };
+}
+
+function withUnits(units: State["units"], changed: readonly UnitView[]): State["units"] {
+  const next = new Map(units);
+  for (const unit of changed) next.set(unit.unit_id, unit);
+  return next;
+}
+
+function withPositions(trails: State["trails"], changed: readonly UnitView[]): State["trails"] {
+  let next: Map<string, readonly TrailPoint[]> | null = null;
+  for (const { unit_id, position } of changed) {
+    if (position === null) continue;
+    const trail = trails.get(unit_id) ?? [];
+    const point: TrailPoint = [position.t_ms, position.north_m, position.east_m, position.floor];
+    if (!isStep(trail.at(-1), point)) continue;
+    next ??= new Map(trails);
+    next.set(unit_id, [...trail.slice(1 - TRAIL_POINTS), point]);
+  }
+  return next ?? trails;
+}
+
+/** Whether a trail goes on to this point: somebody walked, or rested for long.  A position older
+ * than the trail's end was backfilled and comes with the next snapshot. */
+function isStep(last: TrailPoint | undefined, point: TrailPoint): boolean {
+  if (last === undefined) return true;
+  const passedMs = point[0] - last[0];
+  const movedM = Math.hypot(point[1] - last[1], point[2] - last[2]);
+  const walked = passedMs >= TRAIL_STEP_MS && movedM >= TRAIL_STEP_M;
+  return walked || passedMs >= TRAIL_REST_MS;
+}
+
+function withAlarms(alarms: State["alarms"], changed: readonly AlarmView[]): State["alarms"] {
+  const next = new Map(alarms);
+  for (const alarm of changed) next.set(alarm.alarm_id, alarm);
+  const resolved = [...next.values()]
+    .filter((alarm) => alarm.state === "resolved")
+    .sort((a, b) => b.changed_ms - a.changed_ms);
+  for (const alarm of resolved.slice(RESOLVED_KEPT)) next.delete(alarm.alarm_id);
+  return next;
+}

@@ -1,0 +1,70 @@
+/** Who needs attention first, and a list that does not jump while somebody reads it.  Pure. */
+import type { AlarmView, UnitView } from "../wire";
+
+export type Urgency = "immediate" | "soon" | "watch" | "normal";
+
+const RANK: Record<Urgency, number> = { immediate: 0, soon: 1, watch: 2, normal: 3 };
+const CALMING_MS = 10_000;
+
+/** From the unit's open alarms, its state, and whether it can be heard. */
+export function urgencyOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): Urgency {
+  const priorities = unit.alarms.map((id) => alarms.get(id)?.priority ?? 1);
+  if (unit.status?.mayday || priorities.includes(1)) return "immediate";
+  if (priorities.includes(2) || unit.link === "lost") return "soon";
+  const watched = priorities.length > 0 || unit.link === "stale" || unit.heat_level !== "";
+  return watched ? "watch" : "normal";
+}
+
+export function displayName(unit: UnitView): string {
+  return unit.person?.name ?? (unit.label || unit.unit_id);
+}
+
+/** Where a unit stands in the list, and since when it could stand lower. */
+export interface Place {
+  unitId: string;
+  name: string;
+  urgency: Urgency;
+  calmSinceMs: number | null;
+}
+
+/** The list after a change.  Whoever gets worse moves up at once; whoever gets better keeps the
+ * place for a while; and while `held` (somebody points at the list) only the worse ones move. */
+export function arrange(
+  before: readonly Place[],
+  units: readonly UnitView[],
+  alarms: ReadonlyMap<string, AlarmView>,
+  nowMs: number,
+  held: boolean,
+): Place[] {
+  const known = new Map(before.map((place) => [place.unitId, place]));
+  const places = units.map((unit) =>
+    placeOf(unit, urgencyOf(unit, alarms), known.get(unit.unit_id), nowMs, held),
+  );
+  return places.sort(
+    (a, b) =>
+      RANK[a.urgency] - RANK[b.urgency] ||
+      a.name.localeCompare(b.name) ||
+      (a.unitId < b.unitId ? -1 : 1),
+  );
+}
+
+function placeOf(
+  unit: UnitView,
+  urgency: Urgency,
+  before: Place | undefined,
+  nowMs: number,
+  held: boolean,
+): Place {
+  const place = { unitId: unit.unit_id, name: displayName(unit), urgency, calmSinceMs: null };
+  if (before === undefined || RANK[urgency] <= RANK[before.urgency]) return place;
+  const calmSinceMs = before.calmSinceMs ?? nowMs;
+  if (!held && nowMs - calmSinceMs >= CALMING_MS) return place;
+  return { ...place, urgency: before.urgency, calmSinceMs };
+}
+
+export function sameOrder(a: readonly Place[], b: readonly Place[]): boolean {
+  return (
+    a.length === b.length &&
+    a.every((place, i) => place.unitId === b[i]?.unitId && place.urgency === b[i]?.urgency)
+  );
+}

@@ -1,0 +1,14 @@
+import { render } from "preact";
+import "ol/ol.css";
+import "./styles/theme.css";
+import "./styles/frame.css";
+import "./styles/alarms.css";
+import "./styles/people.css";
+import "./styles/plan.css";
+import "./styles/dialogs.css";
+import { resume } from "./app";
+import { App } from "./ui/App";
+
+await resume();
+const root = document.getElementById("app");
+if (root) render(<App />, root);

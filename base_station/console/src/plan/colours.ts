@@ -1,0 +1,43 @@
+/** The page's colours for what is drawn on a canvas. */
+
+export interface Colours {
+  text: string;
+  halo: string;
+  quiet: string;
+  wall: string;
+  room: string;
+  stairs: string;
+  grid: string;
+  immediate: string;
+  soon: string;
+  watch: string;
+  normal: string;
+  chosen: string;
+}
+
+const NAMES: Record<keyof Colours, string> = {
+  text: "--text",
+  halo: "--ground",
+  quiet: "--quiet",
+  wall: "--wall",
+  room: "--room",
+  stairs: "--stairs",
+  grid: "--grid",
+  immediate: "--immediate",
+  soon: "--soon",
+  watch: "--watch",
+  normal: "--normal",
+  chosen: "--chosen",
+};
+
+export function readColours(): Colours {
+  const style = getComputedStyle(document.documentElement);
+  const entries = Object.entries(NAMES).map(([key, name]) => [key, style.getPropertyValue(name).trim()]);
+  return Object.fromEntries(entries) as Colours;
+}
+
+/** A colour with another opacity; colours in the theme are `#rrggbb`. */
+export function faint(colour: string, opacity: number): string {
+  const alpha = Math.round(opacity * 255);
+  return colour + alpha.toString(16).padStart(2, "0");
+}

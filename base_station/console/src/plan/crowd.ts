@@ -1,0 +1,136 @@
+/** Everybody on the plan: layers whose features follow the picture. */
+import Feature from "ol/Feature";
+import MultiLineString from "ol/geom/MultiLineString";
+import Point from "ol/geom/Point";
+import Polygon from "ol/geom/Polygon";
+import VectorLayer from "ol/layer/Vector";
+import VectorSource from "ol/source/Vector";
+import { displayName, urgencyOf } from "../live/urgency";
+import type { FloorChoice } from "../app";
+import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
+import { initials } from "../words";
+import type { Colours } from "./colours";
+import { isOld, regionAt, ring } from "./ellipse";
+import { labelStyle, markStyle, regionStyle, trailStyle, type Mark } from "./marks";
+import { siteCoordinate } from "./site";
+import { trailLines } from "./trail";
+
+export interface Scene {
+  units: readonly UnitView[];
+  alarms: ReadonlyMap<string, AlarmView>;
+  trails: ReadonlyMap<string, readonly TrailPoint[]>;
+  nowMs: number;
+  floor: FloorChoice;
+  chosen: string | null;
+  colours: Colours;
+}
+
+const HEADING_KNOWN_RAD = 0.8;
+
+/** The features of one person. */
+interface Figure {
+  trail: Feature<MultiLineString>;
+  region: Feature<Polygon>;
+  mark: Feature<Point>;
+  label: Feature<Point>;
+}
+
+export class Crowd {
+  private readonly figures = new Map<string, Figure>();
+  private readonly trails = new VectorSource<Feature<MultiLineString>>();
+  private readonly regions = new VectorSource<Feature<Polygon>>();
+  private readonly marks = new VectorSource<Feature<Point>>();
+  private readonly labels = new VectorSource<Feature<Point>>();
+  readonly layers = [
+    new VectorLayer({ source: this.regions }),
+    new VectorLayer({ source: this.trails }),
+    new VectorLayer({ source: this.marks }),
+    new VectorLayer({ source: this.labels, declutter: true }),
+  ];
+
+  show(scene: Scene): void {
+    const shown = new Set<string>();
+    for (const unit of scene.units) {
+      if (unit.position === null || !isShown(unit, unit.position, scene)) continue;
+      shown.add(unit.unit_id);
+      this.draw(unit, unit.position, scene);
+    }
+    for (const unitId of this.figures.keys()) {
+      if (!shown.has(unitId)) this.forget(unitId);
+    }
+  }
+
+  extent(): number[] | null {
+    return this.regions.isEmpty() ? null : (this.regions.getExtent() ?? null);
+  }
+
+  /** The unit whose mark is nearest to a coordinate, and where it is. */
+  nearest(coordinate: number[]): { unitId: string; at: number[] } | null {
+    const feature = this.marks.getClosestFeatureToCoordinate(coordinate);
+    const at = feature?.getGeometry()?.getCoordinates();
+    return feature && at ? { unitId: String(feature.getId()), at } : null;
+  }
+
+  private draw(unit: UnitView, position: PositionView, scene: Scene): void {
+    const { trail, region, mark, label } = this.figure(unit.unit_id);
+    const looks = markOf(unit, position, scene);
+    const centre = siteCoordinate(position);
+    const walked = scene.trails.get(unit.unit_id) ?? [];
+    trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
+    region.getGeometry()?.setCoordinates([ring(centre, regionAt(position, scene.nowMs))]);
+    mark.getGeometry()?.setCoordinates(centre);
+    label.getGeometry()?.setCoordinates(centre);
+    trail.setStyle(trailStyle(looks, scene.colours));
+    region.setStyle(regionStyle(looks, scene.colours));
+    mark.setStyle(markStyle(looks, scene.colours));
+    label.setStyle(labelStyle(looks, scene.colours));
+  }
+
+  private figure(unitId: string): Figure {
+    const known = this.figures.get(unitId);
+    if (known !== undefined) return known;
+    const figure = {
+      trail: new Feature(new MultiLineString([])),
+      region: new Feature(new Polygon([])),
+      mark: new Feature(new Point([0, 0])),
+      label: new Feature(new Point([0, 0])),
+    };
+    for (const feature of Object.values(figure)) feature.setId(unitId);
+    this.trails.addFeature(figure.trail);
+    this.regions.addFeature(figure.region);
+    this.marks.addFeature(figure.mark);
+    this.labels.addFeature(figure.label);
+    this.figures.set(unitId, figure);
+    return figure;
+  }
+
+  private forget(unitId: string): void {
+    const figure = this.figures.get(unitId);
+    if (figure === undefined) return;
+    this.figures.delete(unitId);
+    this.trails.removeFeature(figure.trail);
+    this.regions.removeFeature(figure.region);
+    this.marks.removeFeature(figure.mark);
+    this.labels.removeFeature(figure.label);
+  }
+}
+
+/** On the chosen floor, on a floor that nobody knows, or chosen. */
+function isShown(unit: UnitView, { floor }: PositionView, scene: Scene): boolean {
+  const here = scene.floor === "all" || floor === null || floor === scene.floor;
+  return here || unit.unit_id === scene.chosen;
+}
+
+function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
+  const name = displayName(unit);
+  return {
+    name,
+    initials: initials(name),
+    urgency: urgencyOf(unit, scene.alarms),
+    chosen: unit.unit_id === scene.chosen,
+    old: isOld(position, scene.nowMs),
+    ageMs: scene.nowMs - position.t_ms,
+    headingRad: position.heading_rad,
+    headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
+  };
+}

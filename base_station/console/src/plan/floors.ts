@@ -1,0 +1,55 @@
+/** Which floors there are and who is on each.  Pure. */
+import { urgencyOf, type Urgency } from "../live/urgency";
+import type { AlarmView, Plan, UnitView } from "../wire";
+
+export interface Floor {
+  floor: number;
+  name: string;
+  people: number;
+  urgency: Urgency; // the worst on it
+}
+
+const WORST: readonly Urgency[] = ["immediate", "soon", "watch", "normal"];
+
+/** Top floor first, as in a building: those of the plan and those where somebody is. */
+export function floorsOf(
+  plan: Plan | null,
+  units: readonly UnitView[],
+  alarms: ReadonlyMap<string, AlarmView>,
+): Floor[] {
+  const there = units.map((unit) => unit.position?.floor ?? null).filter((f) => f !== null);
+  return [...new Set([...planFloors(plan), ...there])]
+    .sort((a, b) => b - a)
+    .map((floor) => {
+      const on = units.filter((unit) => unit.position?.floor === floor);
+      const urgencies = new Set(on.map((unit) => urgencyOf(unit, alarms)));
+      return {
+        floor,
+        name: shortName(floor),
+        people: on.length,
+        urgency: WORST.find((urgency) => urgencies.has(urgency)) ?? "normal",
+      };
+    });
+}
+
+/** The floor to begin with: where most people are, the lower one of equals. */
+export function firstFloor(floors: readonly Floor[]): number | null {
+  let best: Floor | null = null;
+  for (const floor of floors) {
+    if (best === null || floor.people >= best.people) best = floor;
+  }
+  return best?.floor ?? null;
+}
+
+export function shortName(floor: number): string {
+  return floor < 0 ? `B${-floor}` : floor === 0 ? "G" : String(floor);
+}
+
+function planFloors(plan: Plan | null): Set<number> {
+  const floors = new Set((plan?.muster.floors ?? []).map(({ floor }) => floor));
+  for (const feature of plan?.features ?? []) {
+    const floor: unknown = feature.properties?.["floor"];
+    if (typeof floor === "number") floors.add(floor);
+  }
+  return floors;
+}

@@ -1,0 +1,69 @@
+/** Keeps the plan as the picture is, a few times a second at most. */
+import { effect } from "@preact/signals";
+import { floor, selectedUnit } from "../app";
+import type { Picture } from "../live/picture";
+import { firstFloor, floorsOf } from "./floors";
+import type { PlanMap } from "./map";
+
+const REDRAW_MS = 200;
+
+/** Begin to follow; the result ends it. */
+export function follow(map: PlanMap, picture: Picture): () => void {
+  const redraw = atMostEvery(REDRAW_MS, () =>
+    map.showPeople({
+      units: picture.allUnits(),
+      alarms: picture.alarms.peek(),
+      trails: picture.trails.peek(),
+      nowMs: picture.nowMs.peek(),
+      floor: floor.peek(),
+      chosen: selectedUnit.peek(),
+    }),
+  );
+  const theme = matchMedia("(prefers-color-scheme: dark)");
+  const recolour = () => {
+    map.recolour();
+    redraw.ask();
+  };
+  theme.addEventListener("change", recolour);
+  const ends = [
+    () => theme.removeEventListener("change", recolour),
+    () => redraw.cancel(),
+    effect(() => map.showPlan(picture.plan.value)),
+    effect(() => {
+      void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
+      void [picture.nowMs.value, floor.value, selectedUnit.value];
+      redraw.ask();
+    }),
+    beginOnAFloor(picture),
+  ];
+  return () => ends.forEach((end) => end());
+}
+
+/** Choose the first floor as soon as there are floors; after that the person chooses. */
+function beginOnAFloor(picture: Picture): () => void {
+  let chosen = false;
+  return effect(() => {
+    void picture.unitsChanged.value;
+    if (chosen) return;
+    const floors = floorsOf(picture.plan.value, picture.allUnits(), new Map());
+    const first = firstFloor(floors);
+    if (first === null || !floors.some((one) => one.people > 0)) return;
+    chosen = true;
+    floor.value = first;
+  });
+}
+
+function atMostEvery(periodMs: number, work: () => void): { ask(): void; cancel(): void } {
+  let timer: number | null = null;
+  return {
+    ask() {
+      timer ??= window.setTimeout(() => {
+        timer = null;
+        work();
+      }, periodMs);
+    },
+    cancel() {
+      if (timer !== null) clearTimeout(timer);
+    },
+  };
+}

@@ -1,0 +1,130 @@
+/** How a person is drawn on the plan: trail, region, mark with heading, label. */
+import { Fill, Stroke, Style, Text } from "ol/style";
+import type { State as RenderState } from "ol/render";
+import type { Urgency } from "../live/urgency";
+import { duration } from "../words";
+import { faint, type Colours } from "./colours";
+
+/** What the plan needs to know of one person. */
+export interface Mark {
+  name: string;
+  initials: string;
+  urgency: Urgency;
+  chosen: boolean;
+  old: boolean;
+  ageMs: number;
+  headingRad: number;
+  headingKnown: boolean;
+}
+
+const RADIUS_PX = 13;
+const ARROW_PX = 10;
+
+export function trailStyle(mark: Mark, colours: Colours): Style {
+  const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
+  return new Style({
+    stroke: new Stroke({
+      color: faint(colour, mark.chosen ? 0.95 : 0.55),
+      width: mark.chosen ? 3.5 : 2.5,
+      lineJoin: "round",
+    }),
+  });
+}
+
+export function regionStyle(mark: Mark, colours: Colours): Style {
+  const colour = mark.old ? colours.quiet : colours[mark.urgency];
+  return new Style({
+    fill: new Fill({ color: mark.old ? hatching(colour) : faint(colour, 0.16) }),
+    stroke: new Stroke({
+      color: faint(colour, 0.9),
+      width: 1.5,
+      ...(mark.old ? { lineDash: [6, 5] } : {}),
+    }),
+  });
+}
+
+/** Names keep clear of each other; the plan leaves out what does not fit. */
+export function labelStyle(mark: Mark, colours: Colours): Style {
+  const words = mark.old ? `${mark.name}, ${duration(mark.ageMs)} old` : mark.name;
+  const strong = mark.chosen || mark.urgency === "immediate";
+  return new Style({
+    zIndex: strong ? 2 : 1,
+    text: new Text({
+      text: words,
+      font: `${strong ? "700" : "600"} 14px system-ui, sans-serif`,
+      offsetY: RADIUS_PX + 12,
+      fill: new Fill({ color: colours.text }),
+      stroke: new Stroke({ color: colours.halo, width: 4 }),
+      padding: [1, 3, 1, 3],
+    }),
+  });
+}
+
+export function markStyle(mark: Mark, colours: Colours): Style {
+  return new Style({
+    zIndex: mark.chosen ? 3 : mark.urgency === "immediate" ? 2 : 1,
+    renderer: (at, state) => drawMark(at as number[], state, mark, colours),
+  });
+}
+
+function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours): void {
+  const { context, pixelRatio } = state;
+  context.save();
+  context.translate(at[0] ?? 0, at[1] ?? 0);
+  context.scale(pixelRatio, pixelRatio);
+  const colour = mark.old ? colours.quiet : colours[mark.urgency];
+  if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, colour, colours.halo);
+  context.beginPath();
+  context.arc(0, 0, RADIUS_PX, 0, 2 * Math.PI);
+  context.fillStyle = mark.old ? colours.halo : colour;
+  context.fill();
+  context.lineWidth = mark.chosen ? 4 : 2;
+  context.strokeStyle = mark.chosen ? colours.chosen : mark.old ? colour : colours.halo;
+  if (mark.old) context.setLineDash([4, 3]);
+  context.stroke();
+  context.fillStyle = mark.old ? colour : colours.halo;
+  context.font = "700 12px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillText(mark.old ? "?" : mark.urgency === "immediate" ? "!" : mark.initials, 0, 0.5);
+  context.restore();
+}
+
+/** A point on the rim, towards the heading (clockwise from north, which is up). */
+function drawArrow(
+  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+  headingRad: number,
+  colour: string,
+  halo: string,
+): void {
+  context.save();
+  context.rotate(headingRad);
+  context.beginPath();
+  context.moveTo(0, -RADIUS_PX - ARROW_PX);
+  context.lineTo(8, -RADIUS_PX + 2);
+  context.lineTo(-8, -RADIUS_PX + 2);
+  context.closePath();
+  context.lineJoin = "round";
+  context.lineWidth = 3;
+  context.strokeStyle = halo;
+  context.stroke();
+  context.fillStyle = colour;
+  context.fill();
+  context.restore();
+}
+
+function hatching(colour: string): CanvasPattern | string {
+  const tile = document.createElement("canvas");
+  tile.width = tile.height = 8;
+  const context = tile.getContext("2d");
+  if (context === null) return faint(colour, 0.2);
+  context.strokeStyle = faint(colour, 0.55);
+  context.lineWidth = 1.5;
+  context.beginPath();
+  for (const x of [-8, 0, 8]) {
+    context.moveTo(x, 8);
+    context.lineTo(x + 8, 0);
+  }
+  context.stroke();
+  return context.createPattern(tile, "repeat") ?? faint(colour, 0.2);
+}

@@ -1,0 +1,82 @@
+import { useSignal } from "@preact/signals";
+import { attempt, mayCommand, select } from "../app";
+import * as api from "../api";
+import { useBeeper } from "../sound";
+import type { Picture } from "../live/picture";
+import { displayName } from "../live/urgency";
+import type { AlarmView } from "../wire";
+import { duration } from "../words";
+import { Icon } from "./Icon";
+
+interface Props {
+  picture: Picture;
+  actions: boolean; // a replay is only looked at
+}
+
+const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
+
+export function AlarmStrip({ picture, actions }: Props) {
+  const sound = useSignal(false);
+  const alarms = picture.openAlarms.value;
+  useBeeper(sound.value && actions, alarms);
+  return (
+    <section class="alarms" aria-label="Open alarms">
+      <div class="alarms-head">
+        <h2>{alarms.length === 0 ? "No open alarms" : `${alarms.length} open`}</h2>
+        <button
+          type="button"
+          class="sound"
+          aria-pressed={sound.value}
+          onClick={() => (sound.value = !sound.value)}
+        >
+          <Icon name={sound.value ? "bell" : "bellOff"} /> Sound {sound.value ? "on" : "off"}
+        </button>
+      </div>
+      <ul aria-live="assertive" aria-relevant="additions">
+        {alarms.map((alarm) => (
+          <AlarmRow key={alarm.alarm_id} alarm={alarm} picture={picture} actions={actions} />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
+  const unit = picture.unit(alarm.unit_id)?.value;
+  const who = unit ? displayName(unit) : alarm.unit_id || "Station";
+  const taken = alarm.state === "acknowledged";
+  return (
+    <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
+      <Icon name={taken ? "check" : "alarm"} />
+      <span class="priority">{PRIORITY[alarm.priority] ?? `Priority ${alarm.priority}`}</span>
+      <button type="button" class="who" disabled={!unit} onClick={() => select(alarm.unit_id)}>
+        {who}
+      </button>
+      <span class="what">{alarm.text}</span>
+      <span class="for" aria-live="off">
+        for {duration(picture.nowMs.value - alarm.raised_ms)}
+      </span>
+      <span class="state">{taken ? `acknowledged by ${alarm.by}` : "nobody has acknowledged"}</span>
+      {actions && mayCommand.value && <AlarmAction alarm={alarm} who={who} />}
+    </li>
+  );
+}
+
+function AlarmAction({ alarm, who }: { alarm: AlarmView; who: string }) {
+  const taken = alarm.state === "acknowledged";
+  const send = () =>
+    taken
+      ? api.resolve(alarm.alarm_id, "resolved at the console")
+      : api.acknowledge(alarm.alarm_id);
+  const word = taken ? "Resolve" : "Acknowledge";
+  return (
+    <button
+      type="button"
+      class="act"
+      aria-label={`${word}: ${alarm.text}, ${who}`}
+      onClick={() => void attempt(send())}
+    >
+      {word}
+    </button>
+  );
+}

@@ -1,0 +1,171 @@
+import type { ComponentChildren } from "preact";
+import { memo } from "preact/compat";
+import { mayCommand, openDialog, replay, select, selectedUnit } from "../app";
+import type { Picture } from "../live/picture";
+import { displayName, type Urgency } from "../live/urgency";
+import { isOld, regionAt } from "../plan/ellipse";
+import type { AlarmView, UnitView } from "../wire";
+import * as words from "../words";
+import { activityIcon, Icon, type IconName } from "./Icon";
+import { Photo } from "./Photo";
+
+interface Props {
+  unitId: string;
+  urgency: Urgency;
+  picture: Picture;
+}
+
+const LOW_BATTERY = 0.1;
+
+export const Card = memo(({ unitId, urgency, picture }: Props) => {
+  const unit = picture.unit(unitId)?.value;
+  if (unit === undefined) return null;
+  const name = displayName(unit);
+  const chosen = selectedUnit.value === unitId;
+  const unheard = unit.link === "lost" || unit.link === "never";
+  return (
+    <li
+      class={`card ${urgency} ${unheard ? "unheard" : ""} ${chosen ? "chosen" : ""}`}
+      data-unit={unitId}
+    >
+      <button
+        type="button"
+        class="card-head"
+        aria-pressed={chosen}
+        aria-label={`Show ${name} on the plan`}
+        onClick={() => select(unitId)}
+      >
+        <Photo name={name} url={unit.person?.photo_url ?? null} />
+        <span class="names">
+          <span class="name">{name}</span>
+          <span class="quiet">{crewAndRole(unit)}</span>
+        </span>
+      </button>
+      <Activity unit={unit} />
+      <OpenAlarms unit={unit} alarms={picture.alarms.value} />
+      <Facts unit={unit} picture={picture} />
+      {!unit.registered && <UnknownUnit unitId={unitId} />}
+    </li>
+  );
+});
+
+function crewAndRole(unit: UnitView): string {
+  if (unit.person === null) return unit.registered ? "nobody assigned" : "unknown unit";
+  return [unit.person.crew, unit.person.role].filter((word) => word !== "").join(" · ");
+}
+
+function Activity({ unit }: { unit: UnitView }) {
+  const mayday = unit.status?.mayday ?? false;
+  return (
+    <p class={`activity ${mayday ? "mayday" : ""}`}>
+      <Icon name={mayday ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
+      {words.activityOf(unit)}
+    </p>
+  );
+}
+
+function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<string, AlarmView> }) {
+  const open = unit.alarms.map((id) => alarms.get(id)).filter((alarm) => alarm !== undefined);
+  if (open.length === 0) return null;
+  return (
+    <ul class="card-alarms" aria-label="Open alarms of this person">
+      {open.map((alarm) => (
+        <li key={alarm.alarm_id} class={`p${alarm.priority}`}>
+          <Icon name="alarm" />
+          {alarm.text}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
+  const now = picture.nowMs.value;
+  return (
+    <dl class="facts">
+      <Where unit={unit} now={now} />
+      <Heard unit={unit} now={now} />
+      <Fact icon="heat" label="Environment" level={unit.heat_level}>
+        {words.temperature(unit.ambient_degc)}
+        {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
+      </Fact>
+      <Battery part={unit.status?.battery ?? null} />
+      <Fact icon="inside" label="Inside for">
+        {unit.inside_since_ms === null ? "—" : words.minutes(now - unit.inside_since_ms)}
+      </Fact>
+    </dl>
+  );
+}
+
+function Where({ unit, now }: { unit: UnitView; now: number }) {
+  const { position } = unit;
+  if (position === null) {
+    return (
+      <Fact icon="floor" label="Position" wide>
+        no position yet
+      </Fact>
+    );
+  }
+  const old = isOld(position, now);
+  const note = words.qualityNote(position);
+  return (
+    <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
+      {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, now).major_m)}
+      {old && <small class="old-mark">OLD: {words.duration(now - position.t_ms)}</small>}
+      {note !== "" && <small>{note}</small>}
+    </Fact>
+  );
+}
+
+function Heard({ unit, now }: { unit: UnitView; now: number }) {
+  const level = unit.link === "live" ? "" : unit.link === "stale" ? "caution" : "critical";
+  return (
+    <Fact icon={level === "" ? "linkGood" : "linkLost"} label="Last message" level={level}>
+      {unit.last_heard_ms === null ? "—" : `${words.duration(now - unit.last_heard_ms)} ago`}
+      <small>{words.linkWord(unit.link)}</small>
+    </Fact>
+  );
+}
+
+function Battery({ part }: { part: number | null }) {
+  const low = part !== null && part < LOW_BATTERY;
+  return (
+    <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
+      {words.percent(part)}
+      {low && <small>low</small>}
+    </Fact>
+  );
+}
+
+interface FactProps {
+  icon: IconName;
+  label: string;
+  level?: string;
+  wide?: boolean;
+  children: ComponentChildren;
+}
+
+function Fact({ icon, label, level = "", wide = false, children }: FactProps) {
+  return (
+    <div class={`fact ${level} ${wide ? "wide" : ""}`}>
+      <dt>
+        <Icon name={icon} />
+        {label}
+      </dt>
+      <dd>{children}</dd>
+    </div>
+  );
+}
+
+function UnknownUnit({ unitId }: { unitId: string }) {
+  return (
+    <p class="unknown">
+      Not one of ours yet: kept in the log, not believed.
+      {mayCommand.value && replay.value === null && (
+        <button type="button" onClick={() => openDialog("units", unitId)}>
+          Register
+        </button>
+      )}
+    </p>
+  );
+}

@@ -1,0 +1,20 @@
+import { dialog } from "../app";
+import { HealthDialog } from "./HealthDialog";
+import { IncidentsDialog } from "./IncidentsDialog";
+import { PeopleDialog } from "./PeopleDialog";
+import { UnitsDialog } from "./UnitsDialog";
+
+export function Dialogs() {
+  switch (dialog.value) {
+    case "incidents":
+      return <IncidentsDialog />;
+    case "people":
+      return <PeopleDialog />;
+    case "units":
+      return <UnitsDialog />;
+    case "health":
+      return <HealthDialog />;
+    default:
+      return null;
+  }
+}

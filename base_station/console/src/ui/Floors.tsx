@@ -1,0 +1,53 @@
+import { floor, type FloorChoice } from "../app";
+import type { Picture } from "../live/picture";
+import { floorsOf } from "../plan/floors";
+import { Icon } from "./Icon";
+
+/** One big button a floor, top floor on top, each with the number of people on it. */
+export function Floors({ picture }: { picture: Picture }) {
+  void picture.unitsChanged.value;
+  const units = picture.allUnits();
+  const floors = floorsOf(picture.plan.value, units, picture.alarms.value);
+  if (floors.length === 0) return null;
+  const placed = units.filter((unit) => unit.position !== null).length;
+  return (
+    <div class="floors" role="group" aria-label="Floor shown">
+      {floors.map((one) => (
+        <FloorButton
+          key={one.floor}
+          choice={one.floor}
+          name={one.name}
+          people={one.people}
+          alarmed={one.urgency === "immediate"}
+        />
+      ))}
+      <FloorButton choice="all" name="All" people={placed} alarmed={false} />
+    </div>
+  );
+}
+
+interface ButtonProps {
+  choice: FloorChoice;
+  name: string;
+  people: number;
+  alarmed: boolean;
+}
+
+function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
+  const spoken = choice === "all" ? "All floors" : `Floor ${name}`;
+  return (
+    <button
+      type="button"
+      class={`floor ${alarmed ? "alarmed" : ""}`}
+      aria-pressed={floor.value === choice}
+      aria-label={`${spoken}: ${people} people${alarmed ? ", alarm" : ""}`}
+      onClick={() => (floor.value = choice)}
+    >
+      <span class="floor-name">{name}</span>
+      <span class="floor-people">
+        {alarmed && <Icon name="alarm" />}
+        {people}
+      </span>
+    </button>
+  );
+}

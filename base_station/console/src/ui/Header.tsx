@@ -1,0 +1,94 @@
+import { leave, mayCommand, openDialog, replay, user } from "../app";
+import type { Picture } from "../live/picture";
+import { clockTime, minutes } from "../words";
+import { Icon } from "./Icon";
+
+export function Header({ picture }: { picture: Picture }) {
+  return (
+    <header class="header">
+      <IncidentTitle picture={picture} />
+      <Clock picture={picture} />
+      <HealthLight picture={picture} />
+      <LinkLight picture={picture} />
+      <nav class="menu" aria-label="Manage">
+        <button type="button" onClick={() => openDialog("incidents")}>
+          Incidents
+        </button>
+        {mayCommand.value && replay.value === null && (
+          <>
+            <button type="button" onClick={() => openDialog("units")}>
+              Units
+            </button>
+            <button type="button" onClick={() => openDialog("people")}>
+              People
+            </button>
+          </>
+        )}
+        <button type="button" onClick={() => void leave()} title={`Logged in as ${user.value?.username}`}>
+          Log out
+        </button>
+      </nav>
+    </header>
+  );
+}
+
+function IncidentTitle({ picture }: { picture: Picture }) {
+  const incident = picture.incident.value;
+  if (incident === null) {
+    return (
+      <div class="incident">
+        <h1>No incident open</h1>
+        <span class="quiet">Everything is recorded all the same</span>
+      </div>
+    );
+  }
+  const until = incident.closed_ms ?? picture.nowMs.value;
+  return (
+    <div class="incident">
+      <h1>{incident.name}</h1>
+      <span class="quiet">
+        {incident.closed_ms === null ? "open for " : "closed after "}
+        {minutes(until - incident.opened_ms)}
+      </span>
+    </div>
+  );
+}
+
+function Clock({ picture }: { picture: Picture }) {
+  const now = picture.nowMs.value;
+  return (
+    <time class="clock" dateTime={new Date(now).toISOString()}>
+      {clockTime(now)}
+    </time>
+  );
+}
+
+function HealthLight({ picture }: { picture: Picture }) {
+  const health = picture.health.value;
+  if (health === null) return null;
+  const [first, ...more] = health.problems;
+  const sentence =
+    first === undefined ? "Station is well" : more.length > 0 ? `${first} (+${more.length})` : first;
+  return (
+    <button
+      type="button"
+      class={`light ${first === undefined ? "good" : "bad"}`}
+      aria-label={`Station health: ${sentence}`}
+      onClick={() => openDialog("health")}
+    >
+      <Icon name={first === undefined ? "check" : "alarm"} />
+      <span class="sentence">{sentence}</span>
+    </button>
+  );
+}
+
+function LinkLight({ picture }: { picture: Picture }) {
+  const { kind } = picture.link.value;
+  const word = kind === "up" ? "Connected" : kind === "down" ? "Connection lost" : "Connecting";
+  return (
+    <span class={`light ${kind === "up" ? "good" : "bad"}`} data-testid="link">
+      <Icon name={kind === "up" ? "linkGood" : "linkLost"} />
+      {word}
+    </span>
+  );
+}

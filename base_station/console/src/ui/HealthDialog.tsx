@@ -1,0 +1,43 @@
+import { picture } from "../app";
+import { bytes } from "../words";
+import { Dialog } from "./Dialog";
+
+export function HealthDialog() {
+  const health = picture.value?.health.value;
+  if (!health) return null;
+  return (
+    <Dialog title="Station health">
+      {health.problems.length === 0 ? (
+        <p>The station is well.</p>
+      ) : (
+        <ul class="problems">
+          {health.problems.map((problem) => (
+            <li key={problem}>{problem}</li>
+          ))}
+        </ul>
+      )}
+      {health.insecure && (
+        <p class="problem">
+          The link to the units is not encrypted: anyone on the network can listen and speak.
+        </p>
+      )}
+      <dl class="figures">
+        <Figure name="Messages received" value={health.messages.toLocaleString("en")} />
+        <Figure name="Messages a second" value={health.messages_per_s.toFixed(1)} />
+        <Figure name="Messages that could not be read" value={String(health.undecodable)} />
+        <Figure name="Unknown units" value={String(health.unknown_units)} />
+        <Figure name="Recorded" value={bytes(health.log_bytes)} />
+        <Figure name="Free disk space" value={bytes(health.disk_free_bytes)} />
+      </dl>
+    </Dialog>
+  );
+}
+
+function Figure({ name, value }: { name: string; value: string }) {
+  return (
+    <div>
+      <dt>{name}</dt>
+      <dd>{value}</dd>
+    </div>
+  );
+}

@@ -1,0 +1,34 @@
+import { useEffect } from "preact/hooks";
+import { useSignal } from "@preact/signals";
+import type { Picture } from "../live/picture";
+import { clockTime, duration } from "../words";
+import { Icon } from "./Icon";
+
+/** When the station cannot be heard, nothing on the screen may look as if it were now. */
+export function LinkBanner({ picture }: { picture: Picture }) {
+  const link = picture.link.value;
+  const age = useSignal("");
+  const sinceMs = link.kind === "down" ? link.sinceMs : null;
+  useEffect(() => {
+    if (sinceMs === null) return undefined;
+    const tell = () => (age.value = duration(performance.now() - sinceMs));
+    tell();
+    const timer = setInterval(tell, 500);
+    return () => clearInterval(timer);
+  }, [sinceMs]);
+  if (sinceMs === null) return null;
+  const shown = picture.ready.value ? `This picture is from ${clockTime(pictureMs(picture, sinceMs))} and is not being updated.` : "";
+  return (
+    <div class="link-banner" role="alert">
+      <Icon name="linkLost" />
+      <strong>
+        Connection to the station lost <span aria-live="off">{age} ago</span>.
+      </strong>
+      <span>{shown} Trying to connect again.</span>
+    </div>
+  );
+}
+
+function pictureMs(picture: Picture, sinceMs: number): number {
+  return picture.nowMs.peek() - (performance.now() - sinceMs);
+}

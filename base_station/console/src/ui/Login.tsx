@@ -1,0 +1,44 @@
+import { useSignal } from "@preact/signals";
+import { begin } from "../app";
+import * as api from "../api";
+
+export function Login() {
+  const problem = useSignal("");
+  const busy = useSignal(false);
+
+  async function submit(event: SubmitEvent) {
+    event.preventDefault();
+    const form = new FormData(event.currentTarget as HTMLFormElement);
+    busy.value = true;
+    try {
+      begin(await api.login(String(form.get("username")), String(form.get("password"))));
+    } catch (error) {
+      problem.value = error instanceof Error ? error.message : String(error);
+    }
+    busy.value = false;
+  }
+
+  return (
+    <main class="login">
+      <form onSubmit={submit} aria-labelledby="login-title">
+        <img src="/icon.svg" alt="" width="48" height="48" />
+        <h1 id="login-title">Muster</h1>
+        <label>
+          User
+          <input name="username" autocomplete="username" required autofocus />
+        </label>
+        <label>
+          Password
+          <input name="password" type="password" autocomplete="current-password" required />
+        </label>
+        <button class="primary" disabled={busy}>
+          Log in
+        </button>
+        <p class="problem" role="alert">
+          {problem}
+        </p>
+        <p class="quiet">Muster supplements a certified PASS device and never replaces it.</p>
+      </form>
+    </main>
+  );
+}

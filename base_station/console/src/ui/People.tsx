@@ -1,0 +1,46 @@
+import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import type { Picture } from "../live/picture";
+import { arrange, sameOrder, type Place } from "../live/urgency";
+import { Card } from "./Card";
+
+/** The list of people: who needs attention first, without jumping while somebody reads. */
+export function People({ picture }: { picture: Picture }) {
+  const held = useSignal(false);
+  const places = useSignal<readonly Place[]>([]);
+  const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
+  useSignalEffect(() => {
+    void [picture.unitsChanged.value, picture.alarms.value, second.value, held.value];
+    untracked(() => {
+      const next = arrange(
+        places.value,
+        picture.allUnits(),
+        picture.alarms.value,
+        picture.nowMs.value,
+        held.value,
+      );
+      if (!sameOrder(next, places.value) || next.some(movesSoon)) places.value = next;
+    });
+  });
+  return (
+    <section
+      class="people"
+      aria-label="People"
+      onPointerEnter={() => (held.value = true)}
+      onPointerLeave={() => (held.value = false)}
+    >
+      {places.value.length === 0 ? (
+        <p class="nobody">No unit has been heard yet.</p>
+      ) : (
+        <ul class="cards">
+          {places.value.map((place) => (
+            <Card key={place.unitId} unitId={place.unitId} urgency={place.urgency} picture={picture} />
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}
+
+function movesSoon(place: Place): boolean {
+  return place.calmSinceMs !== null;
+}

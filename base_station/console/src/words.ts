@@ -1,0 +1,120 @@
+/** Numbers as a tired person reads them.  Pure. */
+import type { Link, PositionView, UnitView } from "./wire";
+
+/** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
+export function duration(ms: number): string {
+  const seconds = Math.max(0, ms) / 1000;
+  if (seconds < 10) return `${(Math.floor(seconds * 10) / 10).toFixed(1)} s`;
+  if (seconds < 60) return `${Math.floor(seconds)} s`;
+  const minutes = Math.floor(seconds / 60);
+  if (minutes < 60) return `${minutes} min ${pad(Math.floor(seconds % 60))} s`;
+  return `${Math.floor(minutes / 60)} h ${pad(minutes % 60)} min`;
+}
+
+/** A long time without the seconds: "under 1 min", "12 min", "1 h 05 min". */
+export function minutes(ms: number): string {
+  const whole = Math.floor(Math.max(0, ms) / 60_000);
+  if (whole < 1) return "under 1 min";
+  return whole < 60 ? `${whole} min` : `${Math.floor(whole / 60)} h ${pad(whole % 60)} min`;
+}
+
+/** Time of the day where the console stands. */
+export function clockTime(ms: number): string {
+  const at = new Date(ms);
+  return [at.getHours(), at.getMinutes(), at.getSeconds()].map(pad).join(":");
+}
+
+export function dateAndTime(ms: number): string {
+  const at = new Date(ms);
+  const date = [at.getFullYear(), at.getMonth() + 1, at.getDate()].map(pad).join("-");
+  return `${date} ${clockTime(ms).slice(0, 5)}`;
+}
+
+/** "± 2.1 m" while that means something, whole metres above ten. */
+export function plusMinus(radiusM: number): string {
+  return `± ${radiusM < 10 ? radiusM.toFixed(1) : Math.round(radiusM)} m`;
+}
+
+export function floorName(floor: number | null): string {
+  if (floor === null) return "floor unknown";
+  if (floor === 0) return "ground floor";
+  return floor > 0 ? `floor ${floor}` : `basement ${-floor}`;
+}
+
+export function temperature(degc: number | null): string {
+  return degc === null ? "no reading" : `${Math.round(degc)} °C`;
+}
+
+export function percent(part: number | null): string {
+  return part === null ? "unknown" : `${Math.round(part * 100)} %`;
+}
+
+const ACTIVITIES: Record<string, string> = {
+  unknown: "Unknown",
+  still: "Still",
+  walking: "Walking",
+  running: "Running",
+  stairs_up: "Stairs up",
+  stairs_down: "Stairs down",
+  crawling: "Crawling",
+  lying: "Lying",
+  falling: "Falling",
+};
+
+const SAID_MOTIONLESS_S = 10;
+
+/** What the wearer does; stillness says for how long. */
+export function activityOf(unit: UnitView): string {
+  const { status } = unit;
+  if (status === null) return "No status";
+  if (status.mayday) return "MAYDAY";
+  const word = ACTIVITIES[status.activity] ?? status.activity;
+  if (status.motionless_s < SAID_MOTIONLESS_S) return word;
+  return `${word}, motionless ${duration(status.motionless_s * 1000)}`;
+}
+
+const LINKS: Record<Link, string> = {
+  live: "Link good",
+  stale: "Link stale",
+  lost: "Link lost",
+  never: "Never heard",
+};
+
+export function linkWord(link: Link): string {
+  return LINKS[link];
+}
+
+const HEAT: Record<string, string> = {
+  "": "normal",
+  caution: "caution",
+  warning: "warning",
+  critical: "CRITICAL",
+};
+
+export function heatWord(level: string): string {
+  return HEAT[level] ?? level;
+}
+
+/** Why a position is not to be trusted fully; empty where it is good. */
+export function qualityNote(position: PositionView): string {
+  if (position.quality === "good") return "";
+  const reason = position.quality_reason.replaceAll("_", " ");
+  return reason === "" ? `tracking ${position.quality}` : `tracking ${position.quality}: ${reason}`;
+}
+
+export function initials(name: string): string {
+  const words = name.trim().split(/\s+/);
+  const letters = [words[0], words.length > 1 ? words.at(-1) : undefined];
+  return letters.map((word) => word?.[0]?.toUpperCase() ?? "").join("");
+}
+
+export function bytes(count: number): string {
+  const units = ["B", "kB", "MB", "GB", "TB"];
+  const step = count < 1 ? 0 : Math.min(Math.floor(Math.log10(count) / 3), units.length - 1);
+  const value = count / 1000 ** step;
+  return `${value < 10 && step > 0 ? value.toFixed(1) : Math.round(value)} ${units[step]}`;
+}
+
+function pad(whole: number): string {
+  return String(whole).padStart(2, "0");
+}
