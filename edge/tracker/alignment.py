@@ -51,7 +51,8 @@ def level(
 ) -> float:
     """Turn ``quaternion_nb`` (in place) so that it is level at sample ``first``.
 
-    Looks at samples before ``stop`` and at most ``ahead_s`` after ``first``.  The smallest turn that does it is taken, so the heading stays as good as it was.
+    Looks at samples before ``stop`` and at most ``ahead_s`` after ``first``.  The smallest
+    turn that does it is taken, so the heading stays as good as it was.
     Returns the tilt's standard deviation in rad.
     """
     mask = len(ring.t_ns) - 1

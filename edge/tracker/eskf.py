@@ -25,6 +25,7 @@ from edge.tracker.state import FilterState, Ring, new_filter_state, new_progress
 from edge.tracker.zero_velocity import motion_statistic, stride_minimum
 
 RING_S = 4.0  # of samples in the ring at the described rate
+MIN_RING_HZ = 200.0  # room for a description that understates the rate
 KEEP_OF_LAG = 0.66  # a release in swing keeps rows younger than this share of the lag
 
 
@@ -34,12 +35,12 @@ class EskfTracker:
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description
         self.config = config or EskfConfig()
-        rate_hz = max(description.rate_hz, 20.0)
+        rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = new_ring(slots)
         self._progress = new_progress()
         self._gate = np.zeros(1, GATE)
-        self._gate["period_s"] = 1.0 / rate_hz
+        self._gate["period_s"] = 1.0 / description.rate_hz
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._state = new_filter_state()
         self._block = slots // 4

@@ -1,0 +1,101 @@
+"""What every tracker in ``TRACKERS`` owes its callers."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch
+from edge.tracker import TRACKERS, make_tracker
+from edge.tracker.port import Quality
+from edge.tracker.rows import join_rows
+from shared.errors import ConfigError
+from tests.walking import part, walk
+
+WALK = walk(strides=5)
+
+
+@pytest.fixture(params=[entry.name for entry in TRACKERS])
+def name(request):
+    return request.param
+
+
+def run(name, imu, rows=50):
+    tracker = make_tracker(name, WALK.description)
+    batches = [
+        tracker.push(part(imu, slice(first, first + rows))) for first in range(0, len(imu), rows)
+    ]
+    return join_rows([*batches, tracker.finish()])
+
+
+def test_each_sample_gets_its_row_once_and_in_order(name):
+    rows = run(name, WALK.imu)
+    assert np.array_equal(rows.t_ns, WALK.imu.t_ns)
+
+
+def test_batching_does_not_change_a_bit(name):
+    whole = run(name, WALK.imu, rows=len(WALK.imu))
+    live = run(name, WALK.imu, rows=1)
+    for field in fields(whole):
+        assert np.array_equal(getattr(whole, field.name), getattr(live, field.name)), field.name
+
+
+def test_rows_are_final_within_a_second(name):
+    tracker = make_tracker(name, WALK.description)
+    last_ns = -1
+    for k in range(len(WALK.imu)):
+        rows = tracker.push(part(WALK.imu, slice(k, k + 1)))
+        if len(rows):
+            last_ns = int(rows.t_ns[-1])
+        assert last_ns >= WALK.imu.t_ns[k] - 1_000_000_000
+
+
+def test_shapes_and_units_are_plausible(name):
+    rows = run(name, WALK.imu)
+    n = len(rows)
+    assert rows.position_n_m.shape == rows.velocity_n_mps.shape == (n, 3)
+    assert rows.quaternion_nb.shape == (n, 4)
+    assert rows.position_cov_m2.shape == (n, 3, 3)
+    np.testing.assert_allclose(np.linalg.norm(rows.quaternion_nb, axis=1), 1.0, atol=1e-9)
+    assert np.isfinite(rows.heading_std_rad).all()
+    assert np.linalg.eigvalsh(rows.position_cov_m2).min() > -1e-9
+    assert set(np.unique(rows.quality)) <= {int(quality) for quality in Quality}
+    assert np.all(np.diff(rows.distance_m) >= 0.0)
+    assert np.all(np.diff(rows.steps) >= 0)
+
+
+def test_a_straight_walk_comes_out_straight_and_as_long(name):
+    rows = run(name, WALK.imu)
+    reached_m = np.linalg.norm(rows.position_n_m[-1, :2])
+    assert reached_m == pytest.approx(5 * 1.3, rel=0.05)
+    assert rows.steps[-1] == 5
+    assert rows.distance_m[-1] == pytest.approx(5 * 1.3, rel=0.05)
+    assert abs(rows.position_n_m[-1, 2]) < 0.2
+
+
+def test_nothing_in_nothing_out(name):
+    tracker = make_tracker(name, WALK.description)
+    empty = ImuBatch(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert len(tracker.push(empty)) == 0
+    assert len(tracker.finish()) == 0
+
+
+def test_a_single_sample_is_enough_to_finish(name):
+    tracker = make_tracker(name, WALK.description)
+    tracker.push(part(WALK.imu, slice(0, 1)))
+    assert len(tracker.finish()) == 1
+
+
+def test_samples_that_are_all_missing_still_get_rows(name):
+    imu = ImuBatch(WALK.imu.t_ns[:300], np.full((300, 3), np.nan), np.full((300, 3), np.nan))
+    rows = run(name, imu)
+    assert len(rows) == 300
+    assert np.isfinite(rows.position_n_m).all()
+    assert not np.any(rows.quality == Quality.GOOD)
+
+
+def test_an_unknown_name_is_refused_with_the_known_ones():
+    with pytest.raises(ConfigError, match="eskf"):
+        make_tracker("no-such-tracker", WALK.description)

@@ -1,0 +1,183 @@
+"""Faults of real logs: the flags and the recovery expected of each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.port import Quality, Reason
+from edge.tracker.rows import join_rows
+from tests.walking import walk
+
+WALK = walk(strides=12)
+LENGTH_M = 12 * 1.3
+IN_SWING = 2.0 + 5 * 1.2 + 0.35  # s, the middle of the sixth swing
+IN_STANCE = 2.0 + 5 * 1.2 + 0.95
+
+
+def copy():
+    imu = WALK.imu
+    return imu.t_ns.copy(), imu.accel_mps2.copy(), imu.gyro_radps.copy()
+
+
+def run(t_ns, accel, gyro, description=WALK.description):
+    tracker = EskfTracker(description)
+    rows = join_rows([tracker.push(ImuBatch(t_ns, accel, gyro)), tracker.finish()])
+    assert len(rows) == len(t_ns)
+    assert np.array_equal(rows.t_ns, t_ns)
+    assert np.isfinite(rows.position_n_m).all()
+    assert np.isfinite(rows.position_cov_m2).all()
+    return rows
+
+
+def index(t_s):
+    return int(np.searchsorted(WALK.imu.t_ns, t_s * 1e9))
+
+
+def reached_m(rows):
+    return float(np.linalg.norm(rows.position_n_m[-1, :2]))
+
+
+def flagged(rows, reason):
+    return (rows.reasons & int(reason)) != 0
+
+
+def test_a_clean_walk_raises_no_flag():
+    rows = run(*copy())
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.15)
+    assert not rows.reasons.any()
+    assert (rows.quality == Quality.GOOD).all()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30])
+def test_impossible_values_are_left_out_and_flagged(value):
+    t_ns, accel, gyro = copy()
+    accel[index(IN_SWING), 1] = value
+    gyro[index(IN_STANCE), 2] = value
+    rows = run(t_ns, accel, gyro)
+    bad = flagged(rows, Reason.BAD_SAMPLES)
+    assert list(np.flatnonzero(bad)) == [index(IN_SWING), index(IN_STANCE)]
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.2)
+
+
+def test_repeated_samples_change_nothing_but_their_own_flag():
+    t_ns, accel, gyro = copy()
+    at = np.sort(np.r_[np.arange(len(t_ns)), np.arange(300, 2000, 97)])
+    rows = run(t_ns[at], accel[at], gyro[at])
+    repeated = np.r_[False, np.diff(at) == 0]
+    assert np.array_equal(flagged(rows, Reason.BAD_SAMPLES), repeated)
+    np.testing.assert_allclose(rows.position_n_m[~repeated], run(*copy()).position_n_m, atol=1e-3)
+
+
+def test_stamps_that_go_back_are_left_out():
+    t_ns, accel, gyro = copy()
+    k = index(IN_SWING)
+    t_ns[k] = t_ns[k - 3]
+    rows = run(t_ns, accel, gyro)
+    assert list(np.flatnonzero(flagged(rows, Reason.BAD_SAMPLES))) == [k]
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.2)
+
+
+def test_late_stamps_are_put_right():
+    """Stamps of a transport that delivers every fourth sample late, with the next one."""
+    t_ns, accel, gyro = copy()
+    late = np.arange(100, len(t_ns) - 1, 4)
+    t_ns[late] = t_ns[late + 1] - 50_000
+    rows = run(t_ns, accel, gyro)
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.15)
+    assert not flagged(rows, Reason.BAD_SAMPLES).any()
+
+
+def test_a_gap_is_flagged_widens_the_uncertainty_and_heals():
+    t_ns, accel, gyro = copy()
+    first, stop = index(IN_SWING), index(IN_SWING + 0.4)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep])
+    gap = flagged(rows, Reason.SAMPLE_GAP)
+    assert not gap[:first].any()
+    assert gap[first : first + 200].all()
+    assert not gap[-200:].any()
+    assert rows.quality[first] != Quality.GOOD
+    lost_m = abs(reached_m(rows) - LENGTH_M)
+    std_m = np.sqrt(np.trace(rows.position_cov_m2[-1, :2, :2]))
+    assert std_m > 0.3
+    assert lost_m < 2.5 * std_m
+
+
+def test_a_clock_that_jumps_ahead_is_a_gap():
+    t_ns, accel, gyro = copy()
+    k = index(IN_STANCE)
+    t_ns[k:] += 3_600_000_000_000
+    rows = run(t_ns, accel, gyro)
+    assert flagged(rows, Reason.SAMPLE_GAP)[k]
+    assert rows.quality[k] == Quality.LOST
+
+
+def test_a_clock_set_back_is_followed_after_a_moment():
+    t_ns, accel, gyro = copy()
+    k = index(IN_STANCE)
+    t_ns[k:] -= 5_000_000_000
+    rows = run(t_ns, accel, gyro)
+    assert flagged(rows, Reason.BAD_SAMPLES)[k : k + 20].all()
+    assert flagged(rows, Reason.SAMPLE_GAP)[k + 30]
+    assert not flagged(rows, Reason.BAD_SAMPLES)[k + 40 :].any()
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.3)
+
+
+def test_a_sensor_that_hangs_mid_swing_is_noticed():
+    t_ns, accel, gyro = copy()
+    first, stop = index(IN_SWING), index(IN_SWING + 0.25)
+    accel[first:stop], gyro[first:stop] = accel[first], gyro[first]
+    rows = run(t_ns, accel, gyro)
+    assert flagged(rows, Reason.BAD_SAMPLES)[first + 10 : stop].all()
+    assert not flagged(rows, Reason.BAD_SAMPLES)[stop:].any()
+
+
+def test_a_clipped_gyroscope_is_flagged_and_widens_the_uncertainty():
+    t_ns, accel, gyro = copy()
+    full_scale = 0.7 * np.abs(gyro).max()
+    description = SensorDescription("clipping", 200.0, gyro_full_scale_radps=full_scale)
+    rows = run(t_ns, accel, np.clip(gyro, -full_scale, full_scale), description)
+    clipped = np.abs(gyro).max(axis=1) >= full_scale
+    assert flagged(rows, Reason.GYRO_SATURATED)[clipped].all()
+    assert not flagged(rows, Reason.GYRO_SATURATED)[:300].any()
+    honest = run(*copy())
+    assert rows.heading_std_rad[-1] > 2.0 * honest.heading_std_rad[-1]
+    assert np.trace(rows.position_cov_m2[-1]) > np.trace(honest.position_cov_m2[-1])
+
+
+def test_a_clipped_accelerometer_is_flagged():
+    t_ns, accel, gyro = copy()
+    description = SensorDescription("clipping", 200.0, accel_full_scale_mps2=15.0)
+    rows = run(t_ns, np.clip(accel, -15.0, 15.0), gyro, description)
+    assert flagged(rows, Reason.ACCEL_SATURATED).any()
+
+
+def test_no_stance_is_degraded_then_lost():
+    """Shaken without a rest: the tracker must not stay confident."""
+    noise = np.random.default_rng(3)
+    t_ns = np.arange(0, 20 * 200) * 5_000_000
+    accel = np.array([0.0, 0.0, -9.8]) + noise.normal(0.0, 30.0, (len(t_ns), 3))
+    gyro = noise.normal(0.0, 6.0, (len(t_ns), 3))
+    rows = run(t_ns, accel, gyro)
+    assert flagged(rows, Reason.ALIGNING)[0]
+    assert flagged(rows, Reason.NO_STANCE)[1000]
+    assert rows.quality[-1] == Quality.LOST
+
+
+@pytest.mark.parametrize("described_hz", [50.0, 100.0, 400.0, 1000.0])
+def test_a_wrong_described_rate_does_no_harm(described_hz):
+    t_ns, accel, gyro = copy()
+    rows = run(t_ns, accel, gyro, SensorDescription("wrong", described_hz))
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.3)
+
+
+def test_a_start_on_the_move_finds_its_feet():
+    first = index(2.3)  # in the first swing
+    t_ns, accel, gyro = copy()
+    rows = run(t_ns[first:], accel[first:], gyro[first:])
+    missing_m = WALK.position_n_m[first, 0]
+    assert reached_m(rows) == pytest.approx(LENGTH_M - missing_m, abs=0.5)
+    assert rows.quality[-1] == Quality.GOOD

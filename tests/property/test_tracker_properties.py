@@ -1,0 +1,100 @@
+"""What holds for the default tracker whatever the walk."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from itertools import pairwise
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from edge.samples import ImuBatch
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.rows import join_rows
+from edge.tracker.strapdown import rotation_matrix
+from tests.walking import part, walk
+
+WALK = walk(strides=6, gyro_bias_radps=(0.002, -0.004, 0.003), accel_bias_mps2=(0.05, 0.0, -0.1))
+
+
+def run(imu, description=WALK.description, cuts=()):
+    tracker = EskfTracker(description)
+    edges = [0, *sorted(cuts), len(imu)]
+    batches = [tracker.push(part(imu, slice(a, b))) for a, b in pairwise(edges)]
+    return join_rows([*batches, tracker.finish()])
+
+
+WHOLE = run(WALK.imu)
+
+
+def turned(imu, rotation):
+    return ImuBatch(imu.t_ns, imu.accel_mps2 @ rotation.T, imu.gyro_radps @ rotation.T)
+
+
+def random_rotation(seed):
+    q, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))
+    return q * np.linalg.det(q)
+
+
+@settings(max_examples=15, deadline=None)
+@given(cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40))
+def test_batching_does_not_change_a_bit(cuts):
+    rows = run(WALK.imu, cuts=cuts)
+    for field in fields(rows):
+        assert np.array_equal(getattr(rows, field.name), getattr(WHOLE, field.name)), field.name
+
+
+def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
+    tracker = EskfTracker(WALK.description)
+    released = []
+    for k in range(len(WALK.imu)):
+        rows = tracker.push(part(WALK.imu, slice(k, k + 1)))
+        if len(rows):
+            assert WALK.imu.t_ns[k] - rows.t_ns[0] <= 1_000_000_000
+            released.append(rows)
+    live = join_rows([*released, tracker.finish()])
+    assert np.array_equal(live.t_ns, WALK.imu.t_ns)
+    for field in fields(live):
+        assert np.array_equal(getattr(live, field.name), getattr(WHOLE, field.name)), field.name
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 10_000))
+def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
+    rows = run(turned(WALK.imu, random_rotation(seed)))
+    reach_m = np.linalg.norm(rows.position_n_m[:, :2], axis=1)
+    expected_m = np.linalg.norm(WHOLE.position_n_m[:, :2], axis=1)
+    np.testing.assert_allclose(reach_m, expected_m, atol=2e-3)
+    np.testing.assert_allclose(rows.position_n_m[:, 2], WHOLE.position_n_m[:, 2], atol=2e-3)
+    assert np.array_equal(rows.stationary, WHOLE.stationary)
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 10_000))
+def test_attitude_stays_orthonormal_and_covariance_positive(seed):
+    noise = np.random.default_rng(seed)
+    shaken = ImuBatch(
+        WALK.imu.t_ns,
+        WALK.imu.accel_mps2 + noise.normal(0.0, 3.0, WALK.imu.accel_mps2.shape),
+        WALK.imu.gyro_radps + noise.normal(0.0, 0.5, WALK.imu.gyro_radps.shape),
+    )
+    rows = run(shaken)
+    matrix = np.zeros((3, 3))
+    for quaternion in rows.quaternion_nb[::50]:
+        rotation_matrix(quaternion, matrix)
+        np.testing.assert_allclose(matrix @ matrix.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(matrix) > 0.0
+    covariance = rows.position_cov_m2
+    np.testing.assert_allclose(covariance, covariance.transpose(0, 2, 1), rtol=1e-9, atol=1e-15)
+    assert np.linalg.eigvalsh(covariance).min() > -1e-12
+    assert np.isfinite(rows.position_n_m).all()
+
+
+def test_the_filter_covariance_stays_symmetric_positive():
+    tracker = EskfTracker(WALK.description)
+    for first in range(0, len(WALK.imu), 100):
+        tracker.push(part(WALK.imu, slice(first, first + 100)))
+        covariance = tracker._state.covariance
+        np.testing.assert_allclose(covariance, covariance.T, rtol=1e-7, atol=1e-14)
+        assert np.linalg.eigvalsh(0.5 * (covariance + covariance.T)).min() >= -1e-12

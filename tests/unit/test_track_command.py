@@ -1,0 +1,84 @@
+"""``muster track`` and ``muster bench track`` from a recording on disk."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from edge.bench_track import bench_track, find_trials
+from edge.track_command import COLUMNS, track
+from shared.errors import UserError
+from tests.walking import walk
+
+HEADER = "t_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,gyro_x_radps,gyro_y_radps,gyro_z_radps"
+
+
+@pytest.fixture
+def trial(tmp_path):
+    folder = tmp_path / "walks" / "made" / "straight"
+    folder.mkdir(parents=True)
+    recorded = walk(strides=4)
+    table = np.column_stack(
+        (recorded.imu.t_ns * 1e-9, recorded.imu.accel_mps2, recorded.imu.gyro_radps)
+    )
+    np.savetxt(folder / "imu.csv", table, delimiter=",", header=HEADER, comments="")
+    truth = recorded.position_n_m[::20]
+    np.savetxt(
+        folder / "truth.csv",
+        np.column_stack((recorded.imu.t_ns[::20] * 1e-9, truth[:, 0], -truth[:, 1], -truth[:, 2])),
+        delimiter=",",
+        header="t_s,x_m,y_m,z_m",
+        comments="",
+    )
+    about = {"dataset": "made", "trial": "straight", "rate_hz": 200.0, "sensor": "none"}
+    (folder / "trial.json").write_text(json.dumps(about))
+    return folder
+
+
+def invoke(command, *arguments):
+    app = typer.Typer()
+    app.command()(command)
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_track_writes_a_line_a_sample(trial, tmp_path):
+    out = tmp_path / "track.csv"
+    invoke(track, trial, "--out", out)
+    lines = out.read_text().splitlines()
+    assert lines[0] == COLUMNS
+    assert lines[0].startswith("t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m")
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
+    assert len(table) == len((trial / "imu.csv").read_text().splitlines()) - 1
+    assert np.linalg.norm(table[-1, 1:3]) == pytest.approx(4 * 1.3, abs=0.2)
+    assert np.all(np.diff(table[:, 0]) > 0.0)
+
+
+def test_a_place_that_cannot_be_written_is_said(trial, tmp_path):
+    app = typer.Typer()
+    app.command()(track)
+    result = CliRunner().invoke(app, [str(trial), "--out", str(tmp_path / "no" / "where.csv")])
+    assert isinstance(result.exception, UserError)
+    assert "--out" in str(result.exception)
+
+
+def test_bench_scores_every_trial_as_table_and_json(trial, tmp_path):
+    json_file = tmp_path / "figures.json"
+    output = invoke(bench_track, trial.parents[1], "--json", json_file)
+    assert "made" in output
+    report = json.loads(json_file.read_text())
+    (figures,) = report["trials"]
+    assert figures["trial"] == "straight"
+    assert figures["ate_m"] < 0.1
+    assert figures["vertical_rms_m"] < 0.1
+    assert report["datasets"]["made"]["ate_m"]["mean"] == pytest.approx(figures["ate_m"])
+
+
+def test_a_folder_without_trials_is_an_error(tmp_path):
+    with pytest.raises(UserError, match="trials"):
+        find_trials(tmp_path)

@@ -1,0 +1,135 @@
+"""The filter's linear model against finite differences of what it linearises."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.tracker.error_model import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    GYRO_BIAS,
+    POSITION,
+    SIZE,
+    VELOCITY,
+    propagate,
+    transition_matrix,
+    update_one,
+)
+from edge.tracker.strapdown import (
+    GRAVITY_MPS2,
+    advance,
+    quaternion_from_rotation,
+    rotate_attitude,
+    rotate_navigation,
+    rotation_matrix,
+)
+
+DT_S = 1e-3
+STEP = 1e-6
+
+
+def _random_state(seed):
+    noise = np.random.default_rng(seed)
+    quaternion = noise.standard_normal(4)
+    return {
+        "position": noise.standard_normal(3),
+        "velocity": noise.standard_normal(3),
+        "quaternion": quaternion / np.linalg.norm(quaternion),
+        "gyro_bias": 0.1 * noise.standard_normal(3),
+        "accel_bias": 0.1 * noise.standard_normal(3),
+        "accel": 20.0 * noise.standard_normal(3),
+        "gyro": 3.0 * noise.standard_normal(3),
+    }
+
+
+def _perturbed(state, error):
+    quaternion = state["quaternion"].copy()
+    rotate_navigation(quaternion, *error[ATTITUDE : ATTITUDE + 3])
+    return state | {
+        "position": state["position"] + error[POSITION : POSITION + 3],
+        "velocity": state["velocity"] + error[VELOCITY : VELOCITY + 3],
+        "quaternion": quaternion,
+        "gyro_bias": state["gyro_bias"] + error[GYRO_BIAS : GYRO_BIAS + 3],
+        "accel_bias": state["accel_bias"] + error[ACCEL_BIAS : ACCEL_BIAS + 3],
+    }
+
+
+def _advanced(state):
+    position, velocity = state["position"].copy(), state["velocity"].copy()
+    quaternion, rotation, force = state["quaternion"].copy(), np.eye(3), np.zeros(3)
+    accel, gyro = state["accel"] - state["accel_bias"], state["gyro"] - state["gyro_bias"]
+    advance(
+        position, velocity, quaternion, rotation, accel, gyro, GRAVITY_MPS2, DT_S, force,
+        np.zeros(3),
+    )  # fmt: skip
+    return position, velocity, quaternion, rotation, force
+
+
+def _attitude_error(quaternion_true, quaternion):
+    true, estimated = np.zeros((3, 3)), np.zeros((3, 3))
+    rotation_matrix(quaternion_true, true)
+    rotation_matrix(quaternion, estimated)
+    turn = true @ estimated.T
+    return 0.5 * np.array(
+        [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
+    )
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_transition_is_the_derivative_of_the_strapdown_step(seed):
+    state = _random_state(seed)
+    position, velocity, quaternion, rotation, force = _advanced(state)
+    numeric = np.zeros((SIZE, SIZE))
+    for column in range(SIZE):
+        error = np.zeros(SIZE)
+        error[column] = STEP
+        p, v, q, _, _ = _advanced(_perturbed(state, error))
+        numeric[POSITION : POSITION + 3, column] = (p - position) / STEP
+        numeric[VELOCITY : VELOCITY + 3, column] = (v - velocity) / STEP
+        numeric[ATTITUDE : ATTITUDE + 3, column] = _attitude_error(q, quaternion) / STEP
+        numeric[GYRO_BIAS:, column] = error[GYRO_BIAS:] / STEP
+    # Terms of second order in the interval are left out on purpose.
+    np.testing.assert_allclose(transition_matrix(rotation, force, DT_S), numeric, atol=2e-5)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sparse_propagation_is_the_dense_product(seed):
+    noise = np.random.default_rng(seed)
+    root = noise.standard_normal((SIZE, SIZE))
+    covariance = root @ root.T
+    state = _random_state(seed)
+    _, _, _, rotation, force = _advanced(state)
+    matrix = transition_matrix(rotation, force, 0.02)
+    expected = matrix @ covariance @ matrix.T
+    propagate(covariance, rotation, force, 0.02)
+    np.testing.assert_allclose(covariance, expected, rtol=1e-12, atol=1e-12)
+    assert np.array_equal(covariance, covariance.T)
+
+
+@pytest.mark.parametrize("index", [POSITION, VELOCITY + 1, GYRO_BIAS + 2])
+def test_scalar_update_is_the_joseph_form(index):
+    noise = np.random.default_rng(index)
+    root = noise.standard_normal((SIZE, SIZE))
+    before = root @ root.T
+    row = np.zeros((1, SIZE))
+    row[0, index] = 1.0
+    gain = before @ row.T / (before[index, index] + 0.3)
+    kept = np.eye(SIZE) - gain @ row
+    expected = kept @ before @ kept.T + 0.3 * gain @ gain.T
+    after, error, found = before.copy(), np.zeros(SIZE), np.zeros(SIZE)
+    weight = update_one(after, error, index, 2.0, 0.3, found)
+    np.testing.assert_allclose(after, expected, atol=1e-9)
+    np.testing.assert_allclose(error, 2.0 * gain[:, 0])
+    np.testing.assert_allclose(found, gain[:, 0])
+    assert weight == pytest.approx(1.0 / (before[index, index] + 0.3))
+
+
+def test_rotation_vector_turns_about_its_axis():
+    quaternion = np.array([1.0, 0.0, 0.0, 0.0])
+    for _ in range(9):
+        rotate_attitude(quaternion, np.radians([0.0, 0.0, 10.0]))
+    matrix = np.zeros((3, 3))
+    rotation_matrix(quaternion, matrix)
+    np.testing.assert_allclose(matrix @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(quaternion_from_rotation(matrix), quaternion, atol=1e-12)
