@@ -43,15 +43,16 @@ class ImuErrors:
 
 IDEAL_IMU = ImuErrors(TriadErrors(), TriadErrors())
 
-# Data-sheet figures of the consumer class (BMI270, ICM-42688, LSM6DSO), after soldering.
+# Data-sheet noise of the consumer class (BMI270, ICM-42688, LSM6DSO); scale and axes as they are
+# left by a calibration at the bench.
 CONSUMER_IMU = ImuErrors(
     accel=TriadErrors(
         noise_density=1.5e-3,
         bias_std=0.10,
         bias_walk=1e-4,
         bias_per_degc_std=2e-3,
-        scale_std=0.003,
-        misalignment_std_rad=radians(0.3),
+        scale_std=0.002,
+        misalignment_std_rad=radians(0.12),
         full_scale=16 * GRAVITY_MPS2,
         resolution=32 * GRAVITY_MPS2 / 2**16,
     ),
@@ -59,10 +60,10 @@ CONSUMER_IMU = ImuErrors(
         noise_density=radians(0.007),
         bias_std=radians(0.3),
         bias_walk=radians(0.0005),
-        bias_per_degc_std=radians(0.01),
-        scale_std=0.003,
-        misalignment_std_rad=radians(0.3),
-        g_sensitivity_std=radians(0.01),
+        bias_per_degc_std=radians(0.005),
+        scale_std=0.002,
+        misalignment_std_rad=radians(0.12),
+        g_sensitivity_std=radians(0.005),
         full_scale=radians(2000),
         resolution=radians(4000) / 2**16,
     ),

@@ -6,18 +6,21 @@ Points are (north, east) in metres in the site frame.  The same names are the
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
 Point = tuple[float, float]
+Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
+Seconds = Annotated[float, Meta(gt=0.0, le=1e6)]
 Pace = Literal["search", "walk", "hurry", "run", "sprint"]
 
 
 class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):
     """Go along straight lines through points on the same floor."""
 
-    to: tuple[Point, ...]
+    to: Points
     pace: Pace = "walk"
 
 
@@ -26,13 +29,13 @@ class Stairs(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=Tr
 
     to: Point
     rise_m: float
-    risers: int
+    risers: Annotated[int, Meta(ge=1, le=200)]
 
 
 class Stand(msgspec.Struct, frozen=True, tag="stand", forbid_unknown_fields=True):
     """Stand still."""
 
-    duration_s: float
+    duration_s: Seconds
 
 
 class Turn(msgspec.Struct, frozen=True, tag="turn", forbid_unknown_fields=True):
@@ -44,14 +47,14 @@ class Turn(msgspec.Struct, frozen=True, tag="turn", forbid_unknown_fields=True):
 class Lie(msgspec.Struct, frozen=True, tag="lie", forbid_unknown_fields=True):
     """Lie down (or fall), stay without any motion, get up again."""
 
-    duration_s: float
+    duration_s: Seconds
     fall: bool = False
 
 
 class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True):
     """Go on hands and knees, the toes dragging, along straight lines."""
 
-    to: tuple[Point, ...]
+    to: Points
 
 
 Leg = Walk | Stairs | Stand | Turn | Lie | Crawl

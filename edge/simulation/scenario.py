@@ -5,9 +5,10 @@ from __future__ import annotations
 import tomllib
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
 from edge.simulation.legs import Leg, Point
 from shared.errors import ConfigError
@@ -19,9 +20,11 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     name: str
     summary: str
-    legs: tuple[Leg, ...]
+    legs: Annotated[tuple[Leg, ...], Meta(min_length=1)]
     loop: tuple[Leg, ...] = ()  # done again and again after ``legs`` until ``duration_s``
-    duration_s: float = 3600.0  # of the looping; without a loop the walk ends with its legs
+    duration_s: Annotated[float, Meta(ge=1.0, le=1e6)] = (
+        3600.0  # of the looping; without a loop the walk ends with its legs
+    )
     start: Point = (0.0, 0.0)
     heading_deg: float = 0.0
     down_m: float = 0.0
@@ -29,9 +32,14 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     anchor: Anchor | None = None  # of the site frame; the training house's when left out
     ambient_degc: tuple[tuple[float, float], ...] = ((0.0, 18.0),)  # (time, value), linear between
     radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)
-    battery_start: float = 0.95
-    battery_life_s: float = 6 * 3600.0  # from full to empty
-    rate_hz: float = 200.0
+    battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
+    battery_life_s: Annotated[float, Meta(ge=1.0)] = 6 * 3600.0  # from full to empty
+    rate_hz: Annotated[float, Meta(ge=20.0, le=5000.0)] = 200.0
+
+    def __post_init__(self) -> None:
+        times_s = [t_s for t_s, _ in self.ambient_degc]
+        if not times_s or times_s != sorted(times_s):
+            raise ValueError("ambient_degc must be [time, value] pairs in order of time")
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -48,30 +56,15 @@ def read_scenario(path: Path) -> Scenario:
     table = {"name": path.stem, "summary": f"from {path.name}", **table}
     _check_keys(path, "scenario", table, Scenario)
     for member in ("legs", "loop"):
-        for index, leg in enumerate(table.get(member, ())):
+        legs = table.get(member, [])
+        if not isinstance(legs, list):
+            raise ConfigError(f"{path}: {member} must be a list; write each leg below [[{member}]]")
+        for index, leg in enumerate(legs):
             _check_leg(path, f"{member}[{index}]", leg)
     try:
-        scenario = msgspec.convert(table, Scenario)
+        return msgspec.convert(table, Scenario)
     except msgspec.ValidationError as error:
         raise ConfigError(f"{path}: {error}") from error
-    _check_values(path, scenario)
-    return scenario
-
-
-def _check_values(path: Path, scenario: Scenario) -> None:
-    for name, value, low, high in (
-        ("rate_hz", scenario.rate_hz, 20.0, 5000.0),
-        ("duration_s", scenario.duration_s, 1.0, 1e6),
-        ("battery_start", scenario.battery_start, 0.0, 1.0),
-        ("battery_life_s", scenario.battery_life_s, 1.0, 1e9),
-    ):
-        if not low <= value <= high:
-            raise ConfigError(f"{path}: {name} is {value:g}; it must be in {low:g} ... {high:g}")
-    if not scenario.legs:
-        raise ConfigError(f"{path}: legs is empty; say at least one thing to do")
-    times_s = [t_s for t_s, _ in scenario.ambient_degc]
-    if not times_s or times_s != sorted(times_s):
-        raise ConfigError(f"{path}: ambient_degc must be [time, value] pairs in order of time")
 
 
 def _check_leg(path: Path, place: str, leg: Any) -> None:

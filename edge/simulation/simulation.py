@@ -148,9 +148,9 @@ class Simulation:
         return np.asarray(np.interp(t_s, times_s, values), dtype=np.float64)
 
     def _imu_temperature_degc(self, t_s: Floats) -> Floats:
-        """Self-heating after switching on, and a little of what is around."""
+        """What is left of the warm-up, and a little of what is around."""
         around = self.ambient_degc(t_s)
-        warming_degc = 9.0 * (1.0 - np.exp(-t_s / 240.0))
+        warming_degc = 5.0 * (1.0 - np.exp(-t_s / 300.0))
         return 22.0 + warming_degc + 0.05 * (around - 22.0)
 
 
