@@ -1,0 +1,33 @@
+"""Alarm rules, one a file, in the order in which the console lists them.
+
+To add one: write ``base_station/alarms/<name>.py`` with a frozen dataclass that has the
+attributes and the one method of ``AlarmRule`` (see ``port``), thresholds as fields with their
+defaults, and name it in ``ALARMS``.  A rule only judges a unit's state at an instant; raising,
+acknowledging, resolving, latching and hysteresis in time are the ``AlarmBook``'s.  The suite
+``tests/contracts/test_alarms.py`` runs over every entry.
+"""
+
+from __future__ import annotations
+
+from base_station.alarms.battery import Battery
+from base_station.alarms.fall import Fall
+from base_station.alarms.heat import Heat
+from base_station.alarms.link_lost import LinkLost
+from base_station.alarms.mayday import Mayday
+from base_station.alarms.no_motion import NoMotion
+from base_station.alarms.port import AlarmRule
+from base_station.alarms.tracker_degraded import TrackerDegraded
+from base_station.alarms.unit_fault import UnitFault
+from base_station.alarms.unknown_unit import UnknownUnit
+
+ALARMS: tuple[AlarmRule, ...] = (
+    Mayday(),
+    Fall(),
+    NoMotion(),
+    Heat(),
+    Battery(),
+    LinkLost(),
+    TrackerDegraded(),
+    UnitFault(),
+    UnknownUnit(),
+)

@@ -1,0 +1,32 @@
+"""The unit's battery is nearly empty."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    low: float = 0.10
+    hysteresis: float = 0.05
+    name: str = "battery"
+    levels: tuple[str, ...] = ("low",)
+    clear_after_s: float = 30.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.status is None or unit.status.battery is None:
+            return None
+        battery = unit.status.battery
+        if battery >= self.low + (self.hysteresis if level else 0.0):
+            return Clear(unit.status_ns, "battery charged or changed")
+        return Finding(
+            "low",
+            SOON,
+            f"The battery of {unit.name}'s unit is at {battery:.0%}",
+            seen_ns=unit.status_ns,
+        )

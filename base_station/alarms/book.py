@@ -1,0 +1,182 @@
+"""The life of alarms: raised, acknowledged, resolved, and each change told.
+
+A rule judges; the book decides what becomes of the alarm.  It keeps an alarm from flapping
+(evidence must stay clear for a time), never resolves one because time passed without news, and
+keeps a latched one until a person resolves it.  A rule that fails is reported and the others
+go on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from base_station.alarms.port import SOON, AlarmRule, Clear, Finding, Verdict
+from base_station.live_state import Alarm, StationState, UnitState
+from shared.clock import NS_PER_S
+from shared.messages import AlarmState
+
+HISTORY = 50  # resolved alarms kept at hand; the store has all of them
+STATION_RULE = "station"
+
+
+class AlarmBook:
+    """Keeps ``state.alarms``; every method yields or returns the alarms that changed."""
+
+    def __init__(self, rules: Sequence[AlarmRule]) -> None:
+        self._rules = tuple(rules)
+
+    def review(self, state: StationState, unit: UnitState) -> Iterator[Alarm]:
+        """Let every rule judge the unit as it is now."""
+        for rule in self._rules:
+            if not (unit.registered or rule.for_strangers):
+                continue
+            key = f"{rule.name}|{unit.unit_id}"
+            current = state.alarms.get(key)
+            level = current.level if current is not None and current.is_open else ""
+            try:
+                verdict = rule.judge(unit, state.t_ns, level)
+            except Exception as error:  # noqa: BLE001  # one bad rule must not silence the others
+                yield from self.problem(
+                    state,
+                    f"rule-{rule.name}",
+                    f"The alarm rule {rule.name!r} failed for {unit.unit_id} and did not judge: "
+                    f"{error!r}",
+                )
+                continue
+            changed = self._follow(state, rule, key, unit.unit_id, verdict)
+            if changed is not None:
+                yield changed
+
+    def problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
+        """A part of the station itself fails or, without a text, is well again."""
+        key = f"{STATION_RULE}|{part}"
+        current = state.alarms.get(key)
+        standing = current is not None and current.is_open
+        if text:
+            state.problems[part] = text
+            if not standing:
+                alarm_id = f"{STATION_RULE}:{part}:{state.t_ns}"
+                finding = Finding(part, SOON, text, seen_ns=state.t_ns)
+                yield self._raise(state, key, alarm_id, STATION_RULE, "", finding)
+        else:
+            state.problems.pop(part, None)
+            if current is not None and standing:
+                yield _resolve(state, current, "works again")
+
+    def acknowledge(self, state: StationState, alarm_id: str, by: str) -> Alarm | str:
+        """The alarm, or for a person why nothing came of it."""
+        alarm = _open_alarm(state, alarm_id)
+        if alarm is None:
+            return f"no open alarm {alarm_id}"
+        if alarm.state is AlarmState.ACKNOWLEDGED:
+            return f"{alarm.by} has acknowledged it already"
+        alarm.state, alarm.by, alarm.changed_ns = AlarmState.ACKNOWLEDGED, by, state.t_ns
+        return alarm
+
+    def resolve(self, state: StationState, alarm_id: str, by: str, note: str) -> Alarm | str:
+        """The alarm, or for a person why nothing came of it."""
+        alarm = _open_alarm(state, alarm_id)
+        if alarm is None:
+            return f"no open alarm {alarm_id}"
+        alarm.held = True
+        if alarm.rule == STATION_RULE:
+            state.problems.pop(alarm.level, None)
+        return _resolve(state, alarm, f"{by}: {note}" if note else by)
+
+    def _follow(
+        self, state: StationState, rule: AlarmRule, key: str, unit_id: str, verdict: Verdict
+    ) -> Alarm | None:
+        current = state.alarms.get(key)
+        if verdict is None:
+            return None
+        if isinstance(verdict, Clear):
+            return None if current is None else _clear(state, rule, current, verdict)
+        if current is None or (not current.is_open and _is_new(state, rule, current, verdict)):
+            alarm_id = f"{rule.name}:{unit_id}:{state.t_ns}"
+            return self._raise(state, key, alarm_id, rule.name, unit_id, verdict)
+        return _move_level(state, rule, current, verdict) if current.is_open else None
+
+    def _raise(
+        self,
+        state: StationState,
+        key: str,
+        alarm_id: str,
+        rule_name: str,
+        unit_id: str,
+        finding: Finding,
+    ) -> Alarm:
+        alarm = Alarm(
+            alarm_id=alarm_id,
+            rule=rule_name,
+            unit_id=unit_id,
+            priority=finding.priority,
+            state=AlarmState.RAISED,
+            level=finding.level,
+            text=finding.text,
+            by="",
+            latched=finding.latched,
+            raised_ns=state.t_ns,
+            changed_ns=state.t_ns,
+        )
+        state.alarms[key] = alarm
+        return alarm
+
+
+def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Finding) -> bool:
+    """Whether what is found is another matter than the alarm that was resolved."""
+    if not resolved.held or finding.onset_ns > resolved.changed_ns:
+        return True
+    if rule.levels.index(finding.level) > rule.levels.index(resolved.level):
+        return True
+    since_ns = state.t_ns - resolved.changed_ns
+    return rule.rearm_after_s is not None and since_ns >= rule.rearm_after_s * NS_PER_S
+
+
+def _move_level(
+    state: StationState, rule: AlarmRule, alarm: Alarm, finding: Finding
+) -> Alarm | None:
+    """Worse at once, and to be acknowledged anew; better once the evidence stays so."""
+    alarm.clear_since_ns = None
+    rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
+    if rank == standing or (rank < standing and alarm.latched):
+        alarm.lower_since_ns = None
+        return None
+    if rank < standing:
+        if alarm.lower_since_ns is None:
+            alarm.lower_since_ns = finding.seen_ns
+        if finding.seen_ns - alarm.lower_since_ns < rule.clear_after_s * NS_PER_S:
+            return None
+    else:
+        alarm.state, alarm.by = AlarmState.RAISED, ""
+    alarm.lower_since_ns = None
+    alarm.level, alarm.priority, alarm.text = finding.level, finding.priority, finding.text
+    alarm.latched = alarm.latched or finding.latched
+    alarm.changed_ns = state.t_ns
+    return alarm
+
+
+def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:
+    if not alarm.is_open:
+        alarm.held = False
+        return None
+    if alarm.latched:
+        return None
+    if alarm.clear_since_ns is None:
+        alarm.clear_since_ns = clear.seen_ns
+    if clear.seen_ns - alarm.clear_since_ns < rule.clear_after_s * NS_PER_S:
+        return None
+    return _resolve(state, alarm, clear.by)
+
+
+def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
+    alarm.state, alarm.by, alarm.changed_ns = AlarmState.RESOLVED, by, state.t_ns
+    alarm.clear_since_ns = alarm.lower_since_ns = None
+    state.history = [*state.history[1 - HISTORY :], alarm]
+    return alarm
+
+
+def _open_alarm(state: StationState, alarm_id: str) -> Alarm | None:
+    return next(
+        (alarm for alarm in state.alarms.values() if alarm.alarm_id == alarm_id and alarm.is_open),
+        None,
+    )

@@ -1,0 +1,55 @@
+"""The air around the equipment is hot, or has been for so long that the unit may fail.
+
+Thermal classes and the dose: ``base_station.thermal``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from base_station.thermal import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
+
+_PRIORITIES = {"caution": INFORMATION, "warning": SOON, "critical": IMMEDIATE}
+
+
+@dataclass(frozen=True, slots=True)
+class Heat:
+    caution_degc: float = CAUTION_DEGC
+    warning_degc: float = WARNING_DEGC
+    critical_degc: float = CRITICAL_DEGC
+    hysteresis_degc: float = 10.0
+    warning_dose: float = 1.0
+    name: str = "heat"
+    levels: tuple[str, ...] = ("caution", "warning", "critical")
+    clear_after_s: float = 10.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.temperature is None:
+            return None
+        ambient_degc = unit.temperature.ambient_degc
+        found = self._level(ambient_degc, level)
+        if unit.heat_dose >= self.warning_dose and found in {"", "caution"}:
+            found = "warning"
+        if not found:
+            return Clear(unit.temperature_ns, "cooled down")
+        return Finding(
+            found,
+            _PRIORITIES[found],
+            f"{ambient_degc:.0f} °C around the equipment of {unit.name}, "
+            f"{unit.heat_dose:.0%} of its heat budget used",
+            seen_ns=unit.temperature_ns,
+        )
+
+    def _level(self, ambient_degc: float, level: str) -> str:
+        """The worst level whose limit is reached; a level that stands is left a little below."""
+        limits = (self.caution_degc, self.warning_degc, self.critical_degc)
+        standing = self.levels.index(level) if level else -1
+        found = ""
+        for rank, (name, limit_degc) in enumerate(zip(self.levels, limits, strict=True)):
+            if ambient_degc >= limit_degc - (self.hysteresis_degc if rank <= standing else 0.0):
+                found = name
+        return found

@@ -1,0 +1,31 @@
+"""The wearer pressed the mayday button: at once, until a person at the station resolves it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import IMMEDIATE, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+
+
+@dataclass(frozen=True, slots=True)
+class Mayday:
+    name: str = "mayday"
+    levels: tuple[str, ...] = ("mayday",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.mayday_ns is None:
+            return None
+        if unit.mayday_cancelled_ns is not None and unit.mayday_cancelled_ns >= unit.mayday_ns:
+            return Clear(unit.mayday_cancelled_ns, "cancelled by the wearer")
+        return Finding(
+            "mayday",
+            IMMEDIATE,
+            f"Mayday from {unit.name}",
+            seen_ns=unit.mayday_ns,
+            onset_ns=unit.mayday_ns,
+            latched=True,
+        )

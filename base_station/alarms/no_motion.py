@@ -1,0 +1,41 @@
+"""No motion, like a PASS device, which it supplements and never replaces.
+
+Pre-alert at 20 s, alarm at 30 s (published devices: 18-20 s and 25-30 s).  Motion cancels the
+pre-alert only; the full alarm stays until a person resets it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import IMMEDIATE, SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class NoMotion:
+    pre_alert_s: float = 20.0
+    alarm_s: float = 30.0
+    name: str = "no-motion"
+    levels: tuple[str, ...] = ("pre-alert", "alarm")
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = 30.0
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.status is None:
+            return None
+        motionless_s = unit.status.motionless_s
+        seen_ns = unit.status_ns
+        if motionless_s < self.pre_alert_s:
+            return Clear(seen_ns, "motion")
+        full = motionless_s >= self.alarm_s
+        return Finding(
+            "alarm" if full else "pre-alert",
+            IMMEDIATE if full else SOON,
+            f"{unit.name} has not moved for {motionless_s:.0f} s",
+            seen_ns=seen_ns,
+            onset_ns=seen_ns - round(motionless_s * NS_PER_S),
+            latched=full,
+        )

@@ -1,0 +1,67 @@
+"""What an alarm rule is: a pure judgement of one unit at one instant."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import msgspec
+
+from base_station.live_state import UnitState
+
+IMMEDIATE, SOON, INFORMATION = 1, 2, 3  # priorities
+
+
+class Finding(msgspec.Struct, frozen=True):
+    """The unit's state calls for an alarm."""
+
+    level: str  # one of the rule's levels
+    priority: int
+    text: str  # a sentence for a person
+    seen_ns: int  # station time of the evidence
+    onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
+    latched: bool = False  # only a person resolves it
+
+
+class Clear(msgspec.Struct, frozen=True):
+    """There is evidence that nothing is the matter."""
+
+    seen_ns: int  # station time of the evidence: time passing without news clears nothing
+    by: str  # what it was that resolved the alarm
+
+
+Verdict = Finding | Clear | None  # None: nothing is known either way
+
+
+class AlarmRule(Protocol):
+    """A frozen dataclass without state of its own; its fields are its thresholds."""
+
+    @property
+    def name(self) -> str:
+        """Short, lower case, with hyphens: it is in the log for ever."""
+        ...
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """From least to worst."""
+        ...
+
+    @property
+    def clear_after_s(self) -> float:
+        """How long the evidence must stay clear, or lower, before the alarm follows it."""
+        ...
+
+    @property
+    def rearm_after_s(self) -> float | None:
+        """An alarm that a person resolved while its cause goes on is raised again after this
+        time; None: only once the cause was gone in between, or is worse.
+        """
+        ...
+
+    @property
+    def for_strangers(self) -> bool:
+        """Whether it judges units that nobody registered."""
+        ...
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
+        """``t_ns`` station time now; ``level`` that of the open alarm, empty without one."""
+        ...

@@ -1,0 +1,45 @@
+"""The unit's own tracker has not trusted its position for a while."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+from shared.quality import Quality, Reason
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerDegraded:
+    after_s: float = 15.0
+    name: str = "tracker-degraded"
+    levels: tuple[str, ...] = ("degraded", "lost")
+    clear_after_s: float = 10.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        position = unit.position
+        if position is None:
+            return None
+        if unit.degraded_since_ns is None:
+            return Clear(unit.position_ns, "the tracker is sure again")
+        if unit.position_ns - unit.degraded_since_ns < self.after_s * NS_PER_S:
+            return None
+        lost = position.quality is Quality.LOST
+        return Finding(
+            "lost" if lost else "degraded",
+            SOON,
+            f"The tracker of {unit.name}'s unit {'is lost' if lost else 'is unsure'}"
+            f" ({in_words(position.reasons)})",
+            seen_ns=unit.position_ns,
+            onset_ns=unit.degraded_since_ns,
+        )
+
+
+def in_words(reasons: Reason) -> str:
+    """A tracker's reasons for a person."""
+    return ", ".join(
+        reason.name.lower().replace("_", " ") for reason in reasons if reason.name
+    ) or ("it gives no reason")

@@ -1,0 +1,29 @@
+"""A unit says that a sensor or its storage fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Finding, Verdict
+from base_station.live_state import UnitState
+
+
+@dataclass(frozen=True, slots=True)
+class UnitFault:
+    name: str = "unit-fault"
+    levels: tuple[str, ...] = ("fault",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.fault is None:
+            return None
+        return Finding(
+            "fault",
+            SOON,
+            f"{unit.name}'s unit: {unit.fault.text}",
+            seen_ns=unit.fault.t_ns,
+            onset_ns=unit.fault.t_ns,
+            latched=True,
+        )

@@ -1,0 +1,102 @@
+"""What a fuser is: one unit's own path, with whatever else is known, as a place on the plan.
+
+A fuser sees the unit's positions in the unit's own frame (NED about its start, heading of that
+north unknown) and places in the incident frame.  It works in the unit's monotonic time, knows
+no clock, and gives the same answers for the same calls.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import msgspec
+
+from shared.messages import Position
+from shared.quality import Quality
+
+
+class PlaceFix(msgspec.Struct, frozen=True):
+    """A satellite fix that passed the screening, in the incident frame."""
+
+    t_mono_ns: int  # the unit's monotonic time at which it is valid
+    north_m: float
+    east_m: float
+    down_m: float
+    horizontal_std_m: float
+    vertical_std_m: float | None  # None: a fix without height
+
+
+class Start(msgspec.Struct, frozen=True):
+    """Where the origin of the unit's own frame lies, and the heading of its north."""
+
+    north_m: float
+    east_m: float
+    down_m: float
+    heading_rad: float
+    std_m: float
+    heading_std_rad: float  # pi and above: unknown
+
+
+class FixVerdict(msgspec.Struct, frozen=True):
+    accepted: bool
+    reason: str = ""  # why not, for a person; the same words for the same cause
+
+
+class Estimate(msgspec.Struct, frozen=True):
+    """NED metres in the incident frame."""
+
+    t_mono_ns: int  # the unit's time to which it belongs
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    correlation_ne: float
+    heading_rad: float  # of travel
+    heading_std_rad: float  # pi and above: unknown
+    quality: Quality
+    quality_reason: str
+    since_gps_s: float | None
+
+
+class Fuser(Protocol):
+    """One unit's filter."""
+
+    def start(self, start: Start) -> None:
+        """Place the unit's own frame; whatever it walked since then is walked from there."""
+        ...
+
+    def advance(self, position: Position) -> str:
+        """Follow the unit's own path; says why where a position could not be followed.
+
+        A position of another boot than the last begins a new frame where the unit now is.
+        """
+        ...
+
+    def correct(self, fix: PlaceFix) -> FixVerdict: ...
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
+        """The incident frame was moved: turn everything clockwise, then shift it."""
+        ...
+
+    def estimate(self) -> Estimate | None:
+        """None before anything is known."""
+        ...
+
+    def save(self) -> bytes:
+        """All of its state; restored, it goes on with the very same numbers."""
+        ...
+
+
+class FuserKind(Protocol):
+    """A frozen dataclass whose fields are the fuser's parameters."""
+
+    @property
+    def name(self) -> str:
+        """Short, lower case, with hyphens: it is in the log for ever."""
+        ...
+
+    def new(self) -> Fuser: ...
+
+    def restore(self, saved: bytes) -> Fuser: ...

@@ -1,0 +1,54 @@
+"""Satellite fixes that cannot be true are turned away before any filter sees them."""
+
+from __future__ import annotations
+
+import math
+
+from base_station.fusion.port import FixVerdict, PlaceFix
+from shared.geo import Anchor
+from shared.messages import FixType, GpsFix
+
+STD_FLOOR_M = 2.0  # receivers are too sure of themselves
+STD_UNSTATED_M = 10.0
+STD_ABSURD_M = 100.0
+FURTHEST_M = 50_000.0  # from the anchor
+ANCHOR_STD_M = 8.0  # the worst fix that may say where the site is
+
+
+def screen(fix: GpsFix) -> FixVerdict:
+    """What a fix tells against itself, wherever the site is."""
+    coordinates = (fix.lat_deg, fix.lon_deg, fix.height_m)
+    if fix.fix_type not in {FixType.TWO_D, FixType.THREE_D}:
+        return FixVerdict(False, "the receiver has no fix")
+    if not all(math.isfinite(value) for value in coordinates):
+        return FixVerdict(False, "coordinates that are no numbers")
+    if abs(fix.lat_deg) > 90.0 or abs(fix.lon_deg) > 180.0:
+        return FixVerdict(False, "coordinates that are not on the Earth")
+    if abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6:
+        return FixVerdict(False, "latitude and longitude 0")
+    if fix.horizontal_std_m is not None and not 0.0 < fix.horizontal_std_m <= STD_ABSURD_M:
+        return FixVerdict(False, "an accuracy that cannot be used")
+    return FixVerdict(True)
+
+
+def may_anchor(fix: GpsFix) -> bool:
+    """Whether a screened fix is good enough to say where the site is."""
+    std_m = fix.horizontal_std_m
+    return fix.fix_type is FixType.THREE_D and std_m is not None and std_m <= ANCHOR_STD_M
+
+
+def in_incident_frame(fix: GpsFix, anchor: Anchor) -> PlaceFix | FixVerdict:
+    """The screened fix where the anchor puts it, or why it cannot be there."""
+    north_m, east_m, down_m = anchor.to_incident_m(fix.lat_deg, fix.lon_deg, fix.height_m)
+    if math.hypot(north_m, east_m) > FURTHEST_M:
+        return FixVerdict(False, "too far from the site")
+    horizontal_std_m = max(fix.horizontal_std_m or STD_UNSTATED_M, STD_FLOOR_M)
+    has_height = fix.fix_type is FixType.THREE_D
+    return PlaceFix(
+        t_mono_ns=fix.header.t_mono_ns,
+        north_m=north_m,
+        east_m=east_m,
+        down_m=down_m,
+        horizontal_std_m=horizontal_std_m,
+        vertical_std_m=(fix.vertical_std_m or 2.0 * horizontal_std_m) if has_height else None,
+    )

@@ -1,0 +1,229 @@
+"""What the station knows at this instant: of every unit, of the incident and of itself.
+
+Plain data that the pipeline alone changes; all of it can be written out and read back, so that
+a station starts again from a checkpoint instead of from the beginning of the log.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+from base_station.plan import Plan
+from shared.channels import GPS, Channel
+from shared.clock import NS_PER_S
+from shared.geo import Anchor
+from shared.messages import (
+    AlarmState,
+    FusedPosition,
+    Header,
+    Position,
+    Status,
+    Temperature,
+    UnitDescription,
+)
+
+STALE_AFTER_S = 10.0
+LOST_AFTER_S = 30.0
+TRAIL_POINTS = 900  # a unit's trail in the console; the log has all of it
+TRAIL_STEP_M = 0.5
+TRAIL_STEP_NS = NS_PER_S
+TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
+SEEN_SEQUENCES = 1024
+CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
+
+Link = Literal["live", "stale", "lost", "never"]
+News = Literal["new", "old", "repeat"]  # old: a later message of the channel came before it
+
+
+class Person(msgspec.Struct, frozen=True):
+    person_id: str
+    name: str
+    crew: str
+    role: str
+
+
+class Incident(msgspec.Struct, frozen=True):
+    incident_id: str
+    name: str
+    opened_ns: int
+    closed_ns: int | None = None
+
+
+class TrailStep(msgspec.Struct, frozen=True, array_like=True):
+    t_ns: int
+    north_m: float
+    east_m: float
+    floor: int | None
+
+
+class BootState(msgspec.Struct):
+    """One run of a unit's program: which of its messages came, and how its clock stands."""
+
+    boot_id: int
+    seen: set[int] = msgspec.field(default_factory=set)
+    highest_seq: int = 0
+    offset_ns: int = 0  # station time less the unit's monotonic time, of the fastest message
+    offset_t_ns: int = 0  # station time at which that was judged
+
+    def is_repeat(self, seq: int) -> bool:
+        """Note a sequence number; True where it came before.  Far below the highest one it can
+        no longer be told, which does no harm: such a message is old news either way.
+        """
+        if seq in self.seen:
+            return True
+        self.seen.add(seq)
+        self.highest_seq = max(self.highest_seq, seq)
+        if len(self.seen) > 2 * SEEN_SEQUENCES:
+            lowest = self.highest_seq - SEEN_SEQUENCES
+            self.seen = {kept for kept in self.seen if kept > lowest}
+        return False
+
+    def note_clock(self, t_ns: int, t_mono_ns: int) -> None:
+        """The least delayed message tells the offset; it may drift by what clocks do."""
+        offset_ns = t_ns - t_mono_ns
+        drifted_ns = self.offset_ns + round((t_ns - self.offset_t_ns) * CLOCK_DRIFT)
+        if self.offset_t_ns == 0 or offset_ns < drifted_ns:
+            self.offset_ns, self.offset_t_ns = offset_ns, t_ns
+
+    def station_ns(self, t_mono_ns: int) -> int:
+        return t_mono_ns + self.offset_ns
+
+
+class Fault(msgspec.Struct, frozen=True):
+    t_ns: int
+    text: str
+
+
+class UnitState(msgspec.Struct):
+    """Times are station times of receipt unless a name says otherwise; None: never."""
+
+    unit_id: str
+    label: str = ""
+    registered: bool = False
+    person: Person | None = None
+    boots: list[BootState] = msgspec.field(default_factory=list)  # the running one last
+    heard_ns: int | None = None
+    latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
+    link: Link = "never"
+    status: Status | None = None
+    status_ns: int = 0
+    temperature: Temperature | None = None
+    temperature_ns: int = 0
+    heat_dose: float = 0.0  # 1: the equipment's heat budget is used up
+    position: Position | None = None
+    position_ns: int = 0
+    degraded_since_ns: int | None = None
+    description: UnitDescription | None = None
+    fused: FusedPosition | None = None
+    trail: list[TrailStep] = msgspec.field(default_factory=list)
+    mayday_ns: int | None = None  # when the button was last pressed
+    mayday_cancelled_ns: int | None = None
+    fall_ns: int | None = None
+    fault: Fault | None = None
+    stopped_ns: int | None = None  # said goodbye in an orderly way
+    inside_since_ns: int | None = None
+    duplicates: int = 0
+    out_of_order: int = 0
+    not_used: dict[str, int] = msgspec.field(default_factory=dict)  # fixes, path jumps; by reason
+
+    @property
+    def name(self) -> str:
+        """What a person would call the unit."""
+        return self.person.name if self.person else self.label or self.unit_id
+
+    def link_at(self, t_ns: int) -> Link:
+        if self.heard_ns is None:
+            return "never"
+        silent_s = (t_ns - self.heard_ns) / NS_PER_S
+        if silent_s >= LOST_AFTER_S:
+            return "lost"
+        return "stale" if silent_s >= STALE_AFTER_S else "live"
+
+    def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
+        """Note that a message came, and say what it is worth."""
+        boot = self._boot(header.boot_id)
+        if boot.is_repeat(header.seq):
+            self.duplicates += 1
+            return "repeat"
+        self.heard_ns = t_ns
+        if channel is not GPS:  # a receiver may be wrong about when its fix was valid
+            boot.note_clock(t_ns, header.t_mono_ns)
+        latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
+        if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
+            self.out_of_order += 1
+            return "old"
+        self.latest_mono_ns[channel.name] = header.t_mono_ns
+        self.stopped_ns = None
+        return "new"
+
+    def _boot(self, boot_id: int) -> BootState:
+        for boot in reversed(self.boots):
+            if boot.boot_id == boot_id:
+                return boot
+        self.boots = [*self.boots[-3:], BootState(boot_id)]
+        self.latest_mono_ns.clear()
+        return self.boots[-1]
+
+    def extend_trail(self, fused: FusedPosition) -> bool:
+        """Add a point where the wearer moved, at most one a second; True where one was added."""
+        if self.trail:
+            last = self.trail[-1]
+            age_ns = fused.t_meas_ns - last.t_ns
+            moved_m2 = (fused.north_m - last.north_m) ** 2 + (fused.east_m - last.east_m) ** 2
+            moved = moved_m2 >= TRAIL_STEP_M**2 or fused.floor != last.floor
+            if age_ns < (TRAIL_STEP_NS if moved else TRAIL_REST_NS):
+                return False
+        self.trail.append(TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
+        if len(self.trail) > TRAIL_POINTS:
+            del self.trail[0]
+        return True
+
+
+class Alarm(msgspec.Struct):
+    """An alarm in the book, open or resolved."""
+
+    alarm_id: str
+    rule: str
+    unit_id: str  # empty: the station itself
+    priority: int
+    state: AlarmState
+    level: str
+    text: str
+    by: str
+    latched: bool  # only a person resolves it
+    raised_ns: int
+    changed_ns: int
+    held: bool = False  # resolved by a person while the condition went on
+    clear_since_ns: int | None = None  # time of the first evidence that it is over
+    lower_since_ns: int | None = None  # time of the first evidence of a lower level
+
+    @property
+    def is_open(self) -> bool:
+        return self.state is not AlarmState.RESOLVED
+
+
+class Counts(msgspec.Struct):
+    messages: int = 0
+    undecodable: int = 0
+    last_undecodable: str = ""
+    units_left_out: int = 0  # messages of strangers beyond what is kept
+
+
+class StationState(msgspec.Struct):
+    """Everything the pipeline remembers from one event to the next."""
+
+    t_ns: int = 0  # station time of the last event
+    boot_id: int = 0  # station time of the first event: names this run of the pipeline
+    seq: int = 0  # of the last output
+    units: dict[str, UnitState] = msgspec.field(default_factory=dict)
+    alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)  # newest of each rule and unit
+    history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
+    incident: Incident | None = None
+    plan: Plan | None = None
+    anchor: Anchor | None = None
+    anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    start_set: bool = False  # somebody said where a unit began
+    problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
+    counts: Counts = msgspec.field(default_factory=Counts)

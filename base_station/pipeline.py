@@ -1,0 +1,247 @@
+"""The station's pure core: an event in, what follows from it out.
+
+Live and replay step the very same pipeline.  It has no clock (time comes with the events), asks
+nobody anything, and numbers its own outputs, so that the same events give the same outputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import assert_never
+
+import msgspec
+
+from base_station.actions import Actions
+from base_station.alarms.book import AlarmBook
+from base_station.alarms.port import AlarmRule
+from base_station.events import Output, Received, Refused, Rejected, StationEvent, UnitTouched
+from base_station.fusion.port import FuserKind
+from base_station.live_state import Alarm, Fault, StationState, UnitState
+from base_station.positioning import Positioning
+from base_station.thermal import dose_of
+from shared.channels import Direction, channel_of
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    EventKind,
+    GpsFix,
+    Header,
+    Message,
+    OperatorAction,
+    Position,
+    Status,
+    Temperature,
+    Tick,
+    UnitDescription,
+    UnitEvent,
+)
+from shared.quality import Quality
+
+MOST_STRANGERS = 200  # units that nobody registered: more are counted only
+LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
+
+
+class Checkpoint(msgspec.Struct, frozen=True):
+    """Everything the pipeline remembers."""
+
+    state: StationState
+    fuser: str
+    fusers: dict[str, bytes]
+
+
+class StationPipeline:
+    """``step`` it with events in the order of the log."""
+
+    def __init__(
+        self,
+        rules: Sequence[AlarmRule],
+        fuser_kind: FuserKind,
+        checkpoint: Checkpoint | None = None,
+    ) -> None:
+        self._fuser_kind = fuser_kind
+        usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
+        self.state = checkpoint.state if checkpoint is not None else StationState()
+        self._positioning = Positioning(
+            fuser_kind, checkpoint.fusers if checkpoint is not None and usable else {}
+        )
+        self._book = AlarmBook(rules)
+        self._actions = Actions(self._book, self._positioning)
+
+    def checkpoint(self) -> bytes:
+        """To start again from here; ``read_checkpoint`` reads it."""
+        return msgspec.msgpack.encode(
+            Checkpoint(self.state, self._fuser_kind.name, self._positioning.save())
+        )
+
+    def step(self, event: StationEvent) -> list[Output]:
+        """What follows from one event.  Never raises for what a sender or a person may do."""
+        state = self.state
+        state.t_ns = max(state.t_ns, event.t_ns)
+        state.boot_id = state.boot_id or state.t_ns
+        if isinstance(event, Rejected):
+            state.counts.undecodable += 1
+            state.counts.last_undecodable = f"{event.key}: {event.reason}"
+            return []
+        if isinstance(event, Received):
+            message = event.message
+            if isinstance(message, Tick):
+                return self._tick()
+            if isinstance(message, OperatorAction):
+                return self._act(message)
+            if channel_of(message).direction is Direction.UP:
+                return self._hear(event.unit_id, message)
+            return []  # what the station itself had decided, in a log that is stepped again
+        assert_never(event)
+
+    def _tick(self) -> list[Output]:
+        outputs: list[Output] = []
+        for unit in self.state.units.values():
+            link = unit.link_at(self.state.t_ns)
+            if link != unit.link or link in {"stale", "lost"}:  # an old position looks older
+                unit.link = link
+                outputs.append(UnitTouched(unit.unit_id))
+            outputs.extend(self._review(unit))
+        return outputs
+
+    def _act(self, message: OperatorAction) -> list[Output]:
+        try:
+            effects = self._actions.apply(self.state, message.by, message.action)
+        except UserError as error:
+            return [Refused(message.action_id, str(error))]
+        outputs: list[Output] = []
+        for effect in effects:
+            if isinstance(effect, Alarm):
+                outputs.append(self._change(effect))
+            else:
+                outputs.append(UnitTouched(effect.unit_id))
+        return outputs
+
+    def _hear(self, unit_id: str, message: Message) -> list[Output]:
+        state = self.state
+        state.counts.messages += 1
+        unit = state.units.get(unit_id) or self._stranger(unit_id)
+        if unit is None:
+            state.counts.units_left_out += 1
+            return []
+        news = unit.accept(channel_of(message), message.header, state.t_ns)
+        if news == "repeat":
+            return []
+        unit.link = unit.link_at(state.t_ns)
+        outputs: list[Output] = []
+        if news == "new" or isinstance(message, UnitEvent):
+            outputs.extend(self._observe(unit, message))
+        outputs.append(UnitTouched(unit_id))
+        outputs.extend(self._review(unit))
+        return outputs
+
+    def _stranger(self, unit_id: str) -> UnitState | None:
+        """Kept and shown, not believed."""
+        units = self.state.units
+        if sum(not unit.registered for unit in units.values()) >= MOST_STRANGERS:
+            return None
+        units[unit_id] = UnitState(unit_id)
+        return units[unit_id]
+
+    def _observe(self, unit: UnitState, message: Message) -> list[Output]:
+        t_ns = self.state.t_ns
+        match message:
+            case Position():
+                _note_position(unit, message, t_ns)
+                if unit.registered:
+                    self._positioning.follow(unit, message)
+                    return self._fuse(unit)
+            case GpsFix():
+                if unit.registered and self._positioning.fix(self.state, unit, message).accepted:
+                    return self._fuse(unit)
+            case Status():
+                _note_status(unit, message, t_ns)
+            case Temperature():
+                _note_temperature(unit, message, t_ns)
+            case UnitDescription():
+                unit.description = message
+            case UnitEvent():
+                _note_event(unit, message, t_ns)
+            case _:
+                pass  # raw samples and signs of life: that they came is all that counts here
+        return []
+
+    def _fuse(self, unit: UnitState) -> list[Output]:
+        fused = self._positioning.fused(self.state, unit, self._header())
+        return [fused] if fused is not None else []
+
+    def _review(self, unit: UnitState) -> list[Output]:
+        return [self._change(alarm) for alarm in self._book.review(self.state, unit)]
+
+    def _change(self, alarm: Alarm) -> AlarmChange:
+        return AlarmChange(
+            header=self._header(),
+            alarm_id=alarm.alarm_id,
+            rule=alarm.rule,
+            unit_id=alarm.unit_id,
+            priority=alarm.priority,
+            state=alarm.state,
+            level=alarm.level,
+            text=alarm.text,
+            by=alarm.by,
+            raised_ns=alarm.raised_ns,
+        )
+
+    def _header(self) -> Header:
+        state = self.state
+        state.seq += 1
+        return Header(STATION_ID, state.boot_id, state.seq, state.t_ns, t_utc_ns=state.t_ns)
+
+
+def read_checkpoint(saved: bytes) -> Checkpoint | None:
+    """None where another version of the program wrote it: the log has everything that matters."""
+    try:
+        return msgspec.msgpack.decode(saved, type=Checkpoint)
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return None
+
+
+def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
+    unit.position, unit.position_ns = position, t_ns
+    if position.quality is Quality.GOOD:
+        unit.degraded_since_ns = None
+    elif unit.degraded_since_ns is None:
+        unit.degraded_since_ns = t_ns
+
+
+def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
+    unit.status, unit.status_ns = status, t_ns
+    pressed = unit.mayday_ns is not None and (
+        unit.mayday_cancelled_ns is None or unit.mayday_cancelled_ns < unit.mayday_ns
+    )
+    if status.mayday and not pressed:  # the press itself may have been lost on the way
+        unit.mayday_ns = t_ns
+    elif pressed and not status.mayday:
+        unit.mayday_cancelled_ns = t_ns
+
+
+def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
+    if unit.temperature is not None:
+        elapsed_s = (temperature.header.t_mono_ns - unit.temperature.header.t_mono_ns) / NS_PER_S
+        if temperature.header.boot_id == unit.temperature.header.boot_id:
+            lasted_s = min(elapsed_s, LONGEST_DOSE_STEP_S)
+            unit.heat_dose += dose_of(unit.temperature.ambient_degc, lasted_s)
+    unit.temperature, unit.temperature_ns = temperature, t_ns
+
+
+def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    match event.kind:
+        case EventKind.MAYDAY:
+            unit.mayday_ns = t_ns
+        case EventKind.MAYDAY_CANCELLED:
+            unit.mayday_cancelled_ns = t_ns
+        case EventKind.FALL:
+            unit.fall_ns = t_ns
+        case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
+            said = event.detail or event.kind.name.lower().replace("_", " ")
+            unit.fault = Fault(t_ns, said)
+        case EventKind.STOPPED | EventKind.SOURCE_ENDED:
+            unit.stopped_ns = t_ns
+        case _:
+            pass

@@ -1,0 +1,114 @@
+"""The building's plan as far as the station itself uses it: storeys and outlines.
+
+A plan is GeoJSON in site metres: coordinates are ``[east_m, north_m]`` in the incident frame,
+and the member ``muster`` says so and lists the storeys::
+
+    {"type": "FeatureCollection",
+     "muster": {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0},
+                                              {"floor": 1, "down_m": -3.2}]},
+     "features": [{"type": "Feature", "properties": {"kind": "outline", "floor": 0}, ...}]}
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import msgspec
+
+from shared.errors import UserError
+
+FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
+OUTLINE_HYSTERESIS_M = 1.5
+
+Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
+
+
+class Storey(msgspec.Struct, frozen=True):
+    floor: int
+    down_m: float
+
+
+class Plan(msgspec.Struct, frozen=True):
+    """What is left of a plan once it was understood; ``geojson`` is what the console draws."""
+
+    geojson: bytes
+    storeys: tuple[Storey, ...]  # by height, lowest first
+    outlines: tuple[Ring, ...]
+
+    def floor_at(self, down_m: float, floor: int | None) -> int | None:
+        """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
+        if not self.storeys:
+            return None
+        nearest = min(self.storeys, key=lambda storey: abs(storey.down_m - down_m))
+        held = next((storey for storey in self.storeys if storey.floor == floor), None)
+        if held is None:
+            return nearest.floor
+        gain_m = abs(held.down_m - down_m) - abs(nearest.down_m - down_m)
+        return nearest.floor if gain_m > 2.0 * FLOOR_HYSTERESIS_M else held.floor
+
+    def is_inside(self, north_m: float, east_m: float, inside: bool) -> bool:
+        """Whether a place is in the building; near a wall, as it was before."""
+        signed_m = max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
+        return signed_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
+
+
+def read_plan(geojson: bytes) -> Plan:
+    """Raises UserError, which says what a plan must look like."""
+    try:
+        document = msgspec.json.decode(geojson)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise UserError(f"the plan is no JSON: {error}") from error
+    if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
+        raise UserError("the plan is no GeoJSON FeatureCollection")
+    site = document.get("muster")
+    if not isinstance(site, dict) or site.get("frame") != "site-m":
+        raise UserError(
+            'the plan has no scale: its member "muster" must say {"frame": "site-m", ...}, and '
+            "coordinates must be [east_m, north_m] in metres"
+        )
+    try:
+        storeys = sorted(
+            (Storey(int(item["floor"]), float(item["down_m"])) for item in site.get("floors", ())),
+            key=lambda storey: -storey.down_m,
+        )
+        outlines = tuple(_outlines(document.get("features", ())))
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise UserError(
+            f"the plan has a storey or outline that cannot be read: {error!r}"
+        ) from error
+    if not all(math.isfinite(storey.down_m) for storey in storeys):
+        raise UserError("the plan has a storey whose height is no number")
+    return Plan(geojson, tuple(storeys), outlines)
+
+
+def _outlines(features: Iterable[Any]) -> Iterable[Ring]:
+    for feature in features:
+        if feature["properties"].get("kind") != "outline":
+            continue
+        geometry = feature["geometry"]
+        rings = geometry["coordinates"]
+        outer = rings if geometry["type"] == "LineString" else rings[0]
+        yield tuple((float(point[0]), float(point[1])) for point in outer)
+
+
+def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:
+    """Distance to the ring's border, negative outside of it."""
+    inside = False
+    nearest_m = math.inf
+    for (x0_m, y0_m), (x1_m, y1_m) in zip(ring, ring[1:] + ring[:1], strict=True):
+        if (y0_m > y_m) != (y1_m > y_m):
+            inside ^= x_m < x0_m + (y_m - y0_m) * (x1_m - x0_m) / (y1_m - y0_m)
+        from_start_m = complex(x_m - x0_m, y_m - y0_m)
+        nearest_m = min(nearest_m, _to_segment_m(from_start_m, complex(x1_m - x0_m, y1_m - y0_m)))
+    return nearest_m if inside else -nearest_m
+
+
+def _to_segment_m(point_m: complex, segment_m: complex) -> float:
+    """Distance of a point to a segment from the origin, both as east + north * i."""
+    length2_m2 = abs(segment_m) ** 2
+    if length2_m2 == 0.0:
+        return abs(point_m)
+    part = (point_m * segment_m.conjugate()).real / length2_m2
+    return abs(point_m - min(1.0, max(0.0, part)) * segment_m)

@@ -1,0 +1,87 @@
+"""Where the incident frame lies on the Earth, and how air pressure stands for height.
+
+The incident frame's axes are north, east, down *of the plan*: with no anchor they mean nothing
+more, and nothing moves when an anchor comes later.  The anchor says where the origin lies and
+at which true heading the frame's north points.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import pymap3d
+
+# ICAO standard atmosphere, troposphere (ICAO Doc 7488): p = p0 * (1 - L h / T0) ** (g / (R L)).
+SEA_LEVEL_PRESSURE_PA = 101_325.0
+_LAPSE_OVER_T0_PER_M = 0.0065 / 288.15
+_EXPONENT = 9.80665 / (287.05287 * 0.0065)
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """The incident frame's origin (WGS-84) and the true heading of its north axis."""
+
+    lat_deg: float
+    lon_deg: float
+    height_m: float  # above the ellipsoid
+    rotation_rad: float = 0.0
+
+    def to_incident_m(
+        self, lat_deg: float, lon_deg: float, height_m: float
+    ) -> tuple[float, float, float]:
+        """North, east, down in the incident frame."""
+        north_m, east_m, down_m = pymap3d.geodetic2ned(
+            lat_deg, lon_deg, height_m, self.lat_deg, self.lon_deg, self.height_m
+        )
+        north_m, east_m = rotate(float(north_m), float(east_m), -self.rotation_rad)
+        return north_m, east_m, float(down_m)
+
+    def to_geodetic(
+        self, north_m: float, east_m: float, down_m: float
+    ) -> tuple[float, float, float]:
+        """Latitude and longitude in degrees, height above the ellipsoid in metres."""
+        north_m, east_m = rotate(north_m, east_m, self.rotation_rad)
+        lat_deg, lon_deg, height_m = pymap3d.ned2geodetic(
+            north_m, east_m, down_m, self.lat_deg, self.lon_deg, self.height_m
+        )
+        return float(lat_deg), float(lon_deg), float(height_m)
+
+
+def rotate(north_m: float, east_m: float, angle_rad: float) -> tuple[float, float]:
+    """Turn a horizontal vector clockwise (from north towards east)."""
+    cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
+    return cosine * north_m - sine * east_m, sine * north_m + cosine * east_m
+
+
+def anchor_through(
+    lat_deg: float, lon_deg: float, height_m: float, position_m: tuple[float, float, float]
+) -> Anchor:
+    """The true-north anchor that puts ``position_m`` (north, east, down) on the given place."""
+    north_m, east_m, down_m = position_m
+    lat0_deg, lon0_deg, height0_m = pymap3d.ned2geodetic(
+        -north_m, -east_m, -down_m, lat_deg, lon_deg, height_m
+    )
+    return Anchor(float(lat0_deg), float(lon0_deg), float(height0_m))
+
+
+def wrap_pi(angle_rad: float) -> float:
+    """The same angle in -pi..pi."""
+    return math.remainder(angle_rad, 2.0 * math.pi)
+
+
+def pressure_altitude_m(pressure_pa: float) -> float:
+    """Height above the standard atmosphere's sea level at which this pressure is found.
+
+    Raises ValueError for a pressure that is not positive.
+    """
+    if not pressure_pa > 0.0:
+        raise ValueError(f"an air pressure of {pressure_pa} Pa")
+    ratio = math.pow(pressure_pa / SEA_LEVEL_PRESSURE_PA, 1.0 / _EXPONENT)
+    return (1.0 - ratio) / _LAPSE_OVER_T0_PER_M
+
+
+def pressure_pa_at(altitude_m: float) -> float:
+    """The inverse of ``pressure_altitude_m``, below 44 km."""
+    ratio = math.pow(1.0 - _LAPSE_OVER_T0_PER_M * altitude_m, _EXPONENT)
+    return SEA_LEVEL_PRESSURE_PA * ratio
