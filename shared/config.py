@@ -2,7 +2,7 @@
 
 A configuration is a frozen dataclass; its fields may be anything that ``msgspec.convert``
 makes from TOML (numbers, text, enumerations by value, ``Literal``, tuples, dicts, further
-dataclasses) and ``Path``.  ``Annotated[float, Meta(ge=0.1, le=100.0)]`` limits a number.
+dataclasses) and ``Path``.  ``Annotated[float, Within(0.1, 100.0)]`` limits a number.
 Every default stands in the dataclass and nowhere else.
 """
 
@@ -30,6 +30,11 @@ _UNITS = frozenset(
         "pa hpa kpa degc degf k nt ut mt v mv a ma bytes kb mb gb kib mib gib percent fraction",
     )
 )
+
+
+def Within(low: float, high: float) -> msgspec.Meta:  # noqa: N802  # stands where a type does
+    """The limits of a number in ``Annotated``; both ends are allowed."""
+    return msgspec.Meta(ge=low, le=high)
 
 
 def load_config(

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
-from msgspec import Meta
 
-from shared.config import load_config
+from shared.config import Within, load_config
 from shared.errors import ConfigError
 
 
@@ -29,13 +28,13 @@ class Radio:
 @dataclass(frozen=True, slots=True)
 class Site:
     name: str
-    height_m: Annotated[float, Meta(ge=-500.0, le=9000.0)] = 0.0
+    height_m: Annotated[float, Within(-500.0, 9000.0)] = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
     unit: str
-    rate_hz: Annotated[float, Meta(gt=0.0, le=1000.0)] = 5.0
+    rate_hz: Annotated[float, Within(0.1, 1000.0)] = 5.0
     black_box: Path | None = None
     verbose: bool = False
     gait: Gait = Gait.WALK
@@ -122,7 +121,7 @@ def test_flags_alone_suffice() -> None:
         ("unit = 5", "unit: Expected `str`, got `int`"),
         ('unit = "a"\nrate_hz = "5 Hz"', "rate_hz: Expected `float`, got `str`"),
         ('unit = "a"\nrate_hz = true', "rate_hz: Expected `float`, got `bool`"),
-        ('unit = "a"\nrate_hz = 0.0', "rate_hz: Expected `float` > 0.0"),
+        ('unit = "a"\nrate_hz = 0.0', "rate_hz: Expected `float` >= 0.1"),
         ('unit = "a"\nrate_hz = nan', "rate_hz"),
         ('unit = "a"\nradio = 3', "radio: Expected `object`, got `int`"),
         ('unit = "a"\nblack_box = 3', "black_box"),
