@@ -205,16 +205,17 @@ class Planner:
     def _pull(self, middle: Point, heading_rad: float) -> None:
         plan = self.plan
         begin_s = plan.duration_s + float(self._rng.uniform(0.35, 0.6))
-        mid_s = begin_s + float(self._rng.uniform(0.3, 0.4))
-        end_s = mid_s + float(self._rng.uniform(0.3, 0.4))
+        # The foot tilts most early in the pull, so that it never glides without turning.
+        mid_s = begin_s + float(self._rng.uniform(0.15, 0.25))
+        end_s = mid_s + float(self._rng.uniform(0.45, 0.55))
         yaw_rad = plan.yaw.last + remainder(heading_rad - plan.yaw.last, 2.0 * pi)
         north_m, east_m = self._foothold(middle, yaw_rad)
         plan.north.move(begin_s, end_s, north_m)
         plan.east.move(begin_s, end_s, east_m)
         plan.yaw.move(begin_s, end_s, yaw_rad)
-        plan.pitch.move(begin_s, mid_s, _CRAWL_PITCH_RAD + float(self._rng.normal(0.1, 0.05)))
+        plan.pitch.move(begin_s, mid_s, _CRAWL_PITCH_RAD + float(self._rng.normal(0.25, 0.06)))
         plan.pitch.move(mid_s, end_s, _CRAWL_PITCH_RAD)
-        plan.roll.move(begin_s, mid_s, float(self._rng.normal(0.0, 0.15)))
+        plan.roll.move(begin_s, mid_s, float(self._rng.normal(0.15, 0.05)))
         plan.roll.move(mid_s, end_s, 0.0)
         plan.duration_s = end_s
         plan.footfall_s.append(end_s)

@@ -1,0 +1,102 @@
+"""What every kind of source promises, and how a source is opened by its text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from edge.sources import SOURCES, open_source
+from edge.sources.port import Source
+from shared.errors import ConfigError, MusterError
+
+Example = Callable[[Path], str]
+
+
+def _recording(folder: Path) -> str:
+    path = folder / "imu.csv"
+    rows = (f"{k * 0.005:.3f},0.1,0.2,-9.8,0.001,0.002,{k * 1e-6:.6f}" for k in range(500))
+    header = "t_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,gyro_x_radps,gyro_y_radps,gyro_z_radps"
+    path.write_text("\n".join((header, *rows)), encoding="utf-8")
+    return f"recording:{path}"
+
+
+def _simulated(_: Path) -> str:
+    return "simulated:straight?seed=5"
+
+
+EXAMPLES: dict[str, Example] = {"recording": _recording, "simulated": _simulated}
+
+
+@pytest.fixture(params=[kind.scheme for kind in SOURCES])
+def source(request: pytest.FixtureRequest, tmp_path: Path) -> Source:
+    return open_source(EXAMPLES[request.param](tmp_path))
+
+
+def test_every_kind_has_an_example() -> None:
+    assert set(EXAMPLES) == {kind.scheme for kind in SOURCES}
+
+
+def test_batches_agree_with_the_description(source: Source) -> None:
+    description = source.description
+    assert description.name
+    count, last_ns = 0, -1
+    for batch in source.batches():
+        imu = batch.imu
+        assert len(imu) > 0
+        assert imu.t_ns.dtype == np.int64
+        assert imu.accel_mps2.shape == imu.gyro_radps.shape == (len(imu), 3)
+        assert imu.t_ns[0] > last_ns, "batches come in order of time"
+        assert (imu.mag_ut is not None) == description.mag_present
+        assert (imu.pressure_pa is not None) == description.barometer_present
+        count, last_ns = count + len(imu), int(imu.t_ns[-1])
+    assert count / (last_ns * 1e-9) == pytest.approx(description.rate_hz, rel=0.05)
+    source.close()
+
+
+def test_other_samples_come_with_the_batch_of_their_time(source: Source) -> None:
+    for batch in source.batches():
+        for other in batch.others:
+            assert batch.imu.t_ns[0] <= other.t_ns <= batch.imu.t_ns[-1] + 50_000_000
+
+
+def test_a_second_reading_is_the_same_to_the_last_bit(source: Source) -> None:
+    for first, second in zip(source.batches(), source.batches(), strict=True):
+        assert first.imu.t_ns.tobytes() == second.imu.t_ns.tobytes()
+        assert first.imu.accel_mps2.tobytes() == second.imu.accel_mps2.tobytes()
+        assert first.imu.gyro_radps.tobytes() == second.imu.gyro_radps.tobytes()
+        assert repr(first.others) == repr(second.others)
+
+
+def test_radio_outages_are_in_order(source: Source) -> None:
+    starts_s = [outage.start_s for outage in source.radio_outages]
+    assert starts_s == sorted(starts_s)
+    assert all(outage.duration_s > 0.0 for outage in source.radio_outages)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("recordin:walk", "did you mean recording:"),
+        ("recording", "nothing after recording:"),
+        ("recording:", "nothing after recording:"),
+        ("walk.csv", "Known are recording:PATH"),
+        ("", "unknown source"),
+        ("simulated:climbs-stair", "did you mean climbs-stairs"),
+        ("simulated:stairs?seed=x", "seed is 'x'"),
+        ("simulated:stairs?speed=2", "unknown option 'speed'"),
+    ],
+)
+def test_a_text_that_names_no_source_is_explained(text: str, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        open_source(text)
+    assert said in str(caught.value)
+
+
+@pytest.mark.parametrize("scheme", [kind.scheme for kind in SOURCES])
+def test_an_argument_that_does_not_exist_is_an_error_for_a_person(scheme: str) -> None:
+    with pytest.raises(MusterError) as caught:
+        list(open_source(f"{scheme}:does/not/exist").batches())
+    assert "does/not/exist" in str(caught.value)
