@@ -87,6 +87,7 @@ def admit(
         for j in range(3):
             ring.accel_mps2[slot, j] = gate[0].accel_mps2[j]
             ring.gyro_radps[slot, j] = gate[0].gyro_radps[j]
+            ring.hidden_noise[slot, j] = 0.0
         ring.arrival_s[slot] = gate[0].arrival_s
         ring.period_s[slot] = gate[0].period_s
         ring.flags[slot] = flags

@@ -40,7 +40,11 @@ class EskfConfig(NamedTuple):
     gyro_noise_radps_rthz: float = 6.2e-4
     gyro_bias_walk_radps2_rthz: float = 1e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
-    saturated_rate_radps_rthz: float = 0.2  # what a clipped gyroscope hides
+
+    # What a clipped gyroscope hides (clipping.py).
+    hidden_rate_limit_radps: float = 6.0
+    hidden_rate_floor_radps: float = 0.3
+    hidden_rate_doubt: float = 0.5  # of the bridged peak
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005

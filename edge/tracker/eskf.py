@@ -39,9 +39,10 @@ class EskfTracker:
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = new_ring(slots)
         self._progress = new_progress()
+        self._limits = limits_of(description, self.config.saturation_ratio)
+        self._progress["gyro_clip_radps"] = self._limits.gyro_clip_radps
         self._gate = np.zeros(1, GATE)
         self._gate["period_s"] = 1.0 / description.rate_hz
-        self._limits = limits_of(description, self.config.saturation_ratio)
         self._state = new_filter_state()
         self._block = slots // 4
 

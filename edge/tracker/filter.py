@@ -9,6 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.tracker.alignment import level
+from edge.tracker.clipping import bridge_clipping
 from edge.tracker.conditioning import BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
@@ -35,6 +36,9 @@ def filter_sample(
 ) -> None:
     """Take sample ``k`` of the ring into ``state`` and write its row and the smoother's memory."""
     slot = k & (len(ring.t_ns) - 1)
+    if ring.flags[slot] & GYRO_SATURATED:
+        stop = min(progress[0].measured, reach(ring, k))
+        bridge_clipping(ring, k, stop, progress[0].gyro_clip_radps, config)
     good = ring.flags[slot] & BAD_SAMPLES == 0
     if k == 0:
         _start(ring, progress, state, config)
@@ -105,8 +109,8 @@ def _predict(
     )
     propagate(state.covariance, state.rotation_nb, state.force_n_mps2, dt_s)
     gyro_noise = config.gyro_noise_radps_rthz**2
-    if (ring.flags[slot] | ring.flags[before]) & GYRO_SATURATED:
-        gyro_noise += config.saturated_rate_radps_rthz**2
+    if ring.flags[slot] & GYRO_SATURATED:
+        _doubt_clipped(ring, state, slot, dt_s)
     for i in range(3):
         state.covariance[VELOCITY + i, VELOCITY + i] += dt_s * config.accel_noise_mps2_rthz**2
         state.covariance[ATTITUDE + i, ATTITUDE + i] += dt_s * gyro_noise
@@ -121,6 +125,19 @@ def _predict(
         ring.force_n_mps2[slot, i] = state.force_n_mps2[i]
         for j in range(3):
             ring.rotation_nb[slot, i, j] = state.rotation_nb[i, j]
+
+
+@njit(cache=True)
+def _doubt_clipped(ring: Ring, state: FilterState, slot: int, dt_s: float) -> None:
+    """Widen the attitude about the axes that clipped."""
+    rotation = state.rotation_nb
+    for axis in range(3):
+        variance = ring.hidden_noise[slot, axis] * dt_s
+        for i in range(3):
+            for j in range(3):
+                state.covariance[ATTITUDE + i, ATTITUDE + j] += (
+                    rotation[i, axis] * rotation[j, axis] * variance
+                )
 
 
 @njit(cache=True)

@@ -27,6 +27,7 @@ PROGRESS = np.dtype(
         ("minimum_from", np.int64),  # first sample of the stride around
         ("minimum_to", np.int64),  # one past its last
         ("steps", np.int64),
+        ("gyro_clip_radps", np.float64),  # from the description
         ("in_stance", np.bool_),
         ("aligned", np.bool_),
         ("stance_since_s", np.float64),
@@ -50,6 +51,7 @@ class Ring(NamedTuple):
     t_s: Floats  # (n,) regular
     accel_mps2: Floats  # (n, 3)
     gyro_radps: Floats  # (n, 3)
+    hidden_noise: Floats  # (n, 3) rad^2/s that clipping leaves in doubt about each sensor axis
     flags: NDArray[np.uint32]  # (n,) Reason bits of the sample itself
     motion_m2ps4: Floats  # (n,) stillness statistic
     stride_minimum_m2ps4: Floats  # (n,) its smallest value in the stride around
@@ -109,6 +111,7 @@ def new_ring(slots: int) -> Ring:
         t_s=np.zeros(slots),
         accel_mps2=np.zeros((slots, 3)),
         gyro_radps=np.zeros((slots, 3)),
+        hidden_noise=np.zeros((slots, 3)),
         flags=np.zeros(slots, np.uint32),
         motion_m2ps4=np.zeros(slots),
         stride_minimum_m2ps4=np.zeros(slots),

@@ -1,0 +1,71 @@
+"""What a clipped gyroscope hid: a guess from the slopes at both ends, and its doubt.
+
+A swinging foot turns past the full scale of many gyroscopes for some tens of
+milliseconds.  The hidden part is taken as the parabola that joins the slopes
+before and after; how wrong that may be enters the covariance about the clipped
+axis only.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.tracker.config import EskfConfig
+from edge.tracker.state import Ring
+
+SLOPE_SAMPLES = 3
+
+
+@njit(cache=True)
+def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: EskfConfig) -> None:
+    """At the first clipped sample ``k`` of an axis put the whole run right, in the ring.
+
+    Looks at samples before ``stop`` and within the look-ahead.  ``hidden_noise`` of the run
+    becomes the density (rad^2/s) of what may still be wrong.
+    """
+    mask = len(ring.t_ns) - 1
+    slot = k & mask
+    for axis in range(3):
+        if abs(ring.gyro_radps[slot, axis]) < clip_radps or ring.hidden_noise[slot, axis] > 0.0:
+            continue
+        end = k
+        while (
+            end < stop
+            and abs(ring.gyro_radps[end & mask, axis]) >= clip_radps
+            and ring.t_s[end & mask] - ring.t_s[slot] <= config.lookahead_s
+        ):
+            end += 1
+        _bridge_run(ring, k, end, stop, axis, config)
+
+
+@njit(cache=True)
+def _bridge_run(
+    ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig
+) -> None:
+    mask = len(ring.t_ns) - 1
+    begin_s = ring.t_s[first & mask]
+    duration_s = ring.t_s[(end - 1) & mask] - begin_s + ring.period_s[first & mask]
+    side = 1.0 if ring.gyro_radps[first & mask, axis] > 0.0 else -1.0
+    rise = 0.0
+    fall = 0.0
+    if first >= SLOPE_SAMPLES:
+        rise = side * _slope(ring, first - SLOPE_SAMPLES, first, axis)
+    if end + SLOPE_SAMPLES <= stop:
+        fall = -side * _slope(ring, end - 1, end - 1 + SLOPE_SAMPLES, axis)
+    slope_radps2 = 0.5 * (max(rise, 0.0) + max(fall, 0.0))
+    peak_radps = min(0.25 * slope_radps2 * duration_s, config.hidden_rate_limit_radps)
+    doubt_radps = config.hidden_rate_floor_radps + config.hidden_rate_doubt * peak_radps
+    for k in range(first, end):
+        u = (ring.t_s[k & mask] - begin_s + 0.5 * ring.period_s[first & mask]) / duration_s
+        ring.gyro_radps[k & mask, axis] += side * 4.0 * u * (1.0 - u) * peak_radps
+        ring.hidden_noise[k & mask, axis] = doubt_radps**2 * duration_s
+
+
+@njit(cache=True)
+def _slope(ring: Ring, first: int, last: int, axis: int) -> float:
+    mask = len(ring.t_ns) - 1
+    interval_s = ring.t_s[last & mask] - ring.t_s[first & mask]
+    if interval_s <= 0.0:
+        return 0.0
+    change = ring.gyro_radps[last & mask, axis] - ring.gyro_radps[first & mask, axis]
+    return float(change / interval_s)
