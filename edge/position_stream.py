@@ -39,10 +39,11 @@ class PositionStream:
     def take_pressure(self, imu: ImuBatch) -> None:
         if imu.pressure_pa is None or not len(imu):
             return
-        pairs = zip(imu.t_ns.tolist(), imu.pressure_pa.tolist(), strict=True)
-        self._pressures += [(t_ns, value) for t_ns, value in pairs if math.isfinite(value)]
-        oldest_ns = int(imu.t_ns[-1]) - _PRESSURE_KEPT_NS
-        self._pressures = [pair for pair in self._pressures if pair[0] >= oldest_ns]
+        for pair in zip(imu.t_ns.tolist(), imu.pressure_pa.tolist(), strict=True):
+            if math.isfinite(pair[1]):
+                while self._pressures and pair[0] <= self._pressures[-1][0]:
+                    self._pressures.pop()  # a clock that went back
+                self._pressures.append(pair)
 
     def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
         """The positions to publish among these rows."""
@@ -54,7 +55,11 @@ class PositionStream:
         self.rows_dropped += int(len(track) - usable.sum())
         rows = np.flatnonzero(usable)
         picked = rows[self._times.picks(track.t_ns[rows])].tolist()
-        return [self._position(track, row, timeline) for row in picked]
+        positions = [self._position(track, row, timeline) for row in picked]
+        if self._pressures:
+            oldest_ns = self._pressures[-1][0] - _PRESSURE_KEPT_NS
+            self._pressures = [pair for pair in self._pressures if pair[0] >= oldest_ns]
+        return positions
 
     def _position(self, track: TrackBatch, row: int, timeline: Timeline) -> Position:
         t_ns = int(track.t_ns[row])

@@ -27,7 +27,7 @@ class SensorHealth:
         """What a person must hear of this batch; mostly nothing."""
         faults: list[str] = []
         rows = np.hstack((imu.accel_mps2, imu.gyro_radps))
-        finite = np.isfinite(rows).all(axis=1).tolist()
+        finite = np.asarray(np.isfinite(rows).all(axis=1)).tolist()
         for t_ns, row, usable in zip(imu.t_ns.tolist(), rows.tolist(), finite, strict=True):
             faults += self._time_fault(t_ns)
             faults += self._unusable.step(t_ns, holds=not usable)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import heapq
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from operator import itemgetter
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -37,8 +38,10 @@ CREATE TABLE IF NOT EXISTS message (
     PRIMARY KEY (worth, boot, seq)
 ) WITHOUT ROWID;
 """
-_RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = range(4)
-_ROWS_FREED_AT_ONCE = 500
+_RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = tuple(range(4))
+_ROWS_FREED_AT_ONCE = 50
+# What SQLite says of a file that is no journal, in whole or in part.
+_DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 _FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append
 
 
@@ -54,8 +57,7 @@ class Journaled(NamedTuple):
 class Spool:
     """The journal of one unit; one process writes it.
 
-    ``append`` belongs to one thread; the rest may be called from any.  Every method raises
-    StoreError when the disk does not do as asked.
+    Any thread may call any method.  All raise StoreError when the disk does not do as asked.
     """
 
     def __init__(
@@ -64,16 +66,21 @@ class Spool:
         """Open or make the journal and begin a boot with an id that no earlier boot had."""
         self._path = path
         self._limit_bytes = limit_bytes
-        self._write_lock = Lock()
-        self._read_lock = Lock()
-        self.last_seq = 0  # the newest that is on disk
+        self._lock = Lock()
+        self._acknowledged_seq = 0
+        self.first_seq = 1  # the oldest of this boot that is kept
+        self.last_seq = 0  # the newest of this boot that is on disk
         self.rows_freed = 0  # unacknowledged messages given up for room
         with _in_words(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             self._writer = _connect(path)
             self._writer.executescript(_SCHEMA)
             self._boot, self.boot_id = self._begin_boot(new_boot_id, started_utc_ns)
-            self._reader = _connect(path)
+
+    @property
+    def pending(self) -> int:
+        """Messages of this boot that the station is not known to have."""
+        return max(0, self.last_seq - self._acknowledged_seq)
 
     def append(self, messages: Sequence[Journaled]) -> None:
         """Put messages on disk, all or none; returns when they are safe."""
@@ -82,7 +89,7 @@ class Spool:
              each.payload)
             for each in messages
         ]  # fmt: skip
-        with _in_words(self._path), self._write_lock:
+        with _in_words(self._path), self._lock:
             with self._writer:
                 self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
             self.last_seq = max(self.last_seq, *(each.seq for each in messages))
@@ -90,10 +97,13 @@ class Spool:
                 self._make_room()
 
     def read(self, boot_id: int, from_seq: int, to_seq: int) -> Iterator[JournalEntry]:
-        """What is kept of these sequence numbers, in order; both ends belong to the range."""
-        with _in_words(self._path), self._read_lock:
+        """What is kept of these sequence numbers, in order; both ends belong to the range.
+
+        Reads while it is iterated, beside the writer.
+        """
+        with _in_words(self._path), closing(_connect(self._path)) as reader:
             parts = [
-                self._reader.execute(
+                reader.execute(
                     "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
                     "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
                     "seq BETWEEN ? AND ? ORDER BY seq",
@@ -101,48 +111,33 @@ class Spool:
                 )
                 for worth in _WORTHS
             ]
-            for row in heapq.merge(*parts, key=lambda row: row[0]):
+            for row in heapq.merge(*parts, key=itemgetter(0)):
                 yield JournalEntry(*row)
 
     def boots(self) -> tuple[JournalBoot, ...]:
         """What can be served, oldest boot first; boots of which nothing is left are not named."""
-        with _in_words(self._path), self._read_lock:
-            rows = self._reader.execute(
-                "SELECT boot_id, MIN(seq), MAX(seq), acknowledged_seq, started_utc_ns "
-                "FROM message JOIN boot ON boot = number GROUP BY number ORDER BY number"
-            ).fetchall()
-        return tuple(JournalBoot(*row) for row in rows)
-
-    def first_seq(self) -> int:
-        """The oldest number of this boot that is kept; one past the last when nothing is."""
-        with _in_words(self._path), self._read_lock:
-            found = [
-                self._reader.execute(
-                    "SELECT MIN(seq) FROM message WHERE worth = ? AND boot = ?", (worth, self._boot)
-                ).fetchone()[0]
-                for worth in _WORTHS
-            ]
-        return min((seq for seq in found if seq is not None), default=self.last_seq + 1)
+        kept = []
+        with _in_words(self._path), closing(_connect(self._path)) as reader:
+            for number, boot_id, acknowledged_seq, started_utc_ns in reader.execute(
+                "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot ORDER BY number"
+            ).fetchall():
+                bounds = _bounds(reader, number)
+                if bounds is not None:
+                    kept.append(JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns))
+        return tuple(kept)
 
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
         """The station has everything of this boot up to ``to_seq`` on its own disk."""
-        with _in_words(self._path), self._write_lock, self._writer:
+        with _in_words(self._path), self._lock, self._writer:
             self._writer.execute(
                 "UPDATE boot SET acknowledged_seq = MAX(acknowledged_seq, ?) WHERE boot_id = ?",
                 (to_seq, boot_id),
             )
-
-    def pending(self) -> int:
-        """Messages of this boot that the station is not known to have."""
-        with _in_words(self._path), self._read_lock:
-            (acknowledged,) = self._reader.execute(
-                "SELECT acknowledged_seq FROM boot WHERE number = ?", (self._boot,)
-            ).fetchone()
-        return max(0, self.last_seq - int(acknowledged))
+            if boot_id == self.boot_id:
+                self._acknowledged_seq = max(self._acknowledged_seq, to_seq)
 
     def close(self) -> None:
-        with self._write_lock, self._read_lock:
-            self._reader.close()
+        with self._lock:
             self._writer.close()
 
     def _begin_boot(self, new_boot_id: Callable[[], int], started_utc_ns: int) -> tuple[int, int]:
@@ -166,12 +161,21 @@ class Spool:
         return int((pages - free) * page_bytes)
 
     def _make_room(self) -> None:
-        while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
-            if not (self._free_acknowledged() or self._free_least_worth()):
-                return
+        with self._writer:
+            while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
+                if not (self._free_acknowledged() or self._free_least_worth()):
+                    break
+        bounds = _bounds(self._writer, self._boot)
+        self.first_seq = self.last_seq + 1 if bounds is None else bounds[0]
 
     def _free_acknowledged(self) -> bool:
-        return self._free("seq <= acknowledged_seq", ()) > 0
+        for number, to_seq in self._writer.execute(
+            "SELECT number, acknowledged_seq FROM boot WHERE acknowledged_seq > 0 ORDER BY number"
+        ).fetchall():
+            for worth in _WORTHS:
+                if self._free("worth = ? AND boot = ? AND seq <= ?", (worth, number, to_seq)):
+                    return True
+        return False
 
     def _free_least_worth(self) -> bool:
         for worth in _WORTHS:
@@ -182,14 +186,45 @@ class Spool:
         return False
 
     def _free(self, condition: str, arguments: tuple[int, ...]) -> int:
-        with self._writer:
-            cursor = self._writer.execute(
-                "DELETE FROM message WHERE (worth, boot, seq) IN (SELECT worth, boot, seq "  # noqa: S608  # both texts are ours
-                f"FROM message JOIN boot ON boot = number WHERE {condition} "
-                "ORDER BY worth, boot, seq LIMIT ?)",
-                (*arguments, _ROWS_FREED_AT_ONCE),
-            )
+        cursor = self._writer.execute(
+            "DELETE FROM message WHERE (worth, boot, seq) IN (SELECT worth, boot, seq "  # noqa: S608  # all text is ours
+            f"FROM message WHERE {condition} ORDER BY worth, boot, seq LIMIT ?)",
+            (*arguments, _ROWS_FREED_AT_ONCE),
+        )
         return cursor.rowcount
+
+
+def open_spool(
+    path: Path, new_boot_id: Callable[[], int], started_utc_ns: int, limit_bytes: int
+) -> tuple[Spool, Path | None]:
+    """Open the journal; one that is damaged is set aside under the name that is returned."""
+    try:
+        return Spool(path, new_boot_id, started_utc_ns, limit_bytes), None
+    except StoreError as error:
+        cause = error.__cause__
+        if not isinstance(cause, sqlite3.Error) or cause.sqlite_errorcode & 0xFF not in _DAMAGE:
+            raise
+    aside = path.with_name(f"{path.name}.damaged-{started_utc_ns}")
+    with _in_words(path):
+        for tail in ("", "-wal", "-shm"):
+            part = path.with_name(path.name + tail)
+            if part.exists():
+                part.rename(aside.with_name(aside.name + tail))
+    return Spool(path, new_boot_id, started_utc_ns, limit_bytes), aside
+
+
+def _bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
+    """First and last sequence number kept of one boot."""
+    found = [
+        connection.execute(
+            "SELECT MIN(seq), MAX(seq) FROM message WHERE worth = ? AND boot = ?", (worth, boot)
+        ).fetchone()
+        for worth in _WORTHS
+    ]
+    kept = [pair for pair in found if pair[0] is not None]
+    if not kept:
+        return None
+    return min(first for first, _ in kept), max(last for _, last in kept)
 
 
 def _worth(channel: Channel) -> int:

@@ -197,6 +197,9 @@ class MemoryBus:
         key, _, parameters = selector.partition("?")
         return self._router.answers(self, require_key_expression(key), parameters, payload)
 
+    def is_linked(self) -> bool:
+        return self._linked and not self._closed
+
     def close(self) -> None:
         self._closed = True
         self._router.withdraw_all(self)

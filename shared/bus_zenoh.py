@@ -136,6 +136,11 @@ class ZenohBus:
         )
         return _payloads(replies)
 
+    def is_linked(self) -> bool:
+        if self._session.is_closed():
+            return False
+        return bool(self._session.info.routers_zid() or self._session.info.peers_zid())
+
     def close(self) -> None:
         self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub leaves it open
 

@@ -1,0 +1,82 @@
+"""``muster edge``: run an agent, and what it can be made of."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from threading import Event
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    help="One agent for each wearable.", no_args_is_help=True, pretty_exceptions_enable=False
+)
+
+
+@app.command()
+def run(
+    config: Annotated[
+        Path | None, typer.Option(help="TOML file with settings; flags overrule it.")
+    ] = None,
+    unit: Annotated[str | None, typer.Option(help="Name of this unit.")] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(help="Where samples come from; `muster edge sources` lists the kinds."),
+    ] = None,
+    connect: Annotated[
+        list[str] | None, typer.Option(help="The station, tcp/HOST:PORT; may be repeated.")
+    ] = None,
+    data: Annotated[
+        Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
+    ] = None,
+    tracker: Annotated[str | None, typer.Option(help="`muster edge trackers` lists them.")] = None,
+    for_s: Annotated[
+        float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0)
+    ] = None,
+    speed: Annotated[
+        float | None, typer.Option(help="Play a recording at this multiple of real time.")
+    ] = None,
+    as_fast_as_possible: Annotated[
+        bool, typer.Option(help="Play a recording without waiting.")
+    ] = False,
+) -> None:
+    """Run one agent until its source ends, Ctrl-C, or --for is over."""
+    # Only this command needs what these import, and they take their time.
+    from edge.app import run_agent  # noqa: PLC0415
+    from edge.config import EdgeConfig  # noqa: PLC0415
+    from shared.config import load_config  # noqa: PLC0415
+    from shared.log import set_up_logging  # noqa: PLC0415
+
+    flags = {
+        "unit": unit,
+        "source": source,
+        "connect": connect,
+        "data": data,
+        "tracker": tracker,
+        "speed": speed,
+    }
+    settings = load_config(config, EdgeConfig, flags)
+    set_up_logging(settings.log_level)
+    stop = Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
+
+
+@app.command()
+def sources() -> None:
+    """List where samples can come from."""
+    from edge.sources import SOURCES  # noqa: PLC0415
+
+    for kind in SOURCES:
+        typer.echo(f"{kind.scheme}:{kind.argument}")
+
+
+@app.command()
+def trackers() -> None:
+    """List the trackers."""
+    from edge.tracker import TRACKERS  # noqa: PLC0415
+
+    for entry in TRACKERS:
+        typer.echo(f"{entry.name:10} {entry.summary}")

@@ -1,0 +1,34 @@
+"""The agent's settings; every default stands here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+from msgspec import Meta
+
+from edge.commands import POSITION_RATE_HZ
+
+
+@dataclass(frozen=True, slots=True)
+class StorageConfig:
+    """How much of the disk the agent may use."""
+
+    journal_mb: Annotated[float, Meta(ge=1.0, le=1e6)] = 512.0
+    black_box_mb: Annotated[float, Meta(ge=1.0, le=1e6)] = 4096.0  # the oldest segments go first
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeConfig:
+    """One agent, one wearable."""
+
+    unit: str  # unique among the units of a station
+    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH
+    connect: tuple[str, ...] = ("tcp/127.0.0.1:7447",)  # the station
+    data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
+    tracker: str = "eskf"
+    position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0
+    speed: Annotated[float, Meta(ge=0.01, le=1000.0)] = 1.0  # at which recordings are played
+    log_level: str = "INFO"
+    storage: StorageConfig = field(default_factory=StorageConfig)

@@ -1,0 +1,68 @@
+"""Answers the station's questions for the journal (see docs/journal.md)."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+
+from edge.spool import Spool
+from shared.channels import ROOT
+from shared.errors import StoreError
+from shared.messages import JournalChunk, JournalEntry, JournalIndex
+
+logger = logging.getLogger(__name__)
+
+_MAX_MESSAGES = 10_000
+_REPLY_BYTES = 16_384
+_ENTRY_OVERHEAD_BYTES = 24
+
+
+class JournalServer:
+    """Serves ``index``, ``range`` and ``acknowledge`` under ``muster/v1/{unit}/journal/``."""
+
+    def __init__(self, unit_id: str, spool: Spool) -> None:
+        self._prefix = f"{ROOT}/{unit_id}/journal"
+        self._spool = spool
+
+    @property
+    def key_expression(self) -> str:
+        return f"{self._prefix}/**"
+
+    def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
+        """What a query is answered; nothing, and a line in the log, where it makes no sense."""
+        del payload
+        try:
+            values = dict(pair.split("=", 1) for pair in parameters.split(";") if pair)
+            match key.removeprefix(self._prefix + "/"):
+                case "index":
+                    yield JournalIndex(self._spool.boots()).to_bytes()
+                case "range":
+                    yield from self._range(values)
+                case "acknowledge":
+                    self._spool.acknowledge(int(values["epoch"]), int(values["to"]))
+                    yield JournalIndex(self._spool.boots()).to_bytes()
+                case _:
+                    logger.warning("asked for %s, which the journal does not have", key)
+        except (KeyError, ValueError, OverflowError) as error:
+            logger.warning("a question for the journal makes no sense: %r (%r)", parameters, error)
+        except StoreError as error:
+            logger.error("the journal cannot answer: %s", error)
+
+    def _range(self, values: dict[str, str]) -> Iterator[bytes]:
+        boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
+        if boot_id == self._spool.boot_id:
+            last = min(last, self._spool.last_seq)  # what is not written yet is not lost
+        most = int(values.get("max", _MAX_MESSAGES))
+        reply_bytes = int(values.get("bytes", _REPLY_BYTES))
+        entries: list[JournalEntry] = []
+        size = 0
+        for count, entry in enumerate(self._spool.read(boot_id, first, last), start=1):
+            entries.append(entry)
+            size += len(entry.payload) + _ENTRY_OVERHEAD_BYTES
+            if size >= reply_bytes or count >= most:
+                yield JournalChunk(boot_id, first, entry.seq, tuple(entries)).to_bytes()
+                first, entries, size = entry.seq + 1, [], 0
+            if count >= most:
+                return
+        if first <= last:
+            yield JournalChunk(boot_id, first, last, tuple(entries)).to_bytes()

@@ -1,0 +1,122 @@
+"""The unit's link to the bus: up, down, and what it carries while it is up.
+
+Nothing in the unit waits for it.  Opening takes half a second and may fail for hours, so a
+thread does it; publishing without a link drops the bytes, which the journal keeps.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from contextlib import ExitStack
+from threading import Condition, Lock, Thread
+
+from shared.bus import Bus, QueryHandler, SampleHandler
+from shared.channels import COMMAND, EVERY_UNIT, Qos, alive_key
+from shared.errors import BusError
+
+logger = logging.getLogger(__name__)
+
+_RETRY_S = 1.0
+_LOOK_EVERY_S = 1.0
+
+
+class Link:
+    """Opens and closes a bus as told, and declares the unit on it each time."""
+
+    def __init__(
+        self,
+        unit_id: str,
+        where: str,
+        open_bus: Callable[[], Bus],
+        on_command: SampleHandler,
+        journal: tuple[str, QueryHandler],
+    ) -> None:
+        self._unit_id = unit_id
+        self._where = where
+        self._open_bus = open_bus
+        self._on_command = on_command
+        self._journal = journal
+        self._bus: Bus | None = None
+        self._wanted_up = True
+        self._ended = False
+        self._changed = Condition()
+        self._using = Lock()
+        self._failure_told = False
+        self._thread = Thread(target=self._run, name="link", daemon=True)
+        self._thread.start()
+
+    def set_up(self, *, up: bool) -> None:
+        """Bring the link up or down, soon."""
+        with self._changed:
+            if self._wanted_up != up:
+                logger.info("radio %s", "back" if up else "down")
+            self._wanted_up = up
+            self._changed.notify_all()
+
+    def publish(self, key: str, payload: bytes, qos: Qos) -> None:
+        """Send if there is a bus."""
+        with self._using:
+            if self._bus is not None:
+                self._bus.publish(key, payload, qos)
+
+    def close(self) -> None:
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._wanted_up or self._ended)
+                if self._ended:
+                    return
+            if not self._hold():
+                with self._changed:
+                    self._changed.wait_for(lambda: self._ended, timeout=_RETRY_S)
+
+    def _hold(self) -> bool:
+        """Keep the link up for as long as it is wanted; False when it cannot be opened."""
+        with ExitStack() as declared:
+            try:
+                bus = self._open_bus()
+                declared.callback(bus.close)
+                self._declare(bus, declared)
+            except BusError as error:
+                if not self._failure_told:
+                    logger.warning("%s; trying again every second", error)
+                self._failure_told = True
+                return False
+            self._failure_told = False
+            self._bus = bus
+            declared.callback(self._forget_bus)
+            self._watch(bus)
+        return True
+
+    def _watch(self, bus: Bus) -> None:
+        """Until the link is no longer wanted; tells when the station comes and goes."""
+        linked: bool | None = None
+        over = False
+        while not over:
+            if bus.is_linked() != linked:
+                linked = bus.is_linked()
+                if linked:
+                    logger.info("linked to the station")
+                else:
+                    logger.warning("no link to %s; messages are kept and sent later", self._where)
+            with self._changed:
+                over = self._changed.wait_for(
+                    lambda: self._ended or not self._wanted_up, timeout=_LOOK_EVERY_S
+                )
+
+    def _declare(self, bus: Bus, declared: ExitStack) -> None:
+        for unit_id in (self._unit_id, EVERY_UNIT):
+            declared.callback(bus.subscribe(COMMAND.key(unit_id), self._on_command).close)
+        declared.callback(bus.serve(*self._journal).close)
+        declared.callback(bus.declare_alive(alive_key(self._unit_id)).close)
+
+    def _forget_bus(self) -> None:
+        """From here on nobody publishes on a bus that is about to close."""
+        with self._using:
+            self._bus = None

@@ -1,0 +1,163 @@
+"""Runs one unit: source to pipeline to journal to link, until told to stop.
+
+One thread steps the pipeline, stamps what is sent and takes commands, so sequence numbers
+rise in the order of the journal.  Reading the source, writing the journal and holding the
+link have threads of their own: none of them keeps the unit from the rest.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from queue import Empty, SimpleQueue
+from threading import Event
+
+from edge.black_box import BlackBox
+from edge.commands import CommandDesk
+from edge.link import Link
+from edge.outbox import Outbox
+from edge.pipeline import TrackerPipeline
+from edge.raw_stream import RawStream, batch_of
+from edge.source_reader import PlacedBatch, SourceReader
+from edge.sources.port import Source
+from edge.spool import Spool
+from edge.timeline import Timeline
+from shared.channels import COMMAND
+from shared.clock import NS_PER_S, Clock
+from shared.codec import decode
+from shared.envelope import Stamper
+from shared.errors import WireError
+from shared.messages import Command, EventKind, Heartbeat, UnitEvent
+
+logger = logging.getLogger(__name__)
+
+_TURN_S = 0.05
+_HEARTBEAT_NS = NS_PER_S
+_SILENT_NS = 2 * NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What an agent is made of; the composition root chooses each."""
+
+    source: Source
+    reader: SourceReader
+    raw: RawStream
+    pipeline: TrackerPipeline
+    desk: CommandDesk
+    stamper: Stamper
+    clock: Clock
+    black_box: BlackBox
+    spool: Spool
+    outbox: Outbox
+    link: Link
+    commands: SimpleQueue[bytes]  # filled by the link
+
+
+class Agent:
+    """``run`` once."""
+
+    def __init__(self, parts: Parts) -> None:
+        self._parts = parts
+        self._timeline = Timeline()
+        self._next_heartbeat_ns = 0
+        self._last_batch_ns = 0
+        self._silence_told = False
+        self._storage_fault: str | None = None
+        self.commands_not_understood = 0
+
+    def run(self, stop: Event, *, for_s: float | None = None) -> None:
+        """Until the source ends, ``stop`` is set or ``for_s`` is over; says why at the end."""
+        parts = self._parts
+        started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
+        end_ns = None if for_s is None else started_ns + round(for_s * NS_PER_S)
+        reason = "failed"
+        try:
+            parts.outbox.put(parts.pipeline.start())
+            parts.reader.start()
+            while not stop.is_set() and not parts.reader.ended:
+                if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
+                    reason = "the time that was set is over"
+                    return
+                self._turn()
+            reason = "told to stop" if stop.is_set() else "the source ended"
+        finally:
+            self._end(reason)
+
+    def _turn(self) -> None:
+        placed = self._parts.reader.take(_TURN_S)
+        if placed is not None:
+            self._take_batch(placed)
+        self._take_commands()
+        self._watch()
+        if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
+            self._beat()
+
+    def _take_batch(self, placed: PlacedBatch) -> None:
+        parts = self._parts
+        raw = parts.raw.messages(placed.batch)
+        parts.black_box.write(raw)
+        self._timeline = placed.timeline
+        self._last_batch_ns = parts.clock.monotonic_ns()
+        self._silence_told = False
+        parts.pipeline.note_journal(parts.spool.pending)
+        parts.outbox.put(parts.pipeline.step(batch_of(raw), placed.timeline))
+        down = any(
+            outage.start_s <= placed.since_start_s < outage.start_s + outage.duration_s
+            for outage in parts.source.radio_outages
+        )
+        parts.link.set_up(up=not down)
+
+    def _take_commands(self) -> None:
+        parts = self._parts
+        while True:
+            try:
+                payload = parts.commands.get_nowait()
+                command = decode(COMMAND, payload)
+            except Empty:
+                return
+            except WireError as error:
+                self.commands_not_understood += 1
+                logger.warning("a command that cannot be understood: %s", error)
+                continue
+            assert isinstance(command, Command)
+            parts.outbox.put((parts.desk.take(command, parts.clock.utc_ns()),))
+
+    def _watch(self) -> None:
+        """Notice what has stopped working, and say so once."""
+        parts = self._parts
+        if not parts.outbox.is_working:
+            raise RuntimeError("the outbox has stopped; see the log before this")
+        fault = parts.outbox.storage_fault or parts.black_box.fault
+        if fault is not None and self._storage_fault is None:
+            self._say(EventKind.STORAGE_FAULT, fault)
+        self._storage_fault = fault
+        silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
+        if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_told:
+            self._silence_told = True
+            self._say(EventKind.SENSOR_FAULT, "the source has been silent for 2 s")
+
+    def _beat(self) -> None:
+        parts = self._parts
+        self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
+        heartbeat = Heartbeat(parts.stamper.header(), parts.spool.first_seq, parts.spool.last_seq)
+        parts.outbox.put((heartbeat,))
+
+    def _end(self, reason: str) -> None:
+        """Send what is left, in order, and let go of everything."""
+        parts = self._parts
+        ended = parts.reader.ended
+        parts.reader.close()
+        parts.outbox.put(parts.pipeline.finish(self._timeline))
+        if ended:
+            self._say(EventKind.SOURCE_ENDED, parts.reader.failure or "the source has no more")
+        self._say(EventKind.STOPPED, reason)
+        parts.outbox.close()
+        parts.black_box.close()
+        parts.link.close()
+        parts.spool.close()
+        logger.info("stopped: %s", parts.reader.failure or reason)
+
+    def _say(self, kind: EventKind, detail: str) -> None:
+        logger.info("%s: %s", kind.name, detail)
+        self._parts.outbox.put((UnitEvent(self._parts.stamper.header(), kind, detail),))

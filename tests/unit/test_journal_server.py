@@ -1,0 +1,81 @@
+"""The journal's answers account for every number that was asked for."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from edge.journal_server import JournalServer
+from edge.spool import Journaled, Spool
+from shared.channels import POSITION
+from shared.messages import JournalChunk, JournalIndex
+
+
+@pytest.fixture
+def spool(tmp_path):
+    spool = Spool(tmp_path / "journal.sqlite", itertools.count(9).__next__, 123, 10**8)
+    spool.append([Journaled(seq, POSITION, 0, bytes(100)) for seq in range(1, 101) if seq != 50])
+    yield spool
+    spool.close()
+
+
+def ask(spool: Spool, what: str, parameters: str = "") -> list[bytes]:
+    return list(JournalServer("u1", spool).replies(f"muster/v1/u1/journal/{what}", parameters, b""))
+
+
+def chunks(spool: Spool, parameters: str) -> list[JournalChunk]:
+    return [JournalChunk.from_bytes(reply) for reply in ask(spool, "range", parameters)]
+
+
+def test_chunks_follow_on_each_other_and_hold_everything(spool):
+    answers = chunks(spool, "epoch=9;from=1;to=100;bytes=1000")
+    assert len(answers) > 5
+    assert [chunk.from_seq for chunk in answers] == [1] + [c.to_seq + 1 for c in answers[:-1]]
+    assert answers[-1].to_seq == 100
+    kept = [entry.seq for chunk in answers for entry in chunk.entries]
+    assert kept == [seq for seq in range(1, 101) if seq != 50]
+
+
+def test_max_bounds_the_answer_and_its_end_says_where_to_go_on(spool):
+    (chunk,) = chunks(spool, "epoch=9;from=41;to=100;max=10")
+    assert [entry.seq for entry in chunk.entries] == [41, 42, 43, 44, 45, 46, 47, 48, 49, 51]
+    assert (chunk.from_seq, chunk.to_seq) == (41, 51)
+
+
+def test_what_is_not_written_yet_is_not_called_lost(spool):
+    (chunk,) = chunks(spool, "epoch=9;from=99;to=200")
+    assert chunk.to_seq == 100
+    assert not chunks(spool, "epoch=9;from=101;to=200")
+
+
+def test_of_a_boot_that_nobody_knows_nothing_is_kept(spool):
+    (chunk,) = chunks(spool, "epoch=1234;from=1;to=5")
+    assert (chunk.from_seq, chunk.to_seq, chunk.entries) == (1, 5, ())
+
+
+def test_index_and_acknowledgement(spool):
+    (index,) = ask(spool, "index")
+    (boot,) = JournalIndex.from_bytes(index).boots
+    assert (boot.boot_id, boot.first_seq, boot.last_seq, boot.acknowledged_seq) == (9, 1, 100, 0)
+    (index,) = ask(spool, "acknowledge", "epoch=9;to=70")
+    assert JournalIndex.from_bytes(index).boots[0].acknowledged_seq == 70
+    ask(spool, "acknowledge", "epoch=9;to=60")  # never back
+    assert spool.pending == 30
+
+
+@pytest.mark.parametrize(
+    ("what", "parameters"),
+    [
+        ("range", ""),
+        ("range", "epoch=9;from=1"),
+        ("range", "epoch=x;from=1;to=2"),
+        ("range", "epoch=9;from=1;to"),
+        ("range", f"epoch={2**70};from=1;to=2"),
+        ("everything", ""),
+        ("acknowledge", "epoch=9;to=" + "9" * 30),
+    ],
+)
+def test_questions_without_sense_get_nothing_and_break_nothing(spool, what, parameters):
+    assert ask(spool, what, parameters) == []
+    assert len(chunks(spool, "epoch=9;from=1;to=100")) == 1

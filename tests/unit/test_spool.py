@@ -1,0 +1,132 @@
+"""The journal keeps what it was given, in order, and makes room by worth."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import pytest
+
+from edge.spool import Journaled, Spool, open_spool
+from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
+from shared.errors import StoreError
+
+MB = 1_000_000
+
+
+def spool_at(path: Path, boot_ids=None, limit_bytes: int = 100 * MB) -> Spool:
+    draws = itertools.count(1) if boot_ids is None else iter(boot_ids)
+    return Spool(path / "journal.sqlite", draws.__next__, 1_000, limit_bytes)
+
+
+def entry(seq: int, channel: Channel = POSITION, size: int = 10) -> Journaled:
+    return Journaled(seq, channel, 5_000, seq.to_bytes(8, "big") * (size // 8 + 1))
+
+
+def seqs(spool: Spool, boot_id: int, first: int = 1, last: int = 10**9) -> list[int]:
+    return [each.seq for each in spool.read(boot_id, first, last)]
+
+
+def test_it_gives_back_what_it_was_given_in_order_over_all_channels(tmp_path):
+    spool = spool_at(tmp_path)
+    channels = itertools.cycle((POSITION, EVENT, IMU, STATUS))
+    given = [entry(seq, channel) for seq, channel in zip(range(1, 201), channels, strict=False)]
+    spool.append(given[:150])
+    spool.append(given[150:])
+    kept = list(spool.read(spool.boot_id, 1, 200))
+    assert [(each.seq, each.suffix, each.payload) for each in kept] == [
+        (each.seq, each.channel.suffix, each.payload) for each in given
+    ]
+    assert seqs(spool, spool.boot_id, 40, 60) == list(range(40, 61))
+    spool.close()
+
+
+def test_a_new_start_is_a_new_boot_and_the_old_one_is_still_served(tmp_path):
+    first = spool_at(tmp_path)
+    first.append([entry(seq) for seq in range(1, 11)])
+    first.close()
+    second = spool_at(tmp_path, boot_ids=[1, 1, 2])  # an id that was used is drawn again
+    assert second.boot_id == 2
+    second.append([entry(1)])
+    assert [(boot.boot_id, boot.first_seq, boot.last_seq) for boot in second.boots()] == [
+        (1, 1, 10),
+        (2, 1, 1),
+    ]
+    assert seqs(second, 1) == list(range(1, 11))
+    second.close()
+
+
+def test_a_sequence_number_is_never_used_twice(tmp_path):
+    spool = spool_at(tmp_path)
+    spool.append([entry(1), entry(2)])
+    with pytest.raises(StoreError):
+        spool.append([entry(3), entry(2)])
+    assert seqs(spool, spool.boot_id) == [1, 2]
+    spool.close()
+
+
+def test_room_is_made_from_the_least_worth_and_oldest(tmp_path):
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    channels = itertools.cycle((IMU, POSITION, IMU, IMU, STATUS, EVENT))
+    for start in range(1, 3001, 50):
+        spool.append([entry(seq, next(channels), 800) for seq in range(start, start + 50)])
+    kept = [(each.seq, each.suffix) for each in spool.read(spool.boot_id, 1, 3000)]
+    by_suffix = {suffix: [seq for seq, of in kept if of == suffix] for _, suffix in kept}
+    assert IMU.suffix not in by_suffix  # all raw data went before any position
+    assert STATUS.suffix not in by_suffix
+    assert len(by_suffix[EVENT.suffix]) == 500
+    assert 100 < len(by_suffix[POSITION.suffix]) < 500
+    assert by_suffix[POSITION.suffix] == list(range(2, 3001, 6))[-len(by_suffix[POSITION.suffix]) :]
+    assert spool.rows_freed == 3000 - len(kept)
+    assert spool.first_seq == kept[0][0]
+    assert sum(path.stat().st_size for path in tmp_path.iterdir()) < 8 * MB
+    spool.close()
+
+
+def test_what_the_station_has_goes_first(tmp_path):
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    spool.append([entry(seq, EVENT, 800) for seq in range(1, 301)])
+    spool.acknowledge(spool.boot_id, 300)
+    assert spool.pending == 0
+    spool.append([entry(seq, IMU, 800) for seq in range(301, 1101)])
+    assert spool.pending == 800
+    assert set(range(301, 1101)) <= set(seqs(spool, spool.boot_id))
+    assert spool.rows_freed == 0  # nothing was given up that the station does not have
+    spool.close()
+
+
+def test_a_full_disk_refuses_whole_groups_and_recovers(tmp_path):
+    spool = spool_at(tmp_path)
+    spool.append([entry(1)])
+    (pages,) = spool._writer.execute("PRAGMA page_count").fetchone()
+    spool._writer.execute(f"PRAGMA max_page_count = {pages + 2}")
+    with pytest.raises(StoreError, match="full"):
+        spool.append([entry(seq, size=4000) for seq in range(2, 20)])
+    assert seqs(spool, spool.boot_id) == [1]
+    spool._writer.execute("PRAGMA max_page_count = 1000000")
+    spool.append([entry(seq, size=4000) for seq in range(2, 20)])
+    assert seqs(spool, spool.boot_id) == list(range(1, 20))
+    spool.close()
+
+
+@pytest.mark.parametrize("spoil_at", [0, 40])
+def test_a_damaged_journal_is_set_aside_not_deleted(tmp_path, spoil_at):
+    path = tmp_path / "journal.sqlite"
+    spool = spool_at(tmp_path)
+    spool.append([entry(1)])
+    spool.close()
+    content = bytearray(path.read_bytes())
+    content[spoil_at:] = b"\xff" * (len(content) - spoil_at)
+    path.write_bytes(content)
+    spool, aside = open_spool(path, itertools.count(5).__next__, 77, MB)
+    assert aside is not None
+    assert aside.read_bytes() == content
+    spool.append([entry(1)])
+    assert seqs(spool, spool.boot_id) == [1]
+    spool.close()
+
+
+def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="cannot be used"):
+        spool_at(tmp_path / "file")
