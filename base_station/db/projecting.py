@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import msgspec
-from sqlalchemy import func, update
+from sqlalchemy import ColumnElement, func, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import Session
 
@@ -28,6 +28,7 @@ from shared.messages.station import (
     CloseIncident,
     OpenIncident,
     RegisterUnit,
+    ReportProblem,
     ResolveAlarm,
     SetAnchor,
     SetPlan,
@@ -51,7 +52,8 @@ _NEW_UNIT = {
 def project_into(session: Session, projection: Projection) -> None:
     """Write one projection."""
     for action in projection.actions:
-        _audit(session, projection.t_ns, action)
+        if not isinstance(action.action, ReportProblem):  # that is no person's doing
+            _audit(session, projection.t_ns, action)
         _action(session, projection.t_ns, action)
     for change in projection.alarms:
         _alarm(session, change)
@@ -78,13 +80,14 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
                 .values(closed_ns=t_ns, closed_by=done.by)
             )
         case Assign() as assign:
-            _end_assignment(session, t_ns, assign.unit_id)
+            _end_assignments(session, t_ns, Assignment.unit_id == assign.unit_id)
+            _end_assignments(session, t_ns, Assignment.person_id == assign.person_id)
             _add(
                 session, Assignment, action_id=done.action_id, from_ns=t_ns, until_ns=None,
                 **msgspec.structs.asdict(assign),
             )  # fmt: skip
         case Unassign(unit_id=unit_id):
-            _end_assignment(session, t_ns, unit_id)
+            _end_assignments(session, t_ns, Assignment.unit_id == unit_id)
         case RegisterUnit(unit_id=unit_id, label=label):
             _unit(session, unit_id, label=label, registered_ns=t_ns)
         case SetAnchor() as anchor:
@@ -94,8 +97,8 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case SetStart() as start:
             columns = {name: getattr(start, name) for name in _START_COLUMNS}
             _add(session, UnitStart, **key, **columns)
-        case AcknowledgeAlarm() | ResolveAlarm():
-            pass  # the alarm's change comes with the same step
+        case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
+            pass  # what it changed of the alarms comes with the same step
 
 
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
@@ -173,12 +176,10 @@ def _unit(session: Session, unit_id: str, **columns: object) -> None:
     session.execute(statement.on_conflict_do_update(index_elements=[Unit.unit_id], set_=changed))
 
 
-def _end_assignment(session: Session, t_ns: int, unit_id: str) -> None:
+def _end_assignments(session: Session, t_ns: int, which: ColumnElement[bool]) -> None:
     session.execute(
         update(Assignment)
-        .where(
-            Assignment.unit_id == unit_id, Assignment.until_ns.is_(None), Assignment.from_ns < t_ns
-        )
+        .where(which, Assignment.until_ns.is_(None), Assignment.from_ns < t_ns)
         .values(until_ns=t_ns)
     )
 

@@ -1,0 +1,50 @@
+"""Serves the built console; its hashed assets may be kept for ever, its page never."""
+
+from __future__ import annotations
+
+from importlib.resources import as_file, files
+from pathlib import Path
+
+from fastapi import FastAPI
+from fastapi.responses import FileResponse, HTMLResponse, Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+_NOT_BUILT = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Muster</title>
+<h1>The console has not been built</h1>
+<p>In the checkout run <code>npm ci &amp;&amp; npm run build</code> in
+<code>base_station/console</code>, or start with <code>./muster</code>, which does that.
+The API is at <code>/api/v1</code>.</p></html>
+"""
+
+
+class _Assets(StaticFiles):
+    """Their names change with what is in them."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        response = await super().get_response(path, scope)
+        if response.status_code == 200:
+            response.headers["Cache-Control"] = "public, max-age=31536000, immutable"
+        return response
+
+
+def serve_console(app: FastAPI) -> None:
+    """Add ``/`` and the files below it; to be called after every other route was added."""
+    with as_file(files("base_station") / "console" / "dist") as dist:
+        page = Path(dist) / "index.html"
+    if not page.is_file():
+
+        @app.get("/", include_in_schema=False)
+        def not_built() -> HTMLResponse:
+            return HTMLResponse(_NOT_BUILT, 503)
+
+        return
+
+    @app.get("/", include_in_schema=False)
+    def console() -> FileResponse:
+        return FileResponse(page, headers={"Cache-Control": "no-cache"})
+
+    if (page.parent / "assets").is_dir():
+        app.mount("/assets", _Assets(directory=page.parent / "assets"), name="assets")
+    app.mount("/", StaticFiles(directory=page.parent), name="console")

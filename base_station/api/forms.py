@@ -1,0 +1,56 @@
+"""What people may send: every field bounded, nothing unknown, no number that is none.
+
+Names, crews and notes hold no control characters.  Times are milliseconds since 1970.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Path, Query
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from base_station.db.records import FOREVER_NS, Window
+
+NS_PER_MS = 1_000_000
+LAST_MS = FOREVER_NS // NS_PER_MS
+
+_PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
+_ID = r"^[A-Za-z0-9_.:-]{1,128}$"
+
+Name = Annotated[
+    str,
+    StringConstraints(
+        min_length=1, max_length=80, pattern=r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$"
+    ),
+]
+Word = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
+Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]
+Id = Annotated[str, Path(pattern=_ID)]
+UnitIdText = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")]
+UnitId = Annotated[UnitIdText, Path()]
+PersonIdText = Annotated[str, StringConstraints(pattern=_ID)]
+Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0)]
+
+
+class Form(BaseModel):
+    """Base of every body that is read."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+FromMs = Annotated[int, Query(ge=0, le=LAST_MS)]
+UntilMs = Annotated[int, Query(ge=0, le=LAST_MS)]
+
+
+def window(from_ms: FromMs = 0, until_ms: UntilMs = LAST_MS) -> Window:
+    """Dependency: a window of time from the query."""
+    return Window(from_ms * NS_PER_MS, until_ms * NS_PER_MS)
+
+
+def to_ms(t_ns: int) -> int:
+    return t_ns // NS_PER_MS
+
+
+def to_ms_or_none(t_ns: int | None) -> int | None:
+    return None if t_ns is None else t_ns // NS_PER_MS

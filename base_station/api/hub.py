@@ -1,0 +1,146 @@
+"""Spreads a live picture to the consoles that watch it.
+
+A delta is encoded once and the same bytes go to everyone.  A client that cannot keep up loses
+its queue, not the station its memory: once it takes something again it gets a snapshot.  All
+but ``delta`` and ``reset`` is called in the event loop.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+
+import msgspec
+
+from base_station.api.wire import Delta, HealthView, Snapshot
+from base_station.sinks import LiveSource
+
+QUEUE = 64  # messages a client may be behind, some three seconds
+
+
+class Client:
+    """One console's place in the hub."""
+
+    def __init__(self, hub: Hub) -> None:
+        self._hub = hub
+        self._queue: deque[bytes] = deque()
+        self._filled = asyncio.Event()
+        self._behind = False  # lost its queue and needs a snapshot
+        self._waiting = False  # a snapshot is under way
+        self.lapses = 0  # how often it was too slow
+
+    async def next_message(self) -> bytes:
+        """The next message in order, waiting for it."""
+        while not self._queue:
+            self._filled.clear()
+            if self._behind:
+                self.ask_for_snapshot()
+            await self._filled.wait()
+        return self._queue.popleft()
+
+    def ask_for_snapshot(self) -> None:
+        """What is queued is dropped; the next message will be a snapshot."""
+        self._queue.clear()
+        self._behind = False
+        if not self._waiting:
+            self._waiting = True
+            self._hub.request_snapshot()
+
+    def take_delta(self, message: bytes) -> None:
+        if self._waiting or self._behind:
+            return
+        if len(self._queue) >= QUEUE:
+            self._queue.clear()
+            self._behind = True
+            self.lapses += 1
+            return
+        self._put(message)
+
+    def take_snapshot(self, message: bytes, wanted_only: bool) -> None:
+        if wanted_only and not self._waiting:
+            return
+        self._waiting = self._behind = False
+        self._queue.clear()
+        self._put(message)
+
+    def _put(self, message: bytes) -> None:
+        self._queue.append(message)
+        self._filled.set()
+
+
+class Hub:
+    """A ``base_station.sinks.LiveSink`` with any number of clients."""
+
+    def __init__(self) -> None:
+        self._encoder = msgspec.json.Encoder()
+        self._clients: set[Client] = set()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._source: LiveSource | None = None
+        self._requested = False
+        self._watched = False  # read in the source's thread: without clients nothing is encoded
+        self.health: HealthView | None = None  # as last said
+
+    def connect(self, loop: asyncio.AbstractEventLoop, source: LiveSource) -> None:
+        """What the hub was made for; clients may join before."""
+        self._loop, self._source = loop, source
+        if self._clients:
+            self.request_snapshot()
+
+    # ---- in the source's thread
+
+    def delta(self, delta: Delta) -> None:
+        if delta.health is not None:
+            self.health = delta.health
+        if self._watched:
+            self._in_loop(self._spread_delta, self._encoder.encode(delta))
+
+    def reset(self, snapshot: Snapshot) -> None:
+        self.health = snapshot.health
+        if self._watched:
+            self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), False)
+
+    def _deliver(self, snapshot: Snapshot) -> None:
+        self.health = snapshot.health
+        self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), True)
+
+    def _in_loop(self, function: Callable[..., None], *arguments: object) -> None:
+        if self._loop is None:
+            return
+        try:
+            self._loop.call_soon_threadsafe(function, *arguments)
+        except RuntimeError:  # the loop has closed: the station is stopping
+            self._loop = None
+
+    # ---- in the loop
+
+    @property
+    def watchers(self) -> int:
+        return len(self._clients)
+
+    def join(self) -> Client:
+        client = Client(self)
+        self._clients.add(client)
+        self._watched = True
+        client.ask_for_snapshot()
+        return client
+
+    def leave(self, client: Client) -> None:
+        self._clients.discard(client)
+        self._watched = bool(self._clients)
+
+    def request_snapshot(self) -> None:
+        """Many clients that ask at once share one snapshot."""
+        if self._source is not None and not self._requested:
+            self._requested = True
+            self._source.request_snapshot(self._deliver)
+
+    def _spread_delta(self, message: bytes) -> None:
+        for client in self._clients:
+            client.take_delta(message)
+
+    def _spread_snapshot(self, message: bytes, wanted_only: bool) -> None:
+        if wanted_only:
+            self._requested = False
+        for client in self._clients:
+            client.take_snapshot(message, wanted_only)

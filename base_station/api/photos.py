@@ -1,0 +1,48 @@
+"""People's photos: whatever came is decoded, cut to size and written anew, so that nothing but
+the picture is left (no place, no camera, no trailing bytes).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import warnings
+
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from shared.errors import ConfigError
+
+MOST_BYTES = 10_000_000
+MOST_PIXELS = 50_000_000
+SIDE_PX = 320
+_FORMATS = ("JPEG", "PNG", "WEBP")
+
+
+def clean_photo(upload: bytes) -> tuple[bytes, str]:
+    """A square JPEG and its hash.  Raises ConfigError, which says what is wrong with the upload."""
+    if len(upload) > MOST_BYTES:
+        raise ConfigError(f"the photo is larger than {MOST_BYTES // 1_000_000} MB")
+    try:
+        with warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning):
+            picture = _square(upload)
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise ConfigError(_too_many_pixels()) from None
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
+        raise ConfigError("the photo cannot be read; send a JPEG, PNG or WebP file") from error
+    written = io.BytesIO()
+    picture.save(written, "JPEG", quality=85)
+    jpeg = written.getvalue()
+    return jpeg, hashlib.sha256(jpeg).hexdigest()[:16]
+
+
+def _square(upload: bytes) -> Image.Image:
+    with Image.open(io.BytesIO(upload), formats=_FORMATS) as opened:
+        if opened.width * opened.height > MOST_PIXELS:
+            raise ConfigError(_too_many_pixels())
+        opened.draft("RGB", (2 * SIDE_PX, 2 * SIDE_PX))
+        upright = ImageOps.exif_transpose(opened).convert("RGB")
+        return ImageOps.fit(upright, (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
+
+
+def _too_many_pixels() -> str:
+    return f"the photo has more than {MOST_PIXELS // 1_000_000} million pixels"

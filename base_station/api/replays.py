@@ -1,0 +1,107 @@
+"""The replays that consoles have open; each has its own hub and its own pipeline."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from base_station.api.hub import Hub
+from base_station.api.wire import ReplayView
+from base_station.db.models import Incident
+from base_station.sinks import LiveSource
+from shared.errors import UserError
+
+MOST_REPLAYS = 8
+UNWATCHED_S = 60.0  # a replay that nobody looks at ends
+
+
+class ReplayPlayer(LiveSource, Protocol):
+    """One replay.  Its methods may be called from any thread."""
+
+    def play(self) -> None: ...
+
+    def pause(self) -> None: ...
+
+    def seek(self, t_ns: int) -> None: ...
+
+    def set_speed(self, speed: float) -> None: ...
+
+    def view(self) -> ReplayView: ...
+
+    def close(self) -> None:
+        """Stop and join its thread."""
+        ...
+
+
+StartReplay = Callable[[Incident, float, Hub], ReplayPlayer]  # incident, speed, its hub
+
+
+@dataclass
+class OpenReplay:
+    replay_id: str
+    hub: Hub
+    player: ReplayPlayer
+    lasting: bool  # stays though nobody looks
+    watched_s: float = field(default_factory=time.monotonic)
+
+
+class Replays:
+    """Thread-safe."""
+
+    def __init__(self, start: StartReplay) -> None:
+        self._start = start
+        self._open: dict[str, OpenReplay] = {}
+        self._lock = threading.Lock()
+
+    def open(
+        self,
+        incident: Incident,
+        speed: float,
+        loop: asyncio.AbstractEventLoop,
+        replay_id: str | None = None,
+    ) -> OpenReplay:
+        """Start a replay; one that is given its id lasts until it is closed."""
+        with self._lock:
+            if len(self._open) >= MOST_REPLAYS:
+                raise UserError(f"{MOST_REPLAYS} replays are open already; close one of them")
+            hub = Hub()
+            player = self._start(incident, speed, hub)
+            opened = OpenReplay(
+                replay_id or secrets.token_hex(8), hub, player, lasting=replay_id is not None
+            )
+            self._open[opened.replay_id] = opened
+        loop.call_soon_threadsafe(hub.connect, loop, player)
+        return opened
+
+    def get(self, replay_id: str) -> OpenReplay | None:
+        with self._lock:
+            return self._open.get(replay_id)
+
+    def all(self) -> Sequence[OpenReplay]:
+        with self._lock:
+            return tuple(self._open.values())
+
+    def close(self, replay_id: str) -> bool:
+        with self._lock:
+            closed = self._open.pop(replay_id, None)
+        if closed is not None:
+            closed.player.close()
+        return closed is not None
+
+    def close_unwatched(self) -> None:
+        """End those that nobody has looked at for a while; called now and then."""
+        now_s = time.monotonic()
+        for replay in self.all():
+            if replay.hub.watchers or replay.lasting:
+                replay.watched_s = now_s
+            elif now_s - replay.watched_s > UNWATCHED_S:
+                self.close(replay.replay_id)
+
+    def close_all(self) -> None:
+        for replay in self.all():
+            self.close(replay.replay_id)

@@ -1,0 +1,41 @@
+"""The API's routes: one file a resource, all in ``ROUTERS``."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from base_station.api.routes import (
+    alarms,
+    assignments,
+    audit,
+    exports,
+    health,
+    incidents,
+    live,
+    login,
+    people,
+    replays,
+    site,
+    tokens,
+    tracks,
+    units,
+    users,
+)
+
+ROUTERS: tuple[APIRouter, ...] = (
+    login.router,
+    users.router,
+    tokens.router,
+    people.router,
+    units.router,
+    assignments.router,
+    incidents.router,
+    tracks.router,
+    alarms.router,
+    site.router,
+    replays.router,
+    exports.router,
+    health.router,
+    audit.router,
+    live.router,
+)

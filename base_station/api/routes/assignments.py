@@ -1,0 +1,76 @@
+"""Who wears which unit."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends
+from pydantic import BaseModel
+
+from base_station.api.forms import (
+    Form,
+    PersonIdText,
+    UnitId,
+    UnitIdText,
+    to_ms,
+    to_ms_or_none,
+    window,
+)
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Station
+from base_station.db.records import Window
+from shared.messages.station import Assign, Unassign
+
+router = APIRouter(tags=["assignments"])
+
+
+class Assignment(BaseModel):
+    unit_id: str
+    person_id: str
+    person_name: str
+    crew: str
+    role: str
+    from_ms: int
+    until_ms: int | None
+
+
+class NewAssignment(Form):
+    unit_id: UnitIdText
+    person_id: PersonIdText
+
+
+@router.get("/assignments")
+def list_assignments(
+    station: Station, _: Viewer, when: Annotated[Window, Depends(window)]
+) -> list[Assignment]:
+    return [
+        Assignment(
+            unit_id=one.unit_id,
+            person_id=one.person_id,
+            person_name=one.person_name,
+            crew=one.crew,
+            role=one.role,
+            from_ms=to_ms(one.from_ns),
+            until_ms=to_ms_or_none(one.until_ns),
+        )
+        for one in station.roster.assignments(when.from_ns, when.until_ns)
+    ]
+
+
+@router.post("/assignments", status_code=204)
+def assign(new: NewAssignment, station: Station, who: Commander) -> None:
+    """From now on this person wears this unit, and no other."""
+    person = station.roster.person(new.person_id)
+    if person is None:
+        raise Problem(404, "There is no such person.")
+    station.act(
+        who.username,
+        Assign(new.unit_id, person.person_id, person.name, person.crew, person.role),
+    )
+
+
+@router.delete("/assignments/{unit_id}", status_code=204)
+def unassign(unit_id: UnitId, station: Station, who: Commander) -> None:
+    """Nobody wears this unit from now on."""
+    station.act(who.username, Unassign(unit_id))

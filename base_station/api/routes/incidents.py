@@ -1,0 +1,88 @@
+"""Incidents: named windows of time, opened and closed by the commander."""
+
+from __future__ import annotations
+
+import secrets
+from datetime import UTC, datetime
+
+from fastapi import APIRouter
+from pydantic import BaseModel
+
+from base_station.api.forms import Form, Id, Name, to_ms, to_ms_or_none
+from base_station.api.problems import Problem
+from base_station.api.routes.alarms import Alarm, alarm_of
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.db import models
+from base_station.db.records import FOREVER_NS, Window
+from shared.clock import NS_PER_S
+from shared.messages.station import CloseIncident, OpenIncident
+
+router = APIRouter(tags=["incidents"])
+
+
+class Incident(BaseModel):
+    incident_id: str
+    name: str
+    opened_ms: int
+    opened_by: str
+    closed_ms: int | None
+    closed_by: str
+
+
+class NewIncident(Form):
+    name: Name
+
+
+def incident_or_404(station: Services, incident_id: str) -> models.Incident:
+    incident = station.records.incident(incident_id)
+    if incident is None:
+        raise Problem(404, f"There is no incident {incident_id}.")
+    return incident
+
+
+def window_of(incident: models.Incident) -> Window:
+    return Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
+
+
+@router.get("/incidents")
+def list_incidents(station: Station, _: Viewer) -> list[Incident]:
+    """Newest first."""
+    return [_incident(incident) for incident in station.records.incidents()]
+
+
+@router.post("/incidents", status_code=201)
+def open_incident(new: NewIncident, station: Station, who: Commander) -> Incident:
+    opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
+    incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
+    station.act(who.username, OpenIncident(incident_id, new.name))
+    return _incident(incident_or_404(station, incident_id))
+
+
+@router.get("/incidents/{incident_id}")
+def get_incident(incident_id: Id, station: Station, _: Viewer) -> Incident:
+    return _incident(incident_or_404(station, incident_id))
+
+
+@router.post("/incidents/{incident_id}/close", status_code=204)
+def close_incident(incident_id: Id, station: Station, who: Commander) -> None:
+    incident_or_404(station, incident_id)
+    station.act(who.username, CloseIncident(incident_id))
+
+
+@router.get("/incidents/{incident_id}/alarms")
+def incident_alarms(incident_id: Id, station: Station, _: Viewer) -> list[Alarm]:
+    """What was raised while the incident was open, oldest first."""
+    window = window_of(incident_or_404(station, incident_id))
+    return [alarm_of(alarm) for alarm in station.records.alarms(window)]
+
+
+def _incident(incident: models.Incident) -> Incident:
+    return Incident(
+        incident_id=incident.incident_id,
+        name=incident.name,
+        opened_ms=to_ms(incident.opened_ns),
+        opened_by=incident.opened_by,
+        closed_ms=to_ms_or_none(incident.closed_ns),
+        closed_by=incident.closed_by,
+    )

@@ -1,0 +1,127 @@
+"""The WebSockets: the live picture, and that of one replay."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+
+import msgspec
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from starlette.concurrency import run_in_threadpool
+
+from base_station.api.hub import Client, Hub
+from base_station.api.security import is_own_origin, principal_of
+from base_station.api.services import Services, services_of
+
+router = APIRouter()
+
+NOT_LOGGED_IN = 4401
+NOT_FOUND = 4404
+TOO_SLOW = 4408
+NOT_UNDERSTOOD = 4400
+SEND_TIMEOUT_S = 20.0  # one message takes longer: the console is gone
+MOST_LAPSES = 30  # how often a console may fall behind
+CHECK_LOGIN_S = 10.0
+
+_log = logging.getLogger(__name__)
+
+
+class Closing(Exception):  # noqa: N818  # it is no error
+    """Ends a WebSocket with a code and a reason."""
+
+    def __init__(self, code: int, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+        self.reason = reason
+
+
+class Request(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):
+    """All that a console may ask: the picture anew."""
+
+
+@router.websocket("/live")
+async def live(socket: WebSocket) -> None:
+    await _serve(socket, services_of(socket).hub)
+
+
+@router.websocket("/replays/{replay_id}/live")
+async def replay_live(socket: WebSocket, replay_id: str) -> None:
+    replay = services_of(socket).replays.get(replay_id)
+    await _serve(socket, None if replay is None else replay.hub)
+
+
+async def _serve(socket: WebSocket, hub: Hub | None) -> None:
+    if not is_own_origin(socket):
+        await socket.close()  # before it was accepted: the browser gets a 403
+        return
+    services = services_of(socket)
+    await socket.accept()
+    try:
+        await _check_login(socket, services)
+        if hub is None:
+            raise Closing(NOT_FOUND, "there is no such replay; it may have ended")
+        await _watch(socket, services, hub)
+    except Closing as closing:
+        await _close(socket, closing)
+    except WebSocketDisconnect:
+        pass
+
+
+async def _watch(socket: WebSocket, services: Services, hub: Hub) -> None:
+    """Until one of the three is over."""
+    client = hub.join()
+    tasks = {
+        asyncio.create_task(_send(socket, client)),
+        asyncio.create_task(_listen(socket, client)),
+        asyncio.create_task(_keep_checking(socket, services)),
+    }
+    try:
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        hub.leave(client)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+    for task in done:
+        task.result()
+
+
+async def _send(socket: WebSocket, client: Client) -> None:
+    while True:
+        message = await client.next_message()
+        if client.lapses > MOST_LAPSES:
+            raise Closing(TOO_SLOW, "this console is too slow for what happens")
+        try:
+            async with asyncio.timeout(SEND_TIMEOUT_S):
+                await socket.send_text(message.decode())
+        except TimeoutError:
+            raise Closing(TOO_SLOW, "this console has stopped reading") from None
+
+
+async def _listen(socket: WebSocket, client: Client) -> None:
+    while True:
+        try:
+            msgspec.json.decode(await socket.receive_text(), type=Request)
+        except (msgspec.DecodeError, KeyError):
+            raise Closing(NOT_UNDERSTOOD, 'all that can be asked is {"type": "snapshot"}') from None
+        client.ask_for_snapshot()
+
+
+async def _keep_checking(socket: WebSocket, services: Services) -> None:
+    """A session that ended takes its WebSockets along."""
+    while True:
+        await asyncio.sleep(CHECK_LOGIN_S)
+        await _check_login(socket, services)
+
+
+async def _check_login(socket: WebSocket, services: Services) -> None:
+    if await run_in_threadpool(principal_of, socket, services) is None:
+        raise Closing(NOT_LOGGED_IN, "log in first")
+
+
+async def _close(socket: WebSocket, closing: Closing) -> None:
+    try:
+        async with asyncio.timeout(1.0):
+            await socket.close(closing.code, closing.reason)
+    except (TimeoutError, WebSocketDisconnect, RuntimeError):
+        _log.info("a console was cut off: %s", closing.reason)

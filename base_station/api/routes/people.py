@@ -1,0 +1,111 @@
+"""The roster of people, and their photos."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Response
+from pydantic import BaseModel
+
+from base_station.api.forms import Form, Id, Name, Word
+from base_station.api.photos import clean_photo
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.db import models
+from shared.messages.station import Assign
+
+router = APIRouter(tags=["people"])
+
+_NO_PERSON = "There is no such person."
+
+
+class Person(BaseModel):
+    person_id: str
+    name: str
+    crew: str
+    role: str
+    photo_url: str | None
+
+
+class PersonForm(Form):
+    name: Name
+    crew: Word = ""
+    role: Word = ""
+
+
+def _person(person: models.Person, station: Services) -> Person:
+    return Person(
+        person_id=person.person_id,
+        name=person.name,
+        crew=person.crew,
+        role=person.role,
+        photo_url=station.roster.photo_url(person.person_id),
+    )
+
+
+@router.get("/people")
+def list_people(station: Station, _: Viewer) -> list[Person]:
+    return [_person(person, station) for person in station.roster.people()]
+
+
+@router.post("/people", status_code=201)
+def add_person(form: PersonForm, station: Station, who: Commander) -> Person:
+    person = station.roster.add_person(form.name, form.crew, form.role)
+    station.records.audit(who.username, "AddedPerson", f"{person.person_id} {form.name}")
+    return _person(person, station)
+
+
+@router.get("/people/{person_id}")
+def get_person(person_id: Id, station: Station, _: Viewer) -> Person:
+    person = station.roster.person(person_id)
+    if person is None:
+        raise Problem(404, _NO_PERSON)
+    return _person(person, station)
+
+
+@router.put("/people/{person_id}")
+def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> Person:
+    """Whoever wears a unit is shown with the new name at once."""
+    person = station.roster.change_person(person_id, form.name, form.crew, form.role)
+    if person is None:
+        raise Problem(404, _NO_PERSON)
+    for unit_id in station.roster.worn_by(person_id):
+        station.act(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
+    station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
+    return _person(person, station)
+
+
+@router.delete("/people/{person_id}", status_code=204)
+def remove_person(person_id: Id, station: Station, who: Commander) -> None:
+    if not station.roster.remove_person(person_id):
+        raise Problem(404, _NO_PERSON)
+    station.records.audit(who.username, "RemovedPerson", person_id)
+
+
+@router.put("/people/{person_id}/photo", status_code=204)
+def set_photo(
+    person_id: Id,
+    photo: Annotated[bytes, Body(media_type="image/jpeg")],
+    station: Station,
+    who: Commander,
+) -> None:
+    """JPEG, PNG or WebP; kept as a small square without its metadata."""
+    jpeg, photo_hash = clean_photo(photo)
+    person = station.roster.set_photo(person_id, jpeg, photo_hash)
+    if person is None:
+        raise Problem(404, _NO_PERSON)
+    for unit_id in station.roster.worn_by(person_id):
+        station.act(who.username, Assign(unit_id, person_id, person.name, person.crew, person.role))
+    station.records.audit(who.username, "SetPhoto", person_id)
+
+
+@router.get("/people/{person_id}/photo", response_class=Response)
+def get_photo(person_id: Id, station: Station, _: Viewer) -> Response:
+    found = station.roster.photo(person_id)
+    if found is None:
+        raise Problem(404, "There is no photo of this person.")
+    jpeg, photo_hash = found
+    # The address changes with the photo; only this browser may keep it.
+    headers = {"Cache-Control": "private, max-age=86400", "ETag": f'"{photo_hash}"'}
+    return Response(jpeg, media_type="image/jpeg", headers=headers)

@@ -1,0 +1,98 @@
+"""Replays of past incidents, and their controls."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import LAST_MS, NS_PER_MS, Form, Id, PersonIdText
+from base_station.api.problems import Problem
+from base_station.api.replays import OpenReplay
+from base_station.api.routes.incidents import incident_or_404
+from base_station.api.security import Viewer
+from base_station.api.services import Services, Station
+
+router = APIRouter(tags=["replays"])
+
+Speed = Annotated[float, Field(gt=0.0, le=1000.0)]
+
+
+class NewReplay(Form):
+    incident_id: PersonIdText
+    speed: Speed = 1.0
+
+
+class ReplayChange(Form):
+    """What is given is changed: first the place, then the speed, then whether it plays."""
+
+    at_ms: Annotated[int, Field(ge=0, le=LAST_MS)] | None = None
+    speed: Speed | None = None
+    playing: bool | None = None
+
+
+class Replay(BaseModel):
+    replay_id: str
+    incident_id: str
+    start_ms: int
+    end_ms: int
+    at_ms: int
+    speed: float
+    playing: bool
+
+
+@router.get("/replays")
+def list_replays(station: Station, _: Viewer) -> list[Replay]:
+    return [_replay(replay) for replay in station.replays.all()]
+
+
+@router.post("/replays", status_code=201)
+def start_replay(new: NewReplay, station: Station, _: Viewer, request: Request) -> Replay:
+    """It plays from its beginning; it ends by itself when nobody looks at it any more."""
+    loop: asyncio.AbstractEventLoop = request.app.state.loop
+    incident = incident_or_404(station, new.incident_id)
+    return _replay(station.replays.open(incident, new.speed, loop))
+
+
+@router.get("/replays/{replay_id}")
+def get_replay(replay_id: Id, station: Station, _: Viewer) -> Replay:
+    return _replay(_replay_or_404(station, replay_id))
+
+
+@router.post("/replays/{replay_id}", status_code=204)
+def change_replay(replay_id: Id, change: ReplayChange, station: Station, _: Viewer) -> None:
+    player = _replay_or_404(station, replay_id).player
+    if change.at_ms is not None:
+        player.seek(change.at_ms * NS_PER_MS)
+    if change.speed is not None:
+        player.set_speed(change.speed)
+    if change.playing is not None:
+        (player.play if change.playing else player.pause)()
+
+
+@router.delete("/replays/{replay_id}", status_code=204)
+def end_replay(replay_id: Id, station: Station, _: Viewer) -> None:
+    if not station.replays.close(replay_id):
+        raise Problem(404, "There is no such replay; it may have ended.")
+
+
+def _replay_or_404(station: Services, replay_id: str) -> OpenReplay:
+    replay = station.replays.get(replay_id)
+    if replay is None:
+        raise Problem(404, "There is no such replay; it may have ended.")
+    return replay
+
+
+def _replay(replay: OpenReplay) -> Replay:
+    view = replay.player.view()
+    return Replay(
+        replay_id=replay.replay_id,
+        incident_id=view.incident_id,
+        start_ms=view.start_ms,
+        end_ms=view.end_ms,
+        at_ms=view.at_ms,
+        speed=view.speed,
+        playing=view.playing,
+    )

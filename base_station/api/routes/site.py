@@ -1,0 +1,73 @@
+"""The site: the building's plan, and where on the Earth it stands."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import msgspec
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import Form
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Station
+from base_station.plan import read_plan
+from shared.errors import UserError
+from shared.messages.station import SetAnchor, SetPlan
+
+router = APIRouter(tags=["site"])
+
+
+class AnchorForm(Form):
+    """The incident frame's origin (WGS-84) and the true heading of the plan's north."""
+
+    lat_deg: Annotated[float, Field(ge=-90.0, le=90.0)]
+    lon_deg: Annotated[float, Field(ge=-180.0, le=180.0)]
+    height_m: Annotated[float, Field(ge=-1000.0, le=10_000.0)] = 0.0
+    plan_rotation_rad: Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)] = 0.0
+
+
+class Anchor(BaseModel):
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    plan_rotation_rad: float
+
+
+@router.get("/site/anchor")
+def get_anchor(station: Station, _: Viewer) -> Anchor | None:
+    anchor = station.records.anchor()
+    if anchor is None:
+        return None
+    return Anchor(
+        lat_deg=anchor.lat_deg,
+        lon_deg=anchor.lon_deg,
+        height_m=anchor.height_m,
+        plan_rotation_rad=anchor.plan_rotation_rad,
+    )
+
+
+@router.put("/site/anchor", status_code=204)
+def set_anchor(form: AnchorForm, station: Station, who: Commander) -> None:
+    station.act(who.username, SetAnchor(**form.model_dump()))
+
+
+@router.get("/site/plan", response_class=Response)
+def get_plan(station: Station, _: Viewer) -> Response:
+    geojson = station.records.plan()
+    if geojson is None:
+        raise Problem(404, "There is no plan.")
+    return Response(geojson, media_type="application/geo+json")
+
+
+@router.put("/site/plan", status_code=204)
+def set_plan(plan: dict[str, Any], station: Station, who: Commander) -> None:
+    """GeoJSON in site metres; the documentation of messages shows one."""
+    try:
+        geojson = msgspec.json.encode(plan)
+        read_plan(geojson)
+    except (UserError, ValueError, OverflowError) as error:
+        raise Problem(422, str(error)) from error
+    station.act(who.username, SetPlan(geojson))

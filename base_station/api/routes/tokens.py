@@ -1,0 +1,71 @@
+"""API tokens for programs: each has its owner's role or a lower one."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import Form, Id, Name, to_ms, to_ms_or_none
+from base_station.api.problems import Problem
+from base_station.api.routes.users import RoleWord
+from base_station.api.security import Viewer
+from base_station.api.services import Station
+from base_station.db.accounts import Role
+from shared.clock import NS_PER_S
+
+router = APIRouter(tags=["tokens"])
+
+_NS_PER_DAY = 86_400 * NS_PER_S
+
+
+class Token(BaseModel):
+    token_id: str
+    name: str
+    role: str
+    created_ms: int
+    expires_ms: int | None
+
+
+class NewToken(Form):
+    name: Name
+    role: RoleWord
+    days: Annotated[int, Field(ge=1, le=3660)] | None = None
+
+
+class TokenSecret(BaseModel):
+    token_id: str
+    token: str  # shown this once
+
+
+@router.get("/tokens")
+def list_tokens(station: Station, who: Viewer) -> list[Token]:
+    return [
+        Token(
+            token_id=token.token_id,
+            name=token.name,
+            role=token.role,
+            created_ms=to_ms(token.created_ns),
+            expires_ms=to_ms_or_none(token.expires_ns),
+        )
+        for token in station.accounts.tokens(who.username)
+    ]
+
+
+@router.post("/tokens", status_code=201)
+def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
+    expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * _NS_PER_DAY
+    role = Role.of(new.role)
+    if role > who.role:  # a token makes no token that may do more than itself
+        raise Problem(403, f"You are {who.role.word}; a token of yours cannot be {new.role}.")
+    token_id, secret = station.accounts.add_token(who.username, new.name, role, expires_ns)
+    station.records.audit(who.username, "AddedToken", f"{new.name} as {new.role}")
+    return TokenSecret(token_id=token_id, token=secret)
+
+
+@router.delete("/tokens/{token_id}", status_code=204)
+def remove_token(token_id: Id, station: Station, who: Viewer) -> None:
+    if not station.accounts.remove_token(who.username, token_id):
+        raise Problem(404, "You have no such token.")
+    station.records.audit(who.username, "RemovedToken", token_id)

@@ -1,0 +1,80 @@
+"""Where units were: one point a second, or fewer."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query
+from pydantic import BaseModel
+
+from base_station.api.forms import Id, UnitId, to_ms, window
+from base_station.api.routes.incidents import incident_or_404, window_of
+from base_station.api.security import Viewer
+from base_station.api.services import Services, Station
+from base_station.db import models
+from base_station.db.records import Window
+
+router = APIRouter(tags=["tracks"])
+
+EverySeconds = Annotated[int, Query(ge=1, le=3600)]
+
+
+class TrackPoint(BaseModel):
+    """NED metres about the site anchor."""
+
+    t_ms: int
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    heading_rad: float
+    floor: int | None
+    quality: str
+
+
+class Track(BaseModel):
+    unit_id: str
+    points: list[TrackPoint]
+
+
+@router.get("/units/{unit_id}/track")
+def unit_track(
+    unit_id: UnitId,
+    station: Station,
+    _: Viewer,
+    when: Annotated[Window, Depends(window)],
+    every_s: EverySeconds = 1,
+) -> Track:
+    return _track(station, unit_id, when, every_s)
+
+
+@router.get("/incidents/{incident_id}/tracks")
+def incident_tracks(
+    incident_id: Id, station: Station, _: Viewer, every_s: EverySeconds = 1
+) -> list[Track]:
+    """Of every unit that moved while the incident was open."""
+    when = window_of(incident_or_404(station, incident_id))
+    units = station.records.track_units(when)
+    return [_track(station, unit_id, when, every_s) for unit_id in units]
+
+
+def _track(station: Services, unit_id: str, when: Window, every_s: int) -> Track:
+    points = station.records.track(unit_id, when, every_s)
+    return Track(unit_id=unit_id, points=[_point(point) for point in points])
+
+
+def _point(point: models.TrackPoint) -> TrackPoint:
+    return TrackPoint(
+        t_ms=to_ms(point.t_ns),
+        north_m=point.north_m,
+        east_m=point.east_m,
+        down_m=point.down_m,
+        std_north_m=point.std_north_m,
+        std_east_m=point.std_east_m,
+        std_down_m=point.std_down_m,
+        heading_rad=point.heading_rad,
+        floor=point.floor,
+        quality=point.quality,
+    )

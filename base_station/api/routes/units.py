@@ -1,0 +1,105 @@
+"""The wearable units: heard, registered, labelled, and where each began."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import Form, Metres, UnitId, UnitIdText, Word, to_ms_or_none
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.db import models
+from shared.channels import validate_unit_id
+from shared.messages.station import RegisterUnit, SetStart
+
+router = APIRouter(tags=["units"])
+
+
+class Unit(BaseModel):
+    unit_id: str
+    label: str
+    registered: bool
+    person_id: str | None
+    last_heard_ms: int | None
+    software_version: str
+    source: str
+    sensor_name: str
+    tracker: str
+    calibration: str
+    has_gps: bool
+
+
+class NewUnit(Form):
+    unit_id: UnitIdText
+    label: Word = ""
+
+
+class Label(Form):
+    label: Word
+
+
+class Start(Form):
+    """Where the unit's own frame began, in the incident frame, as well as it is known."""
+
+    north_m: Metres
+    east_m: Metres
+    down_m: Metres = 0.0
+    heading_rad: Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)] = 0.0
+    std_m: Annotated[float, Field(gt=0.0, le=1000.0)] = 1.0
+    heading_std_rad: Annotated[float, Field(gt=0.0, le=math.pi)] = math.pi
+
+
+@router.get("/units")
+def list_units(station: Station, _: Viewer) -> list[Unit]:
+    return [_unit(unit, worn) for unit, worn in station.roster.units()]
+
+
+@router.post("/units", status_code=201)
+def register_unit(new: NewUnit, station: Station, who: Commander) -> Unit:
+    """From now on messages of this unit are believed; registering again changes its label."""
+    validate_unit_id(new.unit_id)
+    station.act(who.username, RegisterUnit(new.unit_id, new.label))
+    return _one(station, new.unit_id)
+
+
+@router.put("/units/{unit_id}")
+def label_unit(unit_id: UnitId, change: Label, station: Station, who: Commander) -> Unit:
+    unit = station.roster.unit(unit_id)
+    if unit is None or unit.registered_ns is None:
+        raise Problem(404, f"There is no registered unit {unit_id}.")
+    station.act(who.username, RegisterUnit(unit_id, change.label))
+    return _one(station, unit_id)
+
+
+@router.put("/units/{unit_id}/start", status_code=204)
+def set_start(unit_id: UnitId, start: Start, station: Station, who: Commander) -> None:
+    if station.roster.unit(unit_id) is None:
+        raise Problem(404, f"There is no unit {unit_id}.")
+    station.act(who.username, SetStart(unit_id, **start.model_dump()))
+
+
+def _one(station: Services, unit_id: str) -> Unit:
+    for unit, worn in station.roster.units():
+        if unit.unit_id == unit_id:
+            return _unit(unit, worn)
+    raise Problem(503, "The unit is registered, but the database has not taken it yet.")
+
+
+def _unit(unit: models.Unit, worn: models.Assignment | None) -> Unit:
+    return Unit(
+        unit_id=unit.unit_id,
+        label=unit.label,
+        registered=unit.registered_ns is not None,
+        person_id=None if worn is None else worn.person_id,
+        last_heard_ms=to_ms_or_none(unit.last_heard_ns),
+        software_version=unit.software_version,
+        source=unit.source,
+        sensor_name=unit.sensor_name,
+        tracker=unit.tracker,
+        calibration=unit.calibration,
+        has_gps=unit.has_gps,
+    )

@@ -1,0 +1,84 @@
+"""The people who may log in; an administrator's work, but everyone changes their own password."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+from pydantic import BaseModel, StringConstraints
+
+from base_station.api.forms import Form, Name, to_ms
+from base_station.api.problems import Problem
+from base_station.api.security import Administrator, Throttle, Viewer
+from base_station.api.services import Station
+from base_station.db.accounts import MIN_PASSWORD, Role
+
+router = APIRouter(tags=["users"])
+
+Password = Annotated[str, StringConstraints(min_length=MIN_PASSWORD, max_length=256)]
+RoleWord = Annotated[str, StringConstraints(pattern="^(viewer|commander|administrator)$")]
+Username = Annotated[str, Path(min_length=1, max_length=80)]
+
+
+class User(BaseModel):
+    username: str
+    role: str
+    created_ms: int
+
+
+class NewUser(Form):
+    username: Name
+    password: Password
+    role: RoleWord
+
+
+class UserChange(Form):
+    password: Password | None = None
+    role: RoleWord | None = None
+
+
+class PasswordChange(Form):
+    old_password: Annotated[str, StringConstraints(max_length=256)]
+    new_password: Password
+
+
+@router.get("/users")
+def list_users(station: Station, _: Administrator) -> list[User]:
+    return [
+        User(username=user.username, role=user.role, created_ms=to_ms(user.created_ns))
+        for user in station.accounts.users()
+    ]
+
+
+@router.post("/users", status_code=204)
+def add_user(new: NewUser, station: Station, who: Administrator) -> None:
+    station.accounts.add_user(new.username, new.password, Role.of(new.role))
+    station.records.audit(who.username, "AddedUser", f"{new.username} as {new.role}")
+
+
+@router.put("/users/{username}", status_code=204)
+def change_user(
+    username: Username, change: UserChange, station: Station, who: Administrator
+) -> None:
+    role = None if change.role is None else Role.of(change.role)
+    station.accounts.change_user(username, change.password, role)
+    what = [*(["password"] if change.password else []), *([change.role] if change.role else [])]
+    station.records.audit(who.username, "ChangedUser", f"{username}: {', '.join(what)}")
+
+
+@router.delete("/users/{username}", status_code=204)
+def remove_user(username: Username, station: Station, who: Administrator) -> None:
+    station.accounts.remove_user(username)
+    station.records.audit(who.username, "RemovedUser", username)
+
+
+@router.post("/me/password", status_code=204)
+def change_own_password(
+    change: PasswordChange, station: Station, who: Viewer, throttle: Throttle
+) -> None:
+    """Ends all sessions of the user, this one too."""
+    throttle.check("own password", who.username)
+    if station.accounts.log_in(who.username, change.old_password) is None:
+        raise Problem(403, "The old password is wrong.")
+    station.accounts.change_user(who.username, change.new_password, None)
+    station.records.audit(who.username, "ChangedOwnPassword", "")

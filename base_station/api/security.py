@@ -1,0 +1,121 @@
+"""Who is asking, and whether they may.
+
+A browser has a session cookie; a program has an API token (``Authorization: Bearer``).  A page
+of another origin can do nothing with the cookie: it is ``SameSite=Strict``, and what changes
+something must come with the station's own ``Origin``.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+from urllib.parse import urlsplit
+
+from fastapi import Depends, Request
+from fastapi.security import APIKeyCookie, HTTPBearer
+from limits import parse
+from limits.storage import MemoryStorage
+from limits.strategies import MovingWindowRateLimiter
+from starlette.requests import HTTPConnection
+
+from base_station.api.problems import Problem
+from base_station.api.services import Services, Station
+from base_station.db.accounts import Principal, Role
+
+COOKIE = "muster_session"
+_SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+_LOGINS_OF_ONE = parse("10/minute")  # one name from one address
+_LOGINS_OF_ALL = parse("60/minute")  # any name from one address
+
+# They declare the schemes in the OpenAPI document; ``principal_of`` reads the headers itself.
+_cookie_scheme = APIKeyCookie(name=COOKIE, auto_error=False)
+_token_scheme = HTTPBearer(auto_error=False)
+
+
+def principal_of(connection: HTTPConnection, services: Services) -> Principal | None:
+    """Whoever the cookie or the token stands for."""
+    kind, _, secret = connection.headers.get("authorization", "").partition(" ")
+    if kind.lower() == "bearer":
+        return services.accounts.of_token(secret.strip())
+    cookie = connection.cookies.get(COOKIE)
+    return None if cookie is None else services.accounts.of_session(cookie)
+
+
+def is_own_origin(connection: HTTPConnection) -> bool:
+    """Whether the page that asks was served by this station; True where none is named."""
+    origin = connection.headers.get("origin")
+    if origin is None:
+        return True
+    host = connection.headers.get("host", "")
+    return urlsplit(origin).netloc == host and host != ""
+
+
+def check_origin(connection: HTTPConnection) -> None:
+    """Dependency of every route: nothing is changed at the wish of another site.
+
+    WebSockets check theirs in the handshake.
+    """
+    if connection.scope.get("method", "GET") in _SAFE_METHODS:
+        return
+    if not is_own_origin(connection):
+        raise Problem(403, "This was asked by a page that is not the station's own.")
+    by_cookie = COOKIE in connection.cookies and "authorization" not in connection.headers
+    if by_cookie and "origin" not in connection.headers:
+        raise Problem(403, "A browser's request must name its origin; programs use an API token.")
+
+
+def _signed_in(
+    request: Request,
+    services: Station,
+    _cookie: Annotated[object, Depends(_cookie_scheme)],
+    _token: Annotated[object, Depends(_token_scheme)],
+) -> Principal:
+    principal = principal_of(request, services)
+    if principal is None:
+        raise Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
+    return principal
+
+
+Viewer = Annotated[Principal, Depends(_signed_in)]
+
+
+def _commander(principal: Viewer) -> Principal:
+    return _at_least(principal, Role.COMMANDER)
+
+
+def _administrator(principal: Viewer) -> Principal:
+    return _at_least(principal, Role.ADMINISTRATOR)
+
+
+Commander = Annotated[Principal, Depends(_commander)]
+Administrator = Annotated[Principal, Depends(_administrator)]
+
+
+def _at_least(principal: Principal, role: Role) -> Principal:
+    if principal.role < role:
+        raise Problem(
+            403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
+        )
+    return principal
+
+
+class LoginThrottle:
+    """How often passwords may be tried."""
+
+    def __init__(self) -> None:
+        self._limiter = MovingWindowRateLimiter(MemoryStorage())
+
+    def check(self, address: str, username: str) -> None:
+        """Count a try; Problem 429 where there were too many."""
+        allowed = self._limiter.hit(_LOGINS_OF_ALL, address) and self._limiter.hit(
+            _LOGINS_OF_ONE, address, username
+        )
+        if not allowed:
+            raise Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
+
+
+def throttle_of(request: Request) -> LoginThrottle:
+    throttle: LoginThrottle = request.app.state.login_throttle
+    return throttle
+
+
+Throttle = Annotated[LoginThrottle, Depends(throttle_of)]

@@ -1,0 +1,58 @@
+"""What the routes work with, and how they reach it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from base_station.api.hub import Hub
+from base_station.api.replays import Replays
+from base_station.db.accounts import Accounts
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.sinks import ActionDone, OperatorGate
+from shared.clock import Clock
+from shared.errors import StoreError, UserError
+from shared.messages.station import Action
+
+ACTION_TIMEOUT_S = 10.0
+
+
+@dataclass(frozen=True)
+class Services:
+    accounts: Accounts
+    roster: Roster
+    records: Records
+    hub: Hub
+    gate: OperatorGate
+    settle: Callable[[], object]  # waits until what was decided can be read from the store
+    replays: Replays
+    clock: Clock
+    secure: bool  # the console is served over TLS
+
+    def act(self, by: str, action: Action) -> ActionDone:
+        """Have the drive take a person's action, and wait until it can be read everywhere.
+
+        Raises UserError with the reason where the action had no effect.
+        """
+        try:
+            done = self.gate.submit(by, action).result(ACTION_TIMEOUT_S)
+        except FutureTimeoutError:
+            raise StoreError("the station is too busy to take this now; try again") from None
+        if done.refused is not None:
+            raise UserError(done.refused.reason)
+        self.settle()
+        return done
+
+
+def services_of(connection: HTTPConnection) -> Services:
+    services: Services = connection.app.state.services
+    return services
+
+
+Station = Annotated[Services, Depends(services_of)]

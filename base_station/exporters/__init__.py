@@ -1,0 +1,10 @@
+"""What an incident can be written as.  A new format is a file and a line here."""
+
+from __future__ import annotations
+
+from base_station.exporters.csv_tracks import CSV
+from base_station.exporters.geojson import GEOJSON
+from base_station.exporters.gpx import GPX
+from base_station.exporters.port import Exporter
+
+EXPORTERS: tuple[Exporter, ...] = (GPX, GEOJSON, CSV)

@@ -1,0 +1,52 @@
+"""CSV: one row a point; places on the Earth where the site has an anchor."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from base_station.exporters.port import Exporter, IncidentTracks
+from shared.clock import NS_PER_S
+
+COLUMNS = (
+    "unit_id", "person", "crew", "t_utc_s", "north_m", "east_m", "down_m",
+    "std_north_m", "std_east_m", "std_down_m", "floor", "quality",
+    "lat_deg", "lon_deg", "height_m",
+)  # fmt: skip
+_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+
+
+def export_csv(incident: IncidentTracks) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(COLUMNS)
+    for track in incident.tracks:
+        who = (track.unit_id, _plain(track.person_name), _plain(track.crew))
+        for point in track.points:
+            metres = (
+                point.north_m, point.east_m, point.down_m,
+                point.std_north_m, point.std_east_m, point.std_down_m,
+            )  # fmt: skip
+            place: tuple[str, ...] = ("", "", "")
+            if incident.anchor is not None:
+                lat_deg, lon_deg, height_m = incident.anchor.to_geodetic(*metres[:3])
+                place = (f"{lat_deg:.8f}", f"{lon_deg:.8f}", f"{height_m:.2f}")
+            writer.writerow(
+                (
+                    *who,
+                    f"{point.t_ns / NS_PER_S:.3f}",
+                    *(f"{value:.3f}" for value in metres),
+                    "" if point.floor is None else point.floor,
+                    point.quality,
+                    *place,
+                )
+            )
+    return text.getvalue().encode()
+
+
+def _plain(text: str) -> str:
+    """A name must not become a formula in a spreadsheet."""
+    return f"'{text}" if text.startswith(_FORMULA_STARTS) else text
+
+
+CSV = Exporter("csv", "csv", "text/csv; charset=utf-8", False, export_csv)

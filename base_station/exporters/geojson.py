@@ -1,0 +1,51 @@
+"""GeoJSON (RFC 7946): one line a wearer, ``[lon, lat, height]``, with the times beside it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from shared.geo import Anchor
+
+_NS_PER_MS = 1_000_000
+
+
+def export_geojson(incident: IncidentTracks) -> bytes:
+    anchor = incident.anchor_or_refuse()
+    return msgspec.json.encode(
+        {
+            "type": "FeatureCollection",
+            "features": [_feature(track, anchor) for track in incident.tracks],
+        }
+    )
+
+
+def _feature(track: WornTrack, anchor: Anchor) -> dict[str, Any]:
+    places = [_place(anchor, point.north_m, point.east_m, point.down_m) for point in track.points]
+    # A line needs two places.
+    geometry = (
+        {"type": "LineString", "coordinates": places}
+        if len(places) > 1
+        else {"type": "Point", "coordinates": places[0]}
+    )
+    return {
+        "type": "Feature",
+        "geometry": geometry,
+        "properties": {
+            "unit_id": track.unit_id,
+            "name": track.title,
+            "crew": track.crew,
+            "times_ms": [point.t_ns // _NS_PER_MS for point in track.points],
+            "floors": [point.floor for point in track.points],
+        },
+    }
+
+
+def _place(anchor: Anchor, north_m: float, east_m: float, down_m: float) -> list[float]:
+    lat_deg, lon_deg, height_m = anchor.to_geodetic(north_m, east_m, down_m)
+    return [round(lon_deg, 8), round(lat_deg, 8), round(height_m, 2)]
+
+
+GEOJSON = Exporter("geojson", "geojson", "application/geo+json", True, export_geojson)

@@ -1,0 +1,42 @@
+"""GPX 1.1: one ``trk`` a wearer; heights are above the ellipsoid."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from xml.etree import ElementTree as ET
+
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from shared.clock import NS_PER_S
+from shared.geo import Anchor
+
+_NAMESPACE = "http://www.topografix.com/GPX/1/1"
+
+
+def export_gpx(incident: IncidentTracks) -> bytes:
+    anchor = incident.anchor_or_refuse()
+    gpx = ET.Element("gpx", version="1.1", creator="Muster", xmlns=_NAMESPACE)
+    ET.SubElement(ET.SubElement(gpx, "metadata"), "name").text = incident.name
+    for track in incident.tracks:
+        _add_track(gpx, track, anchor)
+    document: bytes = ET.tostring(gpx, encoding="utf-8", xml_declaration=True)
+    return document
+
+
+def _add_track(gpx: ET.Element, track: WornTrack, anchor: Anchor) -> None:
+    trk = ET.SubElement(gpx, "trk")
+    ET.SubElement(trk, "name").text = track.title
+    if track.crew:
+        ET.SubElement(trk, "type").text = track.crew
+    segment = ET.SubElement(trk, "trkseg")
+    for point in track.points:
+        lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)
+        trkpt = ET.SubElement(segment, "trkpt", lat=f"{lat_deg:.8f}", lon=f"{lon_deg:.8f}")
+        # The schema wants this order.
+        ET.SubElement(trkpt, "ele").text = f"{height_m:.2f}"
+        at = datetime.fromtimestamp(point.t_ns / NS_PER_S, UTC)
+        ET.SubElement(trkpt, "time").text = at.isoformat(timespec="milliseconds").replace(
+            "+00:00", "Z"
+        )
+
+
+GPX = Exporter("gpx", "gpx", "application/gpx+xml", True, export_gpx)

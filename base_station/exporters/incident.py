@@ -1,0 +1,70 @@
+"""Collects an incident from the store for the exporters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from base_station.db.models import Assignment, Incident, TrackPoint
+from base_station.db.records import FOREVER_NS, Records, Window
+from base_station.db.roster import Roster
+from base_station.exporters.port import ExportPoint, IncidentTracks, WornTrack
+from shared.geo import Anchor
+
+
+def incident_tracks(records: Records, roster: Roster, incident: Incident) -> IncidentTracks:
+    """All of an incident's tracks, split where a unit changed hands."""
+    window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
+    assignments = roster.assignments(window.from_ns, window.until_ns)
+    tracks = tuple(
+        worn
+        for unit_id in records.track_units(window)
+        for worn in _split(
+            unit_id,
+            records.track(unit_id, window),
+            [one for one in assignments if one.unit_id == unit_id],
+        )
+    )
+    stored = records.anchor(window.until_ns)
+    anchor = None
+    if stored is not None:
+        anchor = Anchor(stored.lat_deg, stored.lon_deg, stored.height_m, stored.plan_rotation_rad)
+    return IncidentTracks(
+        incident_id=incident.incident_id,
+        name=incident.name,
+        anchor=anchor,
+        tracks=tracks,
+    )
+
+
+def _split(
+    unit_id: str, points: Sequence[TrackPoint], assignments: Sequence[Assignment]
+) -> Iterable[WornTrack]:
+    """Consecutive points with the same wearer make one track."""
+    run: list[ExportPoint] = []
+    wearer: Assignment | None = None
+    for point in points:
+        now = _wearer_at(point.t_ns, assignments)
+        if run and now is not wearer:
+            yield _worn(unit_id, wearer, run)
+            run = []
+        wearer = now
+        run.append(_export_point(point))
+    if run:
+        yield _worn(unit_id, wearer, run)
+
+
+def _wearer_at(t_ns: int, assignments: Sequence[Assignment]) -> Assignment | None:
+    for one in reversed(assignments):
+        if one.from_ns <= t_ns and (one.until_ns is None or t_ns < one.until_ns):
+            return one
+    return None
+
+
+def _worn(unit_id: str, wearer: Assignment | None, run: Sequence[ExportPoint]) -> WornTrack:
+    name, crew = ("", "") if wearer is None else (wearer.person_name, wearer.crew)
+    return WornTrack(unit_id, name, crew, tuple(run))
+
+
+def _export_point(point: TrackPoint) -> ExportPoint:
+    names = ExportPoint.__struct_fields__
+    return ExportPoint(**{name: getattr(point, name) for name in names})

@@ -1,0 +1,65 @@
+"""What an exporter gets, and what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import msgspec
+
+from shared.errors import UserError
+from shared.geo import Anchor
+
+
+class ExportPoint(msgspec.Struct, frozen=True):
+    """NED metres in the incident frame."""
+
+    t_ns: int
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    floor: int | None
+    quality: str
+
+
+class WornTrack(msgspec.Struct, frozen=True):
+    """Where one unit was while one person wore it, by time."""
+
+    unit_id: str
+    person_name: str  # empty: nobody was assigned
+    crew: str
+    points: tuple[ExportPoint, ...]
+
+    @property
+    def title(self) -> str:
+        return f"{self.person_name} ({self.unit_id})" if self.person_name else self.unit_id
+
+
+class IncidentTracks(msgspec.Struct, frozen=True):
+    incident_id: str
+    name: str
+    anchor: Anchor | None
+    tracks: tuple[WornTrack, ...]
+
+    def anchor_or_refuse(self) -> Anchor:
+        """For formats that know only places on the Earth; UserError without an anchor."""
+        if self.anchor is None:
+            raise UserError(
+                "the site has no place on the Earth, so this format cannot be written: set the "
+                "anchor, or export as csv"
+            )
+        return self.anchor
+
+
+@dataclass(frozen=True, slots=True)
+class Exporter:
+    """``export`` is pure: the same incident gives the same bytes."""
+
+    name: str  # as in the address
+    suffix: str  # of the file
+    media_type: str
+    needs_anchor: bool
+    export: Callable[[IncidentTracks], bytes]
