@@ -129,7 +129,7 @@ def find_node() -> Node:
 
 def new_enough(node: str) -> bool:
     """Whether Vite runs on it: 20.19 and later in 20, or 22.12 and later."""
-    said = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)  # noqa: S603
+    said = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
     match = re.fullmatch(r"v(\d+)\.(\d+)\..*", said.stdout.strip())
     if match is None:
         return False
@@ -169,7 +169,7 @@ class Stamp:
 
 def run(command: Sequence[str], folder: Path, environment: Mapping[str, str], what: str) -> None:
     """Run a tool; BuildError with the end of what it said when it fails."""
-    done = subprocess.run(  # noqa: S603  # the tools named above
+    done = subprocess.run(
         command,
         cwd=folder,
         env=environment,

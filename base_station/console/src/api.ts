@@ -13,13 +13,6 @@ export interface Person {
   photo_url: string | null;
 }
 
-export interface Unit {
-  unit_id: string;
-  label: string;
-  registered: boolean;
-  person_id: string | null;
-}
-
 export interface Incident {
   incident_id: string;
   name: string;
@@ -63,14 +56,11 @@ async function call<T>(method: string, path: string, body?: object | Blob): Prom
   return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
 }
 
+/** The sentence of a problem document (RFC 9457). */
 async function reason(response: Response): Promise<string> {
   const body: unknown = await response.json().catch(() => null);
   const detail = (body as { detail?: unknown } | null)?.detail;
-  if (typeof detail === "string") return detail;
-  if (Array.isArray(detail)) {
-    return detail.map((one: { msg?: string }) => one.msg ?? "").join("; ");
-  }
-  return `The station answered ${response.status}.`;
+  return typeof detail === "string" ? detail : `The station answered ${response.status}.`;
 }
 
 const id = encodeURIComponent;
@@ -86,9 +76,8 @@ export const addPerson = (person: { name: string; crew: string; role: string }) 
 export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
-export const units = () => call<Unit[]>("GET", "/units");
 export const registerUnit = (unitId: string, label: string) =>
-  call<Unit>("POST", "/units", { unit_id: unitId, label });
+  call<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>
   call<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);

@@ -47,25 +47,38 @@ export async function resume(): Promise<void> {
 
 export function begin(me: api.Me): void {
   user.value = me;
-  live.value ??= new Session(api.LIVE_PATH);
+  live.value ??= new Session(api.LIVE_PATH, forget);
+}
+
+/** Back to the login form: the station knows nobody here any more. */
+function forget(): void {
+  stopReplay();
+  live.peek()?.close();
+  live.value = null;
+  dialog.value = null;
+  user.value = null;
 }
 
 export async function leave(): Promise<void> {
-  await attempt(api.logout());
   stopReplay();
-  live.value?.close();
-  live.value = null;
-  user.value = null;
+  await attempt(api.logout());
+  forget();
 }
 
 export async function watchReplay(incident: api.Incident): Promise<void> {
   const started = await attempt(api.startReplay(incident.incident_id));
   if (started === null) return;
   stopReplay();
-  const session = new Session(api.replayPath(started.replay_id));
+  const session = new Session(api.replayPath(started.replay_id), replayEnded);
   replay.value = { id: started.replay_id, session, incident };
   selectedUnit.value = null;
   dialog.value = null;
+}
+
+function replayEnded(): void {
+  replay.peek()?.session.close();
+  replay.value = null;
+  notice.value = "The station has ended this replay.";
 }
 
 export function stopReplay(): void {
@@ -82,7 +95,7 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
   try {
     return await work;
   } catch (error) {
-    if (error instanceof api.ApiError && error.status === 401) user.value = null;
+    if (error instanceof api.ApiError && error.status === 401) forget();
     notice.value = error instanceof Error ? error.message : String(error);
     return null;
   }

@@ -11,6 +11,11 @@ export function duration(ms: number): string {
   return `${Math.floor(minutes / 60)} h ${pad(minutes % 60)} min`;
 }
 
+/** How old something is, as coarse as it is old: "0.4 s", "42 s", "3 min", "1 h 12 min". */
+export function age(ms: number): string {
+  return ms < 60_000 ? duration(ms) : minutes(ms);
+}
+
 /** A long time without the seconds: "under 1 min", "12 min", "1 h 05 min". */
 export function minutes(ms: number): string {
   const whole = Math.floor(Math.max(0, ms) / 60_000);
@@ -70,7 +75,7 @@ export function activityOf(unit: UnitView): string {
   if (status.mayday) return "MAYDAY";
   const word = ACTIVITIES[status.activity] ?? status.activity;
   if (status.motionless_s < SAID_MOTIONLESS_S) return word;
-  return `${word}, motionless ${duration(status.motionless_s * 1000)}`;
+  return `${word}, motionless ${age(status.motionless_s * 1000)}`;
 }
 
 const LINKS: Record<Link, string> = {

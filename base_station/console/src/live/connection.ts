@@ -4,6 +4,7 @@ export interface ConnectionEvents {
   message(text: string): void;
   up(): void;
   down(retryInMs: number): void;
+  refused(code: number): void;
 }
 
 /** What of the browser is used; tests put their own in. */
@@ -23,9 +24,12 @@ export const BROWSER: Surroundings = {
 
 const FIRST_RETRY_MS = 300;
 const LONGEST_RETRY_MS = 5000;
-/** The station speaks at least once a second: after this much silence the link is dead,
- * even where the socket has not noticed. */
-export const SILENCE_MS = 5000;
+/** After this much silence the station is asked for a snapshot; after as much again the link is
+ * dead, even where the socket has not noticed. */
+export const SILENCE_MS = 2500;
+/** Codes with which the station ends a connection for good (base_station/api/routes/live.py). */
+export const NOT_LOGGED_IN = 4401;
+export const NOT_FOUND = 4404;
 
 /** How long to wait before try number `attempt` (from 0), spread so that a hundred consoles do not
  * return in the same instant. */
@@ -49,8 +53,9 @@ export class Connection {
     this.connect();
   }
 
-  send(message: object): void {
-    if (this.socket?.readyState === 1) this.socket.send(JSON.stringify(message));
+  /** Ask for a whole picture. */
+  askForSnapshot(): void {
+    if (this.socket?.readyState === 1) this.socket.send('{"type":"snapshot"}');
   }
 
   close(): void {
@@ -69,12 +74,24 @@ export class Connection {
       this.listenForSilence();
       this.events.message(event.data);
     };
-    socket.onclose = () => this.lost();
+    socket.onclose = (event) => this.ended(event.code);
   }
 
   private listenForSilence(): void {
     this.around.cancel(this.watchdog);
-    this.watchdog = this.around.later(() => this.lost(), SILENCE_MS);
+    this.watchdog = this.around.later(() => {
+      this.askForSnapshot();
+      this.watchdog = this.around.later(() => this.lost(), SILENCE_MS);
+    }, SILENCE_MS);
+  }
+
+  private ended(code: number): void {
+    if (code !== NOT_LOGGED_IN && code !== NOT_FOUND) {
+      this.lost();
+      return;
+    }
+    this.close();
+    this.events.refused(code);
   }
 
   private lost(): void {

@@ -16,11 +16,13 @@ export class Session {
   private state: State | null = null;
   private asked = false;
 
-  constructor(path: string) {
+  /** `onRefused`: the station does not want to show this picture (any more). */
+  constructor(path: string, onRefused: (code: number) => void) {
     this.connection = new Connection(socketUrl(path), {
       message: (text) => this.hear(JSON.parse(text) as Message),
       up: () => undefined, // up means a picture: see hear
       down: () => this.lose(),
+      refused: onRefused,
     });
     this.timer = window.setInterval(() => this.tick(), CLOCK_STEP_MS);
   }
@@ -33,7 +35,7 @@ export class Session {
   private hear(message: Message): void {
     const { state, missed } = apply(this.state, message);
     if (missed) {
-      if (!this.asked) this.connection.send({ type: "snapshot" });
+      if (!this.asked) this.connection.askForSnapshot();
       this.asked = true;
       return;
     }

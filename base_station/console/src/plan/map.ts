@@ -12,7 +12,8 @@ import { SITE } from "./site";
 
 const TAP_PX = 26;
 const CLOSE_M_PER_PX = 0.06;
-const MARGIN_PX = 50;
+const MARGIN_PX = 40;
+const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
 
 export class PlanMap {
@@ -67,7 +68,7 @@ export class PlanMap {
     const extent = this.building.extent() ?? this.crowd.extent();
     if (extent === null || isEmpty(extent)) return false;
     this.view.fit(extent, {
-      padding: [MARGIN_PX, MARGIN_PX, MARGIN_PX, MARGIN_PX],
+      padding: [MARGIN_PX, RIGHT_MARGIN_PX, MARGIN_PX, MARGIN_PX],
       minResolution: CLOSE_M_PER_PX / 2,
       ...(smoothly ? moving() : {}),
     });

@@ -2,7 +2,7 @@
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
-import { duration } from "../words";
+import { age } from "../words";
 import { faint, type Colours } from "./colours";
 
 /** What the plan needs to know of one person. */
@@ -19,6 +19,7 @@ export interface Mark {
 
 const RADIUS_PX = 13;
 const ARROW_PX = 10;
+const HATCH_PX = 12;
 
 export function trailStyle(mark: Mark, colours: Colours): Style {
   const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
@@ -45,7 +46,7 @@ export function regionStyle(mark: Mark, colours: Colours): Style {
 
 /** Names keep clear of each other; the plan leaves out what does not fit. */
 export function labelStyle(mark: Mark, colours: Colours): Style {
-  const words = mark.old ? `${mark.name}, ${duration(mark.ageMs)} old` : mark.name;
+  const words = mark.old ? `${mark.name}, ${age(mark.ageMs)} old` : mark.name;
   const strong = mark.chosen || mark.urgency === "immediate";
   return new Style({
     zIndex: strong ? 2 : 1,
@@ -115,15 +116,15 @@ function drawArrow(
 
 function hatching(colour: string): CanvasPattern | string {
   const tile = document.createElement("canvas");
-  tile.width = tile.height = 8;
+  tile.width = tile.height = HATCH_PX;
   const context = tile.getContext("2d");
   if (context === null) return faint(colour, 0.2);
-  context.strokeStyle = faint(colour, 0.55);
-  context.lineWidth = 1.5;
+  context.strokeStyle = faint(colour, 0.3);
+  context.lineWidth = 1.2;
   context.beginPath();
-  for (const x of [-8, 0, 8]) {
-    context.moveTo(x, 8);
-    context.lineTo(x + 8, 0);
+  for (const x of [-HATCH_PX, 0, HATCH_PX]) {
+    context.moveTo(x, HATCH_PX);
+    context.lineTo(x + HATCH_PX, 0);
   }
   context.stroke();
   return context.createPattern(tile, "repeat") ?? faint(colour, 0.2);

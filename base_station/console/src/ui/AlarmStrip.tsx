@@ -56,7 +56,7 @@ function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
       <span class="for" aria-live="off">
         for {duration(picture.nowMs.value - alarm.raised_ms)}
       </span>
-      <span class="state">{taken ? `acknowledged by ${alarm.by}` : "nobody has acknowledged"}</span>
+      <span class="state">{taken ? `acknowledged by ${alarm.by}` : "not acknowledged"}</span>
       {actions && mayCommand.value && <AlarmAction alarm={alarm} who={who} />}
     </li>
   );

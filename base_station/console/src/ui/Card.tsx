@@ -32,16 +32,16 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         type="button"
         class="card-head"
         aria-pressed={chosen}
-        aria-label={`Show ${name} on the plan`}
+        title="Show on the plan"
         onClick={() => select(unitId)}
       >
         <Photo name={name} url={unit.person?.photo_url ?? null} />
         <span class="names">
           <span class="name">{name}</span>
           <span class="quiet">{crewAndRole(unit)}</span>
+          <Activity unit={unit} />
         </span>
       </button>
-      <Activity unit={unit} />
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
       <Facts unit={unit} picture={picture} />
       {!unit.registered && <UnknownUnit unitId={unitId} />}
@@ -57,10 +57,10 @@ function crewAndRole(unit: UnitView): string {
 function Activity({ unit }: { unit: UnitView }) {
   const mayday = unit.status?.mayday ?? false;
   return (
-    <p class={`activity ${mayday ? "mayday" : ""}`}>
+    <span class={`activity ${mayday ? "mayday" : ""}`}>
       <Icon name={mayday ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
       {words.activityOf(unit)}
-    </p>
+    </span>
   );
 }
 
@@ -111,7 +111,7 @@ function Where({ unit, now }: { unit: UnitView; now: number }) {
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
       {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, now).major_m)}
-      {old && <small class="old-mark">OLD: {words.duration(now - position.t_ms)}</small>}
+      {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
       {note !== "" && <small>{note}</small>}
     </Fact>
   );
@@ -120,9 +120,12 @@ function Where({ unit, now }: { unit: UnitView; now: number }) {
 function Heard({ unit, now }: { unit: UnitView; now: number }) {
   const level = unit.link === "live" ? "" : unit.link === "stale" ? "caution" : "critical";
   return (
-    <Fact icon={level === "" ? "linkGood" : "linkLost"} label="Last message" level={level}>
-      {unit.last_heard_ms === null ? "—" : `${words.duration(now - unit.last_heard_ms)} ago`}
-      <small>{words.linkWord(unit.link)}</small>
+    <Fact
+      icon={level === "" ? "linkGood" : "linkLost"}
+      label={words.linkWord(unit.link)}
+      level={level}
+    >
+      {unit.last_heard_ms === null ? "—" : `${words.age(now - unit.last_heard_ms)} ago`}
     </Fact>
   );
 }

@@ -45,7 +45,7 @@ function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
     >
       <span class="floor-name">{name}</span>
       <span class="floor-people">
-        {alarmed && <Icon name="alarm" />}
+        <Icon name={alarmed ? "alarm" : "people"} />
         {people}
       </span>
     </button>

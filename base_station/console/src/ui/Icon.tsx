@@ -18,6 +18,7 @@ const PATHS = {
   clock: "M12 3a9 9 0 1 0 .01 0M12 7v5l4 2",
   target: "M12 5a7 7 0 1 0 .01 0M12 2v5M12 17v5M2 12h5M17 12h5",
   inside: "M4 21V8l8-5 8 5v13M10 21v-7h4v7",
+  people: "M9 8a3 3 0 1 0 0-.01M3 20v-2a6 6 0 0 1 12 0v2M16 5a3 3 0 0 1 0 6M18 14a5 5 0 0 1 3 5v1",
   play: "M7 4l13 8-13 8z",
   pause: "M7 4v16M17 4v16",
 } as const;

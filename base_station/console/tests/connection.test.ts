@@ -1,0 +1,130 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import {
+  Connection,
+  NOT_LOGGED_IN,
+  retryDelayMs,
+  SILENCE_MS,
+  type Surroundings,
+} from "../src/live/connection";
+
+class FakeSocket {
+  readyState = 1;
+  sent: string[] = [];
+  onopen: (() => void) | null = null;
+  onclose: ((event: { code: number }) => void) | null = null;
+  onmessage: ((event: { data: string }) => void) | null = null;
+  send(text: string) {
+    this.sent.push(text);
+  }
+  close() {
+    this.readyState = 3;
+  }
+}
+
+interface Timer {
+  action: () => void;
+  delayMs: number;
+}
+
+let sockets: FakeSocket[];
+let timers: Set<Timer>;
+let heard: string[];
+let connection: Connection;
+
+function fire(delayMs: number): void {
+  for (const timer of [...timers]) {
+    if (timer.delayMs !== delayMs) continue;
+    timers.delete(timer);
+    timer.action();
+  }
+}
+
+beforeEach(() => {
+  sockets = [];
+  timers = new Set();
+  heard = [];
+  const around: Surroundings = {
+    open: () => {
+      const socket = new FakeSocket();
+      sockets.push(socket);
+      return socket as unknown as WebSocket;
+    },
+    later: (action, delayMs) => {
+      const timer = { action, delayMs };
+      timers.add(timer);
+      return timer;
+    },
+    cancel: (timer) => void timers.delete(timer as Timer),
+    random: () => 1,
+  };
+  connection = new Connection(
+    "ws://station",
+    {
+      message: (text) => heard.push(text),
+      up: () => heard.push("up"),
+      down: (delayMs) => heard.push(`down ${delayMs}`),
+      refused: (code) => heard.push(`refused ${code}`),
+    },
+    around,
+  );
+});
+
+describe("Connection", () => {
+  it("passes on what arrives", () => {
+    sockets[0]?.onopen?.();
+    sockets[0]?.onmessage?.({ data: "{}" });
+    expect(heard).toEqual(["up", "{}"]);
+  });
+
+  it("says that it is down and comes back, waiting longer each time", () => {
+    sockets[0]?.onclose?.({ code: 1006 });
+    fire(300);
+    sockets[1]?.onclose?.({ code: 1006 });
+    expect(heard).toEqual(["down 300", "down 600"]);
+    expect(sockets).toHaveLength(2);
+  });
+
+  it("begins to wait from the start again once something has arrived", () => {
+    sockets[0]?.onclose?.({ code: 1006 });
+    fire(300);
+    sockets[1]?.onmessage?.({ data: "{}" });
+    sockets[1]?.onclose?.({ code: 1006 });
+    expect(heard.at(-1)).toBe("down 300");
+  });
+
+  it("asks when the station is silent, and stays up when it answers", () => {
+    fire(SILENCE_MS);
+    expect(sockets[0]?.sent).toEqual(['{"type":"snapshot"}']);
+    sockets[0]?.onmessage?.({ data: "{}" });
+    fire(SILENCE_MS);
+    expect(heard).toEqual(["{}"]);
+  });
+
+  it("does not try again where the station refuses", () => {
+    sockets[0]?.onclose?.({ code: NOT_LOGGED_IN });
+    expect(heard).toEqual([`refused ${NOT_LOGGED_IN}`]);
+    expect(timers.size).toBe(0);
+  });
+
+  it("takes silence for a lost link, though the socket has not noticed", () => {
+    sockets[0]?.onopen?.();
+    fire(SILENCE_MS);
+    fire(SILENCE_MS);
+    expect(heard).toEqual(["up", "down 300"]);
+    expect(sockets[0]?.readyState).toBe(3);
+  });
+
+  it("does not come back after it was closed", () => {
+    connection.close();
+    expect(timers.size).toBe(0);
+    expect(heard).toEqual([]);
+  });
+});
+
+describe("retryDelayMs", () => {
+  it("is spread over half of its length and has a limit", () => {
+    expect(retryDelayMs(0, 0)).toBe(150);
+    expect(retryDelayMs(0, 1)).toBe(300);
+    expect(retryDelayMs(20, 1)).toBe(5000);
+  });
+});

@@ -1,0 +1,108 @@
+/** Things as the station sends them, with what a test cares about changed. */
+import type {
+  AlarmView,
+  Delta,
+  HealthView,
+  PositionView,
+  Snapshot,
+  StatusView,
+  UnitView,
+} from "../src/wire";
+
+export const HEALTH: HealthView = {
+  problems: [],
+  messages: 0,
+  undecodable: 0,
+  unknown_units: 0,
+  log_bytes: 0,
+  disk_free_bytes: 0,
+  messages_per_s: 0,
+  insecure: false,
+};
+
+export const STATUS: StatusView = {
+  activity: "walking",
+  motionless_s: 0,
+  battery: 0.8,
+  mayday: false,
+  steps: 0,
+  distance_m: 0,
+};
+
+export function position(change: Partial<PositionView> = {}): PositionView {
+  return {
+    t_ms: 1_000,
+    north_m: 0,
+    east_m: 0,
+    down_m: 0,
+    floor: 0,
+    ellipse_major_m: 2,
+    ellipse_minor_m: 1,
+    ellipse_heading_rad: 0,
+    std_down_m: 0.5,
+    heading_rad: 0,
+    heading_std_rad: 0.1,
+    quality: "good",
+    quality_reason: "",
+    since_gps_s: null,
+    lat_deg: null,
+    lon_deg: null,
+    ...change,
+  };
+}
+
+export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
+  return {
+    unit_id: unitId,
+    label: unitId,
+    registered: true,
+    person: null,
+    link: "live",
+    last_heard_ms: 1_000,
+    status: STATUS,
+    status_ms: 1_000,
+    ambient_degc: 20,
+    heat_level: "",
+    position: null,
+    inside_since_ms: null,
+    alarms: [],
+    ...change,
+  };
+}
+
+export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmView {
+  return {
+    alarm_id: alarmId,
+    rule: "no_motion",
+    unit_id: "a",
+    priority: 1,
+    state: "raised",
+    level: "alarm",
+    text: "No motion",
+    by: "",
+    raised_ms: 0,
+    changed_ms: 0,
+    ...change,
+  };
+}
+
+export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
+  return {
+    type: "snapshot",
+    seq: 10,
+    now_ms: 1_000,
+    incident: null,
+    units: [],
+    alarms: [],
+    trails: {},
+    plan: null,
+    anchor: null,
+    health: HEALTH,
+    replay: null,
+    ...change,
+  };
+}
+
+export function delta(seq: number, change: Partial<Delta> = {}): Delta {
+  return { type: "delta", seq, now_ms: 2_000, ...change };
+}

@@ -1,0 +1,105 @@
+import { describe, expect, it } from "vitest";
+import { regionAt, ring, isOld } from "../src/plan/ellipse";
+import { firstFloor, floorsOf } from "../src/plan/floors";
+import { trailLines } from "../src/plan/trail";
+import type { Plan, TrailPoint } from "../src/wire";
+import { alarm, position, unit } from "./fixtures";
+
+const PLAN: Plan = {
+  type: "FeatureCollection",
+  muster: {
+    frame: "site-m",
+    floors: [
+      { floor: 0, down_m: 0 },
+      { floor: 1, down_m: -3.2 },
+    ],
+  },
+  features: [],
+};
+
+describe("the region of a position", () => {
+  it("is as stated while the position is fresh", () => {
+    expect(regionAt(position(), 2_000).major_m).toBe(2);
+  });
+
+  it("grows with age in every direction", () => {
+    const region = regionAt(position(), 33_000);
+    expect(region.major_m).toBe(32);
+    expect(region.minor_m).toBe(31);
+  });
+
+  it("belongs to an old position after ten seconds", () => {
+    expect(isOld(position(), 10_999)).toBe(false);
+    expect(isOld(position(), 11_000)).toBe(true);
+  });
+
+  it("is long in the direction of its heading, clockwise from north", () => {
+    const region = { major_m: 5, minor_m: 1, heading_rad: Math.PI / 2 };
+    const points = ring([10, 20], region);
+    const east = Math.max(...points.map(([x]) => x));
+    const north = Math.max(...points.map(([, y]) => y));
+    expect(east).toBeCloseTo(15);
+    expect(north).toBeCloseTo(21);
+    expect(points[0]).toEqual(points.at(-1));
+  });
+});
+
+describe("floorsOf", () => {
+  const people = [
+    unit("a", { position: position({ floor: 1 }), alarms: ["x"] }),
+    unit("b", { position: position({ floor: 1 }) }),
+    unit("c", { position: position({ floor: -1 }) }),
+    unit("d", { position: position({ floor: null }) }),
+    unit("e"),
+  ];
+
+  it("lists the plan's floors and those where somebody is, top floor first", () => {
+    const floors = floorsOf(PLAN, people, new Map([["x", alarm("x")]]));
+    expect(floors.map((one) => [one.name, one.people, one.urgency])).toEqual([
+      ["1", 2, "immediate"],
+      ["G", 0, "normal"],
+      ["B1", 1, "normal"],
+    ]);
+  });
+
+  it("begins where most people are", () => {
+    expect(firstFloor(floorsOf(PLAN, people, new Map()))).toBe(1);
+    expect(firstFloor([])).toBeNull();
+  });
+});
+
+describe("trailLines", () => {
+  const walk: TrailPoint[] = [
+    [0, 0, 0, 0],
+    [1_000, 1, 0, 0],
+    [2_000, 2, 5, 1],
+    [3_000, 3, 5, 1],
+    [60_000, 4, 5, 1],
+    [61_000, 5, 5, 1],
+  ];
+
+  it("is [east, north], broken where nobody knows the way", () => {
+    expect(trailLines(walk, 61_000, "all")).toEqual([
+      [
+        [0, 0],
+        [0, 1],
+        [5, 2],
+        [5, 3],
+      ],
+      [
+        [5, 4],
+        [5, 5],
+      ],
+    ]);
+  });
+
+  it("shows one floor, and only the last minutes", () => {
+    expect(trailLines(walk, 3_000, 0)).toEqual([
+      [
+        [0, 0],
+        [0, 1],
+      ],
+    ]);
+    expect(trailLines(walk, 3_600_000, "all")).toEqual([]);
+  });
+});

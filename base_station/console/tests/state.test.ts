@@ -1,0 +1,89 @@
+import { describe, expect, it } from "vitest";
+import { apply, TRAIL_POINTS, type State } from "../src/live/state";
+import type { TrailPoint } from "../src/wire";
+import { alarm, delta, position, snapshot, unit } from "./fixtures";
+
+function after(...messages: Parameters<typeof apply>[1][]): State {
+  let state: State | null = null;
+  for (const message of messages) state = apply(state, message).state;
+  if (state === null) throw new Error("no snapshot among the messages");
+  return state;
+}
+
+describe("apply", () => {
+  it("takes a snapshot whole", () => {
+    const state = after(snapshot({ units: [unit("a")], alarms: [alarm("x")] }));
+    expect([...state.units.keys()]).toEqual(["a"]);
+    expect([...state.alarms.keys()]).toEqual(["x"]);
+  });
+
+  it("replaces what a delta names and keeps the rest, as the same object", () => {
+    const before = after(snapshot({ units: [unit("a"), unit("b")] }));
+    const { state } = apply(before, delta(11, { units: [unit("b", { link: "stale" })] }));
+    expect(state?.units.get("b")?.link).toBe("stale");
+    expect(state?.units.get("a")).toBe(before.units.get("a"));
+  });
+
+  it("adds a unit that appears", () => {
+    const state = after(snapshot(), delta(11, { units: [unit("new")] }));
+    expect(state.units.has("new")).toBe(true);
+  });
+
+  it.each([9, 10, 12])("asks for a snapshot when %i comes after 10", (seq) => {
+    const before = after(snapshot());
+    const { state, missed } = apply(before, delta(seq, { units: [unit("a")] }));
+    expect(missed).toBe(true);
+    expect(state).toBe(before);
+  });
+
+  it("asks for a snapshot when a delta comes first", () => {
+    expect(apply(null, delta(1))).toEqual({ state: null, missed: true });
+  });
+
+  it("goes on from the snapshot that closes a gap", () => {
+    const state = after(snapshot(), snapshot({ seq: 40 }), delta(41, { units: [unit("a")] }));
+    expect(state.seq).toBe(41);
+  });
+
+  it("forgets a unit that a snapshot no longer has", () => {
+    expect(after(snapshot({ units: [unit("a")] }), snapshot()).units.size).toBe(0);
+  });
+
+  it("keeps resolved alarms, but not without end", () => {
+    const many = Array.from({ length: 80 }, (_, i) =>
+      alarm(`r${i}`, { state: "resolved", changed_ms: i }),
+    );
+    const state = after(snapshot({ alarms: [alarm("open")] }), delta(11, { alarms: many }));
+    expect(state.alarms.has("open")).toBe(true);
+    expect(state.alarms.has("r79")).toBe(true);
+    expect(state.alarms.has("r0")).toBe(false);
+  });
+});
+
+describe("trails", () => {
+  const walk = (seq: number, t_ms: number, north_m: number) =>
+    delta(seq, { units: [unit("a", { position: position({ t_ms, north_m }) })] });
+  const trail = (state: State) => state.trails.get("a")?.map((point) => point[0]);
+
+  it("grow with the walk, a point a second at most", () => {
+    const state = after(snapshot(), walk(11, 1000, 0), walk(12, 1400, 1), walk(13, 2000, 2));
+    expect(trail(state)).toEqual([1000, 2000]);
+  });
+
+  it("say seldom that somebody stands still", () => {
+    const state = after(snapshot(), walk(11, 1000, 0), walk(12, 9000, 0), walk(13, 16000, 0));
+    expect(trail(state)).toEqual([1000, 16000]);
+  });
+
+  it("do not go back for a position from before", () => {
+    const state = after(snapshot(), walk(11, 5000, 0), walk(12, 2000, 9));
+    expect(trail(state)).toEqual([5000]);
+  });
+
+  it("keep a bounded number of points", () => {
+    const long = Array.from({ length: TRAIL_POINTS }, (_, i): TrailPoint => [i * 1000, i, 0, 0]);
+    const state = after(snapshot({ trails: { a: long } }), walk(11, 1e7, 1e4));
+    expect(state.trails.get("a")).toHaveLength(TRAIL_POINTS);
+    expect(trail(state)?.at(-1)).toBe(1e7);
+  });
+});

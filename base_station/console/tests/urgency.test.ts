@@ -1,0 +1,74 @@
+import { describe, expect, it } from "vitest";
+import { openAlarms } from "../src/live/alarms";
+import { arrange, urgencyOf, type Place } from "../src/live/urgency";
+import type { AlarmView, UnitView } from "../src/wire";
+import { alarm, STATUS, unit } from "./fixtures";
+
+const ALARMS: ReadonlyMap<string, AlarmView> = new Map([
+  ["one", alarm("one", { priority: 1 })],
+  ["two", alarm("two", { priority: 2 })],
+  ["three", alarm("three", { priority: 3 })],
+]);
+
+describe("urgencyOf", () => {
+  it.each<[string, Partial<UnitView>]>([
+    ["immediate", { alarms: ["three", "one"] }],
+    ["immediate", { status: { ...STATUS, mayday: true } }],
+    ["immediate", { alarms: ["an alarm nobody described"] }],
+    ["soon", { alarms: ["two"] }],
+    ["soon", { link: "lost" }],
+    ["watch", { alarms: ["three"] }],
+    ["watch", { link: "stale" }],
+    ["watch", { heat_level: "caution" }],
+    ["normal", {}],
+  ])("is %s for %o", (urgency, change) => {
+    expect(urgencyOf(unit("a", change), ALARMS)).toBe(urgency);
+  });
+});
+
+describe("arrange", () => {
+  const calm = [unit("c"), unit("a"), unit("b")];
+  const cUrgent = [unit("c", { alarms: ["one"] }), unit("a"), unit("b")];
+  const order = (places: readonly Place[]) => places.map((place) => place.unitId).join("");
+
+  it("goes by name where nobody is in need", () => {
+    expect(order(arrange([], calm, ALARMS, 0, false))).toBe("abc");
+  });
+
+  it("puts whoever gets worse first at once, even while somebody points at the list", () => {
+    const before = arrange([], calm, ALARMS, 0, false);
+    expect(order(arrange(before, cUrgent, ALARMS, 1, true))).toBe("cab");
+  });
+
+  it("lets whoever gets better keep the place for ten seconds", () => {
+    const worse = arrange([], cUrgent, ALARMS, 0, false);
+    const better = arrange(worse, calm, ALARMS, 1_000, false);
+    expect(order(better)).toBe("cab");
+    expect(order(arrange(better, calm, ALARMS, 10_999, false))).toBe("cab");
+    expect(order(arrange(better, calm, ALARMS, 11_000, false))).toBe("abc");
+  });
+
+  it("moves nobody down while somebody points at the list", () => {
+    const worse = arrange([], cUrgent, ALARMS, 0, false);
+    const better = arrange(worse, calm, ALARMS, 1_000, true);
+    expect(order(arrange(better, calm, ALARMS, 60_000, true))).toBe("cab");
+  });
+});
+
+describe("openAlarms", () => {
+  it("orders by priority, then not yet acknowledged, then age; leaves out the resolved", () => {
+    const alarms = [
+      alarm("done", { state: "resolved" }),
+      alarm("battery", { priority: 2, raised_ms: 1 }),
+      alarm("taken", { state: "acknowledged", raised_ms: 2 }),
+      alarm("young", { raised_ms: 9 }),
+      alarm("old", { raised_ms: 5 }),
+    ];
+    expect(openAlarms(alarms).map((one) => one.alarm_id)).toEqual([
+      "old",
+      "young",
+      "taken",
+      "battery",
+    ]);
+  });
+});

