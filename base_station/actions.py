@@ -43,17 +43,18 @@ class Actions:
         return list(self._effects(state, by, action))
 
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
+        effects: Iterable[Effect] = state.units.values()
         match action:
             case AcknowledgeAlarm():
-                return [_or_refuse(self._book.acknowledge(state, action.alarm_id, by))]
+                effects = [_or_refuse(self._book.acknowledge(state, action.alarm_id, by))]
             case ResolveAlarm():
-                return [_or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))]
+                effects = [_or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))]
             case ReportProblem():
-                return self._book.problem(state, action.part, action.text)
+                effects = self._book.problem(state, action.part, action.text)
             case RegisterUnit():
-                return self._register(state, action)
+                effects = self._register(state, action)
             case SetStart():
-                return self._start(state, action)
+                effects = self._start(state, action)
             case SetAnchor():
                 self._positioning.set_anchor(state, _anchor(action))
             case SetPlan():
@@ -63,14 +64,14 @@ class Actions:
             case CloseIncident():
                 _close(state, action)
             case Assign():
-                return _assign(state, action)
+                effects = _assign(state, action)
             case Unassign():
                 unit = _registered(state, action.unit_id)
                 unit.person = None
-                return [unit]
+                effects = [unit]
             case _:
                 assert_never(action)
-        return state.units.values()
+        return effects
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[Effect]:
         unit = state.units.get(action.unit_id)

@@ -23,6 +23,7 @@ from shared.messages import (
     Temperature,
     UnitDescription,
 )
+from shared.sequence_set import SequenceSet
 
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
@@ -30,7 +31,7 @@ TRAIL_POINTS = 900  # a unit's trail in the console; the log has all of it
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
-SEEN_SEQUENCES = 1024
+SEEN_RUNS = 256
 CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -62,22 +63,18 @@ class BootState(msgspec.Struct):
     """One run of a unit's program: which of its messages came, and how its clock stands."""
 
     boot_id: int
-    seen: set[int] = msgspec.field(default_factory=set)
-    highest_seq: int = 0
+    seen: SequenceSet = msgspec.field(default_factory=SequenceSet)
     offset_ns: int = 0  # station time less the unit's monotonic time, of the fastest message
-    offset_t_ns: int = 0  # station time at which that was judged
+    offset_t_ns: int = 0  # station time at which that was judged; 0: not yet
 
     def is_repeat(self, seq: int) -> bool:
-        """Note a sequence number; True where it came before.  Far below the highest one it can
-        no longer be told, which does no harm: such a message is old news either way.
+        """Note a sequence number; True where it came before.  What came long ago, with many
+        gaps since, can no longer be told: such a message is old news either way.
         """
-        if seq in self.seen:
+        if not self.seen.add(seq):
             return True
-        self.seen.add(seq)
-        self.highest_seq = max(self.highest_seq, seq)
-        if len(self.seen) > 2 * SEEN_SEQUENCES:
-            lowest = self.highest_seq - SEEN_SEQUENCES
-            self.seen = {kept for kept in self.seen if kept > lowest}
+        if len(self.seen.firsts) > 2 * SEEN_RUNS:
+            del self.seen.firsts[:SEEN_RUNS], self.seen.lasts[:SEEN_RUNS]
         return False
 
     def note_clock(self, t_ns: int, t_mono_ns: int) -> None:

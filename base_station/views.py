@@ -1,0 +1,228 @@
+"""The live state as the console sees it: ``base_station.api.wire``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import msgspec
+
+from base_station.api.wire import (
+    AlarmView,
+    AnchorView,
+    HealthView,
+    IncidentView,
+    PersonView,
+    PositionView,
+    ReplayView,
+    Snapshot,
+    StatusView,
+    TrailPoint,
+    UnitView,
+)
+from base_station.live_state import (
+    STALE_AFTER_S,
+    Alarm,
+    Incident,
+    Person,
+    StationState,
+    TrailStep,
+    UnitState,
+)
+from base_station.sinks import PhotoUrls
+from shared.clock import NS_PER_S
+from shared.geo import Anchor
+from shared.messages import AlarmChange, FusedPosition, Status
+
+NS_PER_MS = 1_000_000
+RADII_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's normal distribution
+ROAMING_MPS = 1.0  # how fast the region widens in which a wearer may be who is not heard (ours)
+ROAMING_MOST_M = 250.0
+RESOLVED_SHOWN = 20
+
+
+class StationFacts(msgspec.Struct, frozen=True):
+    """What the drive knows of the station's surroundings, for health."""
+
+    problems: tuple[str, ...] = ()  # beside those in the live state
+    log_bytes: int = 0
+    disk_free_bytes: int = 0
+    messages_per_s: float = 0.0
+    insecure: bool = False
+
+
+def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> UnitView:
+    """A unit's card and place."""
+    heat = state.alarms.get(f"heat|{unit.unit_id}")
+    return UnitView(
+        unit_id=unit.unit_id,
+        label=unit.label,
+        registered=unit.registered,
+        person=person_view(unit.person, photo_urls) if unit.person else None,
+        link=unit.link,
+        last_heard_ms=_ms(unit.heard_ns),
+        status=_status_view(unit, unit.status) if unit.status else None,
+        status_ms=_ms(unit.status_ns) if unit.status else None,
+        ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
+        heat_level=heat.level if heat is not None and heat.is_open else "",
+        position=_position_view(state, unit.fused) if unit.fused else None,
+        inside_since_ms=_ms(unit.inside_since_ns),
+        alarms=tuple(
+            alarm.alarm_id
+            for alarm in state.alarms.values()
+            if alarm.unit_id == unit.unit_id and alarm.is_open
+        ),
+    )
+
+
+def person_view(person: Person, photo_urls: PhotoUrls) -> PersonView:
+    return PersonView(
+        person_id=person.person_id,
+        name=person.name,
+        crew=person.crew,
+        role=person.role,
+        photo_url=photo_urls(person.person_id),
+    )
+
+
+def alarm_view(alarm: Alarm | AlarmChange) -> AlarmView:
+    changed_ns = alarm.changed_ns if isinstance(alarm, Alarm) else alarm.header.t_utc_ns
+    return AlarmView(
+        alarm_id=alarm.alarm_id,
+        rule=alarm.rule,
+        unit_id=alarm.unit_id,
+        priority=alarm.priority,
+        state=alarm.state.name.lower(),
+        level=alarm.level,
+        text=alarm.text,
+        by=alarm.by,
+        raised_ms=alarm.raised_ns // NS_PER_MS,
+        changed_ms=changed_ns // NS_PER_MS,
+    )
+
+
+def incident_view(incident: Incident) -> IncidentView:
+    return IncidentView(
+        incident_id=incident.incident_id,
+        name=incident.name,
+        opened_ms=incident.opened_ns // NS_PER_MS,
+        closed_ms=_ms(incident.closed_ns),
+    )
+
+
+def health_view(state: StationState, facts: StationFacts) -> HealthView:
+    counts = state.counts
+    problems = [*state.problems.values(), *facts.problems]
+    if counts.undecodable:
+        problems.append(
+            f"{counts.undecodable} messages could not be read; last {counts.last_undecodable}"
+        )
+    if counts.units_left_out:
+        problems.append(
+            f"{counts.units_left_out} messages of more unregistered units than are shown"
+        )
+    return HealthView(
+        problems=tuple(problems),
+        messages=counts.messages,
+        undecodable=counts.undecodable,
+        unknown_units=sum(not unit.registered for unit in state.units.values()),
+        log_bytes=facts.log_bytes,
+        disk_free_bytes=facts.disk_free_bytes,
+        messages_per_s=facts.messages_per_s,
+        insecure=facts.insecure,
+    )
+
+
+def snapshot(
+    state: StationState,
+    seq: int,
+    facts: StationFacts,
+    photo_urls: PhotoUrls,
+    replay: ReplayView | None = None,
+) -> Snapshot:
+    """Everything that a console shows."""
+    still_open = [alarm for alarm in state.alarms.values() if alarm.is_open]
+    shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
+    return Snapshot(
+        seq=seq,
+        now_ms=state.t_ns // NS_PER_MS,
+        incident=incident_view(state.incident) if state.incident else None,
+        units=tuple(unit_view(state, unit, photo_urls) for unit in state.units.values()),
+        alarms=tuple(map(alarm_view, shown)),
+        trails={unit.unit_id: _trail(unit.trail) for unit in state.units.values() if unit.trail},
+        plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
+        anchor=_anchor_view(state.anchor) if state.anchor else None,
+        health=health_view(state, facts),
+        replay=replay,
+    )
+
+
+def _status_view(unit: UnitState, status: Status) -> StatusView:
+    return StatusView(
+        activity=status.activity.name.lower(),
+        motionless_s=status.motionless_s,
+        battery=status.battery,
+        mayday=status.mayday,
+        steps=status.steps,
+        distance_m=unit.position.distance_m if unit.position else 0.0,
+    )
+
+
+def _position_view(state: StationState, fused: FusedPosition) -> PositionView:
+    lat_deg = lon_deg = None
+    if state.anchor is not None:
+        lat_deg, lon_deg, _ = state.anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
+    roamed_m = _roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
+    major_m, minor_m, heading_rad = _ellipse(fused)
+    return PositionView(
+        t_ms=fused.t_meas_ns // NS_PER_MS,
+        north_m=fused.north_m,
+        east_m=fused.east_m,
+        down_m=fused.down_m,
+        floor=fused.floor,
+        ellipse_major_m=major_m + roamed_m,
+        ellipse_minor_m=minor_m + roamed_m,
+        ellipse_heading_rad=heading_rad,
+        std_down_m=fused.std_down_m,
+        heading_rad=fused.heading_rad,
+        heading_std_rad=fused.heading_std_rad,
+        quality=fused.quality.name.lower(),
+        quality_reason=fused.quality_reason,
+        since_gps_s=fused.since_gps_s,
+        lat_deg=lat_deg,
+        lon_deg=lon_deg,
+    )
+
+
+def _roamed_m(age_s: float) -> float:
+    """How far a wearer may have got who has not been heard for a while."""
+    if age_s < STALE_AFTER_S:
+        return 0.0
+    return min(ROAMING_MPS * age_s, ROAMING_MOST_M)
+
+
+def _ellipse(fused: FusedPosition) -> tuple[float, float, float]:
+    """Semi-axes of the 95 % region and the heading of the major one, clockwise from north."""
+    north_var, east_var = fused.std_north_m**2, fused.std_east_m**2
+    product = fused.correlation_ne * fused.std_north_m * fused.std_east_m
+    middle, half = (north_var + east_var) / 2.0, math.hypot((north_var - east_var) / 2.0, product)
+    heading_rad = 0.5 * math.atan2(2.0 * product, north_var - east_var)
+    major_m = RADII_95 * math.sqrt(middle + half)
+    return major_m, RADII_95 * math.sqrt(max(middle - half, 0.0)), heading_rad
+
+
+def _trail(trail: Iterable[TrailStep]) -> tuple[TrailPoint, ...]:
+    return tuple(
+        TrailPoint(
+            step.t_ns // NS_PER_MS, round(step.north_m, 2), round(step.east_m, 2), step.floor
+        )
+        for step in trail
+    )
+
+
+def _anchor_view(anchor: Anchor) -> AnchorView:
+    return AnchorView(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.rotation_rad)
+
+
+def _ms(t_ns: int | None) -> int | None:
+    return None if t_ns is None else t_ns // NS_PER_MS
