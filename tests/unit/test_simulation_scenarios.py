@@ -1,0 +1,218 @@
+"""The built-in scenarios and what a scenario file may say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from edge.samples import AmbientSample, BatterySample, Floats, GpsSample, OtherSample
+from edge.simulation import SCENARIOS, Scenario, Simulation, open_simulation
+from edge.simulation.building import load_building
+from edge.simulation.legs import Point, Stand, Turn, Walk
+from edge.sources.simulated import SimulatedSource
+from shared.errors import ConfigError
+from shared.messages.status import Activity
+
+HOUSE = load_building()
+NAMES = [scenario.name for scenario in SCENARIOS]
+WORKERS = ["search-ground-floor", "climbs-stairs", "goes-down", "gets-hot", "loses-radio"]
+
+
+def others(simulation: Simulation, until_s: float) -> Iterator[OtherSample]:
+    for batch in simulation.batches(1.0):
+        yield from (other for other in batch.others if other.t_ns <= until_s * 1e9)
+        if batch.imu.t_ns[-1] > until_s * 1e9:
+            return
+
+
+def start_of(simulation: Simulation, activity: Activity) -> float:
+    plan = simulation.plan
+    return plan.activity_start_s[plan.activities.index(activity)]
+
+
+def crosses(a: Floats, b: Floats, c: Point, d: Point) -> bool:
+    """Whether the segments a-b and c-d properly cross."""
+
+    def side(p: Floats | Point, q: Floats | Point, r: Floats | Point) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_scenario_starts_still_and_tells_what_it_is(name: str) -> None:
+    simulation = open_simulation(name)
+    assert simulation.scenario.summary
+    assert simulation.activity(1.0) is Activity.STILL
+    speed = np.linalg.norm(simulation.truth(np.linspace(0.0, 2.5, 50)).velocity_n_mps, axis=1)
+    assert speed.max() < 0.01
+
+
+@pytest.mark.parametrize("name", WORKERS)
+def test_workers_go_in_after_gps_outside_and_last_ten_minutes(name: str) -> None:
+    simulation = open_simulation(name)
+    assert simulation.duration_s > 600.0
+    assert simulation.scenario.building
+    modes = [s.fix_type for s in others(simulation, 20.0) if isinstance(s, GpsSample)]
+    assert modes[0] == 3
+    assert modes[-1] == 0, "inside there is no fix"
+
+
+@pytest.mark.parametrize("name", [s.name for s in SCENARIOS if s.building])
+def test_nobody_walks_through_walls(name: str) -> None:
+    simulation = open_simulation(name)
+    t_s = np.arange(0.0, min(300.0, simulation.duration_s), 0.2)
+    path = simulation.truth(t_s).position_n_m
+    for before, after in pairwise(path):
+        floor = int(np.argmin([abs(before[2] - down_m) for down_m in HOUSE.floors_down_m]))
+        for wall_floor, one_end, other_end in HOUSE.walls:
+            if wall_floor == floor:
+                assert not crosses(before[:2], after[:2], one_end, other_end), before
+
+
+def test_the_stairs_lead_to_the_upper_floor_and_back() -> None:
+    simulation = open_simulation("climbs-stairs")
+    down_s, up_s = (
+        start_of(simulation, Activity.STAIRS_DOWN),
+        start_of(simulation, Activity.STAIRS_UP),
+    )
+    assert 10.0 < up_s < 25.0
+    heights = simulation.truth(np.array([up_s, down_s, down_s + 30.0])).position_n_m[:, 2]
+    assert heights - heights[0] == pytest.approx([0.0, -3.2, 0.0], abs=0.15)
+
+
+def test_the_one_who_goes_down_does_not_move_again() -> None:
+    simulation = open_simulation("goes-down?seed=3")
+    lying_s = start_of(simulation, Activity.LYING)
+    assert 15.0 < lying_s < 25.0
+    motion = simulation.truth(np.linspace(lying_s + 0.1, 600.0, 500))
+    assert np.abs(motion.velocity_n_mps).max() == 0.0
+    assert np.abs(motion.rate_b_radps).max() == 0.0
+
+
+def test_the_heat_passes_every_threshold_and_falls_again() -> None:
+    simulation = open_simulation("gets-hot")
+    heat = {
+        s.t_ns // 1_000_000_000: s.temperature_degc
+        for s in others(simulation, 200.0)
+        if isinstance(s, AmbientSample)
+    }
+    assert heat[1] < 30.0
+    passed_s = [min(t for t, value in heat.items() if value > level) for level in (100, 160, 260)]
+    assert passed_s == sorted(passed_s)
+    assert passed_s[0] >= 20
+    assert passed_s[2] <= 45
+    assert heat[190] < 60.0
+
+
+def test_the_radio_is_lost_and_comes_back() -> None:
+    outages = SimulatedSource("loses-radio").radio_outages
+    assert 20.0 <= outages[0].start_s <= 30.0
+    assert outages[0].duration_s > 30.0, "long enough for a link to count as lost"
+    assert SimulatedSource("climbs-stairs").radio_outages == ()
+
+
+def test_the_battery_drains_slowly() -> None:
+    levels = [
+        s.level
+        for s in others(open_simulation("climbs-stairs"), 120.0)
+        if isinstance(s, BatterySample)
+    ]
+    assert levels == sorted(levels, reverse=True)
+    assert 0.0 < levels[0] - levels[-1] < 0.02
+
+
+@pytest.mark.parametrize(
+    ("name", "length_m"),
+    [("straight", 50.0), ("square-60m", 60.0), ("rectangle", 63.0), ("track-400m", 400.0)],
+)
+def test_measured_paths_have_their_length(name: str, length_m: float) -> None:
+    simulation = open_simulation(name)
+    stances = np.array([0.0, *simulation.plan.footfall_s])
+    path = simulation.truth(stances).position_n_m[:, :2]
+    assert np.hypot(*np.diff(path, axis=0).T).sum() == pytest.approx(length_m, rel=0.02)
+    if name != "straight":
+        assert path[-1] == pytest.approx(path[0], abs=0.05), "a closed path"
+
+
+def test_a_foot_stands_flat_between_strides_and_never_below_the_floor() -> None:
+    simulation = Simulation(Scenario("test", "", (Walk(((20.0, 0.0), (20.0, 10.0))),)))
+    t_s = np.arange(0.0, simulation.duration_s, 0.005)
+    motion = simulation.truth(t_s)
+    speed = np.linalg.norm(motion.velocity_n_mps, axis=1)
+    assert 0.25 < (speed < 0.02).mean() < 0.5
+    assert 3.0 < speed.max() < 7.0
+    assert -0.35 < motion.position_n_m[:, 2].min() < -0.12
+    assert motion.position_n_m[:, 2].max() < -0.07
+
+
+def test_turning_on_the_spot_faces_the_heading_and_stays() -> None:
+    simulation = Simulation(Scenario("test", "", (Stand(1.0), Turn(200.0), Stand(1.0))))
+    ends = simulation.truth(np.array([0.0, simulation.duration_s]))
+    turned = ends.rotation_nb[1] @ ends.rotation_nb[0].T
+    turned_deg = np.degrees(np.arctan2(turned[1, 0], turned[0, 0])) % 360.0
+    assert turned_deg == pytest.approx(200.0, abs=8.0)
+    assert np.linalg.norm(ends.position_n_m[1] - ends.position_n_m[0]) < 0.25
+
+
+TOML = """
+summary = "a short round"
+building = true
+start = [-5.0, 12.0]
+ambient_degc = [[0.0, 20.0], [60.0, 80.0]]
+radio_outages_s = [[10.0, 5.0]]
+[[legs]]
+type = "stand"
+duration_s = 2.0
+[[legs]]
+type = "walk"
+to = [[-1.5, 12.0], [3.0, 12.0]]
+pace = "hurry"
+"""
+
+
+def test_a_scenario_file_is_played(tmp_path: Path) -> None:
+    path = tmp_path / "round.toml"
+    path.write_text(TOML, encoding="utf-8")
+    source = SimulatedSource(f"{path}?seed=2")
+    assert source.simulation.scenario.name == "round"
+    assert source.radio_outages[0].start_s == 10.0
+    assert 5.0 < source.simulation.duration_s < 15.0
+    assert sum(len(batch.imu) for batch in source.batches()) == int(
+        source.simulation.duration_s * 200.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("summary", "sumary"), "did you mean summary?"),
+        (("duration_s = 2.0", "seconds = 2.0"), "legs[0] (stand)"),
+        (('"walk"', '"fly"'), "legs[1] must have a type: one of walk, stairs"),
+        (('"hurry"', '"crawl"'), "pace"),
+        (("duration_s = 2.0", 'duration_s = "long"'), "duration_s"),
+        (("duration_s = 2.0", "duration_s = -2.0"), "duration_s"),
+        (("[[0.0, 20.0], [60.0, 80.0]]", "[[60.0, 20.0], [0.0, 80.0]]"), "order of time"),
+        (("start =", "rate_hz = 1.0\nstart ="), "rate_hz"),
+        (("building = true", "building ="), "is not TOML"),
+        (("[[legs]]", "[[loop]]"), "legs"),
+    ],
+)
+def test_a_bad_scenario_file_is_explained(
+    tmp_path: Path, change: tuple[str, str], said: str
+) -> None:
+    path = tmp_path / "round.toml"
+    path.write_text(TOML.replace(*change), encoding="utf-8")
+    with pytest.raises(ConfigError) as caught:
+        open_simulation(str(path))
+    assert said in str(caught.value)
+    assert "round.toml" in str(caught.value)
+
+
+def test_a_scenario_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="cannot be read"):
+        open_simulation(str(tmp_path / "none.toml"))
