@@ -17,10 +17,10 @@ class UnknownUnit:
     for_strangers: bool = True
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.registered:
-            return Clear(t_ns, "registered")
         if unit.heard_ns is None:
             return None
+        if unit.registered:
+            return Clear(unit.heard_ns, "registered")
         return Finding(
             "unknown",
             INFORMATION,

@@ -1,0 +1,111 @@
+"""What every alarm rule keeps to, whatever it looks for."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+import pytest
+
+from base_station.alarms import ALARMS
+from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.live_state import Fault, UnitState
+from shared.clock import NS_PER_S
+from shared.messages import Activity, Header, Position, Status, Temperature
+from shared.quality import Quality, Reason
+
+HEADER = Header("FF-01", 1, 1, 0)
+T_NS = 1_700_000_000 * NS_PER_S
+
+
+def calm(seen_ns: int = T_NS) -> UnitState:
+    """A registered unit of which everything is known and nothing is the matter."""
+    position = Position(
+        HEADER, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.1, 0.0, None, False,
+        Quality.GOOD, Reason.NONE,
+    )  # fmt: skip
+    return UnitState(
+        "FF-01",
+        registered=True,
+        heard_ns=seen_ns,
+        link="live",
+        status=Status(HEADER, Activity.WALKING, 0.0, 0.9, False, 1, 1.0, 0, 0, 0),
+        status_ns=seen_ns,
+        temperature=Temperature(HEADER, 20.0),
+        temperature_ns=seen_ns,
+        position=position,
+        position_ns=seen_ns,
+    )
+
+
+def in_trouble(seen_ns: int = T_NS) -> UnitState:
+    """A unit of which everything is the matter at once."""
+    unit = calm(seen_ns)
+    assert unit.status is not None
+    assert unit.position is not None
+    unit.registered = False
+    unit.heard_ns = seen_ns - 60 * NS_PER_S
+    unit.status = msgspec.structs.replace(unit.status, motionless_s=60.0, battery=0.05, mayday=True)
+    unit.temperature = Temperature(HEADER, 300.0)
+    unit.position = msgspec.structs.replace(unit.position, quality=Quality.LOST)
+    unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
+    unit.mayday_ns = unit.fall_ns = seen_ns
+    unit.fault = Fault(seen_ns, "the accelerometer is stuck")
+    return unit
+
+
+@pytest.fixture(params=ALARMS, ids=lambda rule: rule.name)
+def rule(request: pytest.FixtureRequest) -> AlarmRule:
+    found: AlarmRule = request.param
+    return found
+
+
+def test_names_are_the_log_s_and_differ() -> None:
+    names = [rule.name for rule in ALARMS]
+    assert len(set(names)) == len(names)
+    assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
+
+
+def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
+    verdict = rule.judge(in_trouble(), T_NS, "")
+    assert isinstance(verdict, Finding)
+    assert verdict.level in rule.levels
+    assert verdict.priority in {1, 2, 3}
+    assert verdict.text
+    assert verdict.seen_ns <= T_NS
+
+
+def test_it_is_silent_about_a_calm_unit(rule: AlarmRule) -> None:
+    assert not isinstance(rule.judge(calm(), T_NS, ""), Finding)
+
+
+def test_it_knows_nothing_of_a_unit_never_heard(rule: AlarmRule) -> None:
+    assert not isinstance(rule.judge(UnitState("FF-01", registered=True), T_NS, ""), Finding)
+
+
+def test_evidence_does_not_get_newer_by_waiting(rule: AlarmRule) -> None:
+    """What nobody reports on cannot be over: the evidence stays as old as the last message."""
+    unit = calm()
+    later_ns = T_NS + 5 * NS_PER_S
+    for level in ("", *rule.levels):
+        before, after = rule.judge(unit, T_NS, level), rule.judge(unit, later_ns, level)
+        if isinstance(before, Clear) and isinstance(after, Clear):
+            assert before.seen_ns == after.seen_ns
+
+
+def test_it_changes_nothing_and_repeats_itself(rule: AlarmRule) -> None:
+    for unit in (calm(), in_trouble()):
+        before = msgspec.msgpack.encode(unit)
+        first = rule.judge(unit, T_NS, "")
+        assert rule.judge(unit, T_NS, "") == first
+        assert msgspec.msgpack.encode(unit) == before
+
+
+def test_a_standing_level_is_no_easier_to_leave_than_to_reach(rule: AlarmRule) -> None:
+    """Hysteresis: whatever raises an alarm also keeps it."""
+    unit = in_trouble()
+    found = rule.judge(unit, T_NS, "")
+    assert isinstance(found, Finding)
+    kept = rule.judge(unit, T_NS, found.level)
+    assert isinstance(kept, Finding)
+    assert rule.levels.index(kept.level) >= rule.levels.index(found.level)

@@ -1,0 +1,167 @@
+"""Says what happens to a station, event by event, as log records that any pipeline can step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+
+from base_station.alarms import ALARMS
+from base_station.events import Output, event_of
+from base_station.fusion import FUSERS
+from base_station.pipeline import StationPipeline
+from shared.channels import OPERATOR, TICK, channel_of
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.messages import (
+    STATION_ID,
+    Activity,
+    AlarmChange,
+    EventKind,
+    FixType,
+    FusedPosition,
+    GpsFix,
+    Header,
+    Message,
+    OperatorAction,
+    Position,
+    Status,
+    Temperature,
+    Tick,
+    UnitEvent,
+)
+from shared.messages.station import Action, RegisterUnit
+from shared.quality import Quality, Reason
+
+START_NS = 1_700_000_000 * NS_PER_S
+Record = tuple[int, str, bytes]
+
+
+def new_pipeline() -> StationPipeline:
+    return StationPipeline(ALARMS, FUSERS[0])
+
+
+class Script:
+    """A pipeline, the records that stepped it, and what came out.
+
+    Units are as far from the station as ``delay_s``; their monotonic clocks begin at 1000 s.
+    """
+
+    def __init__(self, pipeline: StationPipeline | None = None) -> None:
+        self.pipeline = pipeline or new_pipeline()
+        self.records: list[Record] = []
+        self.outputs: list[Output] = []
+        self.now_s = 0.0
+        self.boot_ids: dict[str, int] = {}
+        self._seqs: dict[str, int] = {}
+        self._actions = 0
+
+    @property
+    def t_ns(self) -> int:
+        return START_NS + round(self.now_s * NS_PER_S)
+
+    @property
+    def alarms(self) -> list[AlarmChange]:
+        return [output for output in self.outputs if isinstance(output, AlarmChange)]
+
+    @property
+    def fused(self) -> list[FusedPosition]:
+        return [output for output in self.outputs if isinstance(output, FusedPosition)]
+
+    def header(self, unit_id: str, captured_s: float | None = None) -> Header:
+        seq = self._seqs[unit_id] = self._seqs.get(unit_id, 0) + 1
+        captured_s = self.now_s if captured_s is None else captured_s
+        t_mono_ns = round((1000.0 + captured_s) * NS_PER_S)
+        return Header(unit_id, self.boot_ids.get(unit_id, 7), seq, t_mono_ns)
+
+    def record(self, key: str, payload: bytes) -> list[Output]:
+        """Step a record that is what it is."""
+        self.records.append((self.t_ns, key, payload))
+        outputs = self.pipeline.step(event_of(self.t_ns, key, payload))
+        self.outputs.extend(outputs)
+        return outputs
+
+    def say(self, message: Message) -> list[Output]:
+        return self.record(channel_of(message).key(message.header.unit_id), encode(message))
+
+    def act(self, action: Action, by: str = "chief") -> list[Output]:
+        self._actions += 1
+        message = OperatorAction(self.header(STATION_ID), f"a{self._actions}", by, action)
+        return self.record(OPERATOR.key(STATION_ID), encode(message))
+
+    def register(self, *unit_ids: str) -> None:
+        for unit_id in unit_ids:
+            self.act(RegisterUnit(unit_id, f"unit {unit_id}"))
+
+    def tick(self) -> list[Output]:
+        header = self.header(STATION_ID)
+        return self.record(TICK.key(STATION_ID), encode(Tick(header, self.t_ns)))
+
+    def wait(self, duration_s: float, each_s: Callable[[], object] | None = None) -> None:
+        """Let time pass with a tick a second, after what happens ``each_s``."""
+        for _ in range(round(duration_s)):
+            self.now_s += 1.0
+            if each_s is not None:
+                each_s()
+            self.tick()
+
+    def status(self, unit_id: str, **changes: object) -> list[Output]:
+        status = Status(
+            header=self.header(unit_id),
+            activity=Activity.WALKING,
+            motionless_s=0.0,
+            battery=0.8,
+            mayday=False,
+            steps=10,
+            cadence_hz=1.0,
+            floors_climbed=0,
+            tracker_rows_dropped=0,
+            journal_pending=0,
+        )
+        return self.say(msgspec.structs.replace(status, **changes))
+
+    def temperature(self, unit_id: str, ambient_degc: float) -> list[Output]:
+        return self.say(Temperature(self.header(unit_id), ambient_degc))
+
+    def event(self, unit_id: str, kind: EventKind, detail: str = "") -> list[Output]:
+        return self.say(UnitEvent(self.header(unit_id), kind, detail))
+
+    def position(
+        self, unit_id: str, north_m: float, east_m: float, **changes: object
+    ) -> list[Output]:
+        position = Position(
+            header=self.header(unit_id),
+            north_m=north_m,
+            east_m=east_m,
+            down_m=0.0,
+            velocity_north_mps=0.0,
+            velocity_east_mps=0.0,
+            velocity_down_mps=0.0,
+            std_north_m=0.1,
+            std_east_m=0.1,
+            std_down_m=0.1,
+            correlation_ne=0.0,
+            heading_rad=0.0,
+            heading_std_rad=0.1,
+            distance_m=0.0,
+            pressure_pa=None,
+            stationary=False,
+            quality=Quality.GOOD,
+            reasons=Reason.NONE,
+        )
+        return self.say(msgspec.structs.replace(position, **changes))
+
+    def gps(self, unit_id: str, lat_deg: float, lon_deg: float, **changes: object) -> list[Output]:
+        fix = GpsFix(
+            header=self.header(unit_id),
+            fix_type=FixType.THREE_D,
+            lat_deg=lat_deg,
+            lon_deg=lon_deg,
+            height_m=50.0,
+            horizontal_std_m=3.0,
+            vertical_std_m=6.0,
+            satellites=9,
+            speed_mps=0.0,
+            course_rad=0.0,
+        )
+        return self.say(msgspec.structs.replace(fix, **changes))

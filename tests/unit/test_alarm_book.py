@@ -1,0 +1,219 @@
+"""Lives of alarms, told in seconds: what happens to a unit and which changes come of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from base_station.alarms import ALARMS
+from base_station.alarms.port import Verdict
+from base_station.events import Refused
+from base_station.fusion import FUSERS
+from base_station.live_state import UnitState
+from base_station.pipeline import StationPipeline
+from shared.messages import AlarmState, EventKind, UnitEvent
+from shared.messages.station import AcknowledgeAlarm, RegisterUnit, ReportProblem, ResolveAlarm
+from tests.station_script import Script
+
+U = "FF-01"
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    return script
+
+
+def changes(script: Script, rule: str) -> list[tuple[str, str]]:
+    return [(a.state.name, a.level) for a in script.alarms if a.rule == rule]
+
+
+def still(script: Script, from_s: float, to_s: float) -> None:
+    for motionless_s in range(round(from_s), round(to_s)):
+        script.wait(1, lambda m=motionless_s: script.status(U, motionless_s=float(m)))  # type: ignore[misc]
+
+
+def test_no_motion_warns_then_latches_until_a_person_resets_it(script: Script) -> None:
+    still(script, 0, 35)
+    assert changes(script, "no-motion") == [("RAISED", "pre-alert"), ("RAISED", "alarm")]
+    pre_alert, alarm = script.alarms
+    assert pre_alert.alarm_id == alarm.alarm_id
+    assert (alarm.header.t_utc_ns - pre_alert.header.t_utc_ns) == 10_000_000_000
+    still(script, 0, 15)
+    assert len(script.alarms) == 2, "motion does not end the full alarm"
+    script.act(ResolveAlarm(alarm.alarm_id, "is well"))
+    assert script.alarms[-1].state is AlarmState.RESOLVED
+    assert script.alarms[-1].by == "chief: is well"
+
+
+def test_motion_cancels_the_pre_alert(script: Script) -> None:
+    still(script, 0, 25)
+    still(script, 0, 3)
+    assert changes(script, "no-motion") == [("RAISED", "pre-alert"), ("RESOLVED", "pre-alert")]
+    assert script.alarms[-1].by == "motion"
+
+
+def test_no_motion_that_goes_on_after_a_reset_alarms_again(script: Script) -> None:
+    still(script, 0, 35)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    still(script, 35, 60)
+    assert changes(script, "no-motion")[-1] == ("RESOLVED", "alarm")
+    still(script, 60, 70)
+    assert changes(script, "no-motion")[-1] == ("RAISED", "alarm")
+
+
+def test_mayday_is_immediate_and_the_wearer_cannot_resolve_it(script: Script) -> None:
+    (alarm,) = [o for o in script.event(U, EventKind.MAYDAY) if o in script.alarms]
+    script.wait(20, lambda: script.status(U, mayday=True))
+    script.event(U, EventKind.MAYDAY_CANCELLED)
+    script.wait(20, lambda: script.status(U, mayday=False))
+    assert changes(script, "mayday") == [("RAISED", "mayday")]
+    script.act(ResolveAlarm(alarm.alarm_id, "spoke to him"))
+    script.wait(5, lambda: script.status(U, mayday=False))
+    assert changes(script, "mayday")[-1] == ("RESOLVED", "mayday")
+
+
+def test_a_mayday_whose_event_was_lost_is_seen_in_the_status(script: Script) -> None:
+    script.wait(3, lambda: script.status(U, mayday=True))
+    assert changes(script, "mayday") == [("RAISED", "mayday")]
+
+
+def test_pressing_again_is_another_mayday(script: Script) -> None:
+    script.event(U, EventKind.MAYDAY)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    script.wait(5, lambda: script.status(U, mayday=True))
+    assert changes(script, "mayday")[-1] == ("RESOLVED", "mayday"), "it is the same press"
+    script.event(U, EventKind.MAYDAY)
+    assert changes(script, "mayday")[-1] == ("RAISED", "mayday")
+    assert script.alarms[0].alarm_id != script.alarms[-1].alarm_id
+
+
+def test_a_late_mayday_of_an_earlier_run_still_counts(script: Script) -> None:
+    script.event(U, EventKind.STARTED)
+    late = script.header(U, captured_s=-5.0)
+    script.event(U, EventKind.STOPPED)
+    script.say(UnitEvent(late, EventKind.MAYDAY))
+    assert changes(script, "mayday") == [("RAISED", "mayday")]
+
+
+def test_heat_rises_at_once_and_falls_with_hysteresis(script: Script) -> None:
+    for ambient_degc in (90, 120, 180, 270):
+        script.wait(1, lambda t=ambient_degc: script.temperature(U, t))  # type: ignore[misc]
+    assert changes(script, "heat") == [
+        ("RAISED", "caution"),
+        ("RAISED", "warning"),
+        ("RAISED", "critical"),
+    ]
+    script.wait(30, lambda: script.temperature(U, 255.0))
+    assert len(changes(script, "heat")) == 3, "within the hysteresis nothing changes"
+    script.wait(30, lambda: script.temperature(U, 40.0))
+    assert changes(script, "heat")[-1] == ("RESOLVED", "critical")
+    assert script.alarms[-1].by == "cooled down"
+
+
+def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
+    for step in range(60):
+        script.wait(1, lambda s=step: script.temperature(U, 99.0 + 3.0 * (s % 2)))  # type: ignore[misc]
+    assert changes(script, "heat") == [("RAISED", "caution")]
+
+
+def test_a_used_up_heat_budget_is_a_warning_below_the_limit(script: Script) -> None:
+    script.wait(1600, lambda: script.temperature(U, 90.0))
+    assert changes(script, "heat") == [("RAISED", "warning")]
+    raised_s = (script.alarms[0].raised_ns - script.records[0][0]) / 1e9
+    assert raised_s == pytest.approx(1501.0, abs=2.0)
+
+
+def test_silence_resolves_nothing(script: Script) -> None:
+    """The last word was one cool sample; without another the alarm stays."""
+    script.wait(1, lambda: script.temperature(U, 120.0))
+    script.wait(1, lambda: script.temperature(U, 20.0))
+    script.wait(200)
+    assert changes(script, "heat") == [("RAISED", "caution")]
+
+
+def test_link_lost_is_raised_at_30_s_and_ends_when_messages_return(script: Script) -> None:
+    script.wait(5, lambda: script.status(U))
+    script.wait(29)
+    assert changes(script, "link-lost") == []
+    script.wait(2)
+    assert changes(script, "link-lost") == [("RAISED", "lost")]
+    script.wait(600)
+    assert len(changes(script, "link-lost")) == 1
+    script.wait(6, lambda: script.status(U))
+    assert changes(script, "link-lost") == [("RAISED", "lost"), ("RESOLVED", "lost")]
+    assert script.alarms[-1].by == "messages return"
+
+
+def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> None:
+    script.event(U, EventKind.STOPPED)
+    script.wait(40)
+    (alarm,) = script.alarms
+    assert (alarm.rule, alarm.level, alarm.priority) == ("link-lost", "switched off", 3)
+
+
+def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
+    script.wait(2, lambda: script.status(U, battery=0.09))
+    script.wait(60, lambda: script.status(U, battery=0.12))
+    assert changes(script, "battery") == [("RAISED", "low")]
+    script.wait(60, lambda: script.status(U, battery=0.9))
+    assert changes(script, "battery")[-1] == ("RESOLVED", "low")
+
+
+def test_an_acknowledged_alarm_that_gets_worse_asks_again(script: Script) -> None:
+    script.wait(1, lambda: script.temperature(U, 120.0))
+    script.act(AcknowledgeAlarm(script.alarms[0].alarm_id), by="anna")
+    assert (script.alarms[-1].state, script.alarms[-1].by) == (AlarmState.ACKNOWLEDGED, "anna")
+    (again,) = script.act(AcknowledgeAlarm(script.alarms[0].alarm_id), by="bert")
+    assert isinstance(again, Refused)
+    assert "anna" in again.reason
+    script.wait(1, lambda: script.temperature(U, 170.0))
+    assert (script.alarms[-1].state, script.alarms[-1].level) == (AlarmState.RAISED, "warning")
+
+
+def test_an_unknown_unit_is_reported_once_and_not_believed() -> None:
+    script = Script()
+    script.event("stranger", EventKind.MAYDAY)
+    script.wait(50, lambda: script.position("stranger", 1.0, 2.0))
+    assert [(a.rule, a.unit_id) for a in script.alarms] == [("unknown-unit", "stranger")]
+    assert script.fused == []
+    script.act(RegisterUnit("stranger", "four"))
+    assert [(a.rule, a.state.name) for a in script.alarms[1:]] == [
+        ("mayday", "RAISED"),
+        ("unknown-unit", "RESOLVED"),
+    ]
+
+
+def test_a_problem_of_the_station_is_an_alarm(script: Script) -> None:
+    script.act(ReportProblem("log", "The disk is full"), by="station")
+    script.act(ReportProblem("log", "The disk is full"), by="station")
+    assert script.pipeline.state.problems == {"log": "The disk is full"}
+    script.act(ReportProblem("log", ""), by="station")
+    assert [(a.unit_id, a.state.name, a.text) for a in script.alarms] == [
+        ("", "RAISED", "The disk is full"),
+        ("", "RESOLVED", "The disk is full"),
+    ]
+    assert script.pipeline.state.problems == {}
+
+
+@dataclass(frozen=True)
+class Broken:
+    name: str = "broken"
+    levels: tuple[str, ...] = ("x",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
+        raise ZeroDivisionError("nothing to divide")
+
+
+def test_a_failing_rule_is_reported_and_the_others_go_on() -> None:
+    script = Script(StationPipeline((Broken(), *ALARMS), FUSERS[0]))
+    script.register(U)
+    script.wait(3, lambda: script.event(U, EventKind.MAYDAY))
+    assert [a.rule for a in script.alarms] == ["station", "mayday"]
+    assert "'broken'" in script.alarms[0].text
+    assert "ZeroDivisionError" in script.alarms[0].text
