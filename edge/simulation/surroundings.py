@@ -10,8 +10,8 @@ from edge.samples import Floats
 from edge.simulation.building import Building
 from shared.geo import pressure_pa_at
 
-# Central Europe (World Magnetic Model 2025): north, east, down.
-_EARTH_FIELD_N_UT = np.array([21.4, 1.7, 43.2])
+# At the training house in 2026 (World Magnetic Model 2025): north, east, down.
+_EARTH_FIELD_N_UT = np.array([16.07, 1.48, 48.56])
 _AIR_SCALE_HEIGHT_M = 8434.0  # isothermal air at 15 degC
 
 
