@@ -15,9 +15,8 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
@@ -100,8 +99,7 @@ def console_inputs(folder: Path) -> list[Path]:
     )
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """A Node that can build the console."""
 
     folder: Path  # where ``node`` is: goes first in the PATH
@@ -137,8 +135,7 @@ def new_enough(node: str) -> bool:
     return (20, 19) <= version < (21, 0) or version >= (22, 12)
 
 
-@dataclass(frozen=True)
-class Stamp:
+class Stamp(NamedTuple):
     """Remembers, by hash, the inputs that an output was made from."""
 
     root: Path

@@ -80,3 +80,11 @@ def trackers() -> None:
 
     for entry in TRACKERS:
         typer.echo(f"{entry.name:10} {entry.summary}")
+
+
+@app.command()
+def plan() -> None:
+    """Print the plan of the building in which simulated responders work, as GeoJSON."""
+    from edge.simulation.building import plan_path  # noqa: PLC0415
+
+    typer.echo(plan_path().read_text())

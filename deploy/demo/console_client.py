@@ -1,0 +1,92 @@
+"""Sets the station up through its console API, as a commander would at the screen."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Any, Self
+
+import httpx
+import msgspec
+
+from deploy.demo.crew import Crew, Responder
+from deploy.demo.portrait import portrait_png
+from shared.errors import UserError
+
+_TIMEOUT_S = 10.0
+
+
+class ConsoleClient:
+    """A logged-in session with one station."""
+
+    def __init__(self, address: str, username: str, password: str) -> None:
+        self._http = httpx.Client(
+            base_url=f"{address}/api/v1", headers={"Origin": address}, timeout=_TIMEOUT_S
+        )
+        self._call("POST", "/login", json={"username": username, "password": password})
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._http.close()
+
+    def prepare(self, crew: Crew, plan_geojson: bytes, incident_name: str) -> str:
+        """Set site, plan and people, open an incident; its id."""
+        self._set_site(plan_geojson)
+        for responder in crew.responder:
+            self._enlist(responder)
+        incident: dict[str, Any] = self._call("POST", "/incidents", json={"name": incident_name})
+        return str(incident["incident_id"])
+
+    def start_unit_at(self, unit_id: str, north_m: float, east_m: float) -> None:
+        """Say where a unit without GPS begins its walk."""
+        start = {"north_m": north_m, "east_m": east_m, "std_m": 1.0, "heading_std_rad": 0.2}
+        self._call("PUT", f"/units/{unit_id}/start", json=start)
+
+    def close_incident(self, incident_id: str) -> None:
+        self._call("POST", f"/incidents/{incident_id}/close")
+
+    def health(self) -> dict[str, Any]:
+        health: dict[str, Any] = self._call("GET", "/health")
+        return health
+
+    def units_heard(self) -> tuple[str, ...]:
+        units = self._call("GET", "/units")
+        return tuple(unit["unit_id"] for unit in units if unit["last_heard_ms"] is not None)
+
+    def open_alarms(self) -> tuple[dict[str, Any], ...]:
+        return tuple(
+            alarm for alarm in self._call("GET", "/alarms") if alarm["state"] != "resolved"
+        )
+
+    def _set_site(self, plan_geojson: bytes) -> None:
+        plan = msgspec.json.decode(plan_geojson)
+        self._call("PUT", "/site/anchor", json=plan["muster"]["anchor"])
+        self._call("PUT", "/site/plan", json=plan)
+
+    def _enlist(self, responder: Responder) -> None:
+        self._call("POST", "/units", json={"unit_id": responder.unit, "label": responder.unit})
+        described = {"name": responder.name, "crew": responder.crew, "role": responder.role}
+        person_id = self._call("POST", "/people", json=described)["person_id"]
+        self._call(
+            "PUT",
+            f"/people/{person_id}/photo",
+            content=portrait_png(responder.name, responder.helmet),
+            headers={"Content-Type": "image/png"},
+        )
+        worn = {"unit_id": responder.unit, "person_id": person_id}
+        self._call("POST", "/assignments", json=worn)
+
+    def _call(self, method: str, path: str, **request: Any) -> Any:
+        try:
+            answer = self._http.request(method, path, **request)
+        except httpx.HTTPError as error:
+            raise UserError(f"the station does not answer {method} {path}: {error}") from error
+        if answer.is_error:
+            raise UserError(f"the station refused {method} {path}: {answer.text}")
+        return answer.json() if answer.content else None

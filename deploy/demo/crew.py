@@ -1,0 +1,33 @@
+"""Reads who takes part in the demo."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+
+import msgspec
+
+
+class Responder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    unit: str
+    name: str
+    crew: str
+    role: str
+    helmet: str  # colour in the drawn portrait
+    source: str
+
+
+class Crew(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    responder: tuple[Responder, ...]
+
+
+def read_crew(recording: Path | None) -> Crew:
+    """The demo's crew; the last of them plays ``recording`` where there is one."""
+    text = (files("deploy.demo") / "crew.toml").read_text()
+    crew = msgspec.convert(tomllib.loads(text), Crew)
+    if recording is None:
+        return crew
+    *others, last = crew.responder
+    playing = msgspec.structs.replace(last, source=f"recording:{recording}")
+    return msgspec.structs.replace(crew, responder=(*others, playing))

@@ -1,0 +1,190 @@
+"""``muster demo``: one base station and five responders on this machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import time
+from datetime import UTC, datetime
+from pathlib import Path
+from threading import Event
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from deploy.demo.console_client import ConsoleClient
+from deploy.demo.crew import Crew, read_crew
+from deploy.demo.processes import Child, Children, wait_for_line
+from shared.errors import UserError
+
+_STATION_PATIENCE_S = 60.0
+_WATCH_EVERY_S = 0.5
+_USUAL_HTTP_PORT = 8080
+_USUAL_BUS_PORT = 7447
+# A walk of some length on which the track is good to see.
+_USUAL_RECORDING = Path("walks") / "footprints" / "37"
+
+
+def demo(
+    for_s: Annotated[
+        float | None, typer.Option("--for", help="End after this many seconds.", min=1.0)
+    ] = None,
+    headless: Annotated[
+        bool, typer.Option(help="For scripts: no moving status line, a summary at the end.")
+    ] = False,
+    recording: Annotated[
+        Path | None, typer.Option(help="Recorded walk that the fifth responder plays.")
+    ] = None,
+    data: Annotated[
+        Path | None, typer.Option(help="Folder for everything the demo writes.")
+    ] = None,
+    http_port: Annotated[int | None, typer.Option(help="Port of the console.")] = None,
+    bus_port: Annotated[int | None, typer.Option(help="Port of the bus.")] = None,
+) -> None:
+    """Run a base station and five responders on this machine until Ctrl-C."""
+    stop = Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    folder = data or Path("muster-data") / f"demo-{datetime.now(UTC):%Y%m%d-%H%M%S}"
+    address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
+    bus = f"tcp/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
+    crew = read_crew(recording or _recorded_walk())
+    with Children(folder / "output") as children:
+        _Demo(children, folder, address, bus, crew, headless).run(stop, for_s)
+
+
+class _Demo:
+    """One run of the demo."""
+
+    def __init__(
+        self,
+        children: Children,
+        folder: Path,
+        address: str,
+        bus: str,
+        crew: Crew,
+        headless: bool,
+    ) -> None:
+        self._children = children
+        self._folder = folder
+        self._address = address
+        self._bus = bus
+        self._crew = crew
+        self._headless = headless
+        self._screen = Console(highlight=False, soft_wrap=True)
+
+    def run(self, stop: Event, for_s: float | None) -> None:
+        self._screen.print("Starting the base station ...")
+        username, password = self._start_station()
+        with ConsoleClient(self._address, username, password) as console:
+            plan = self._simulated_plan()
+            incident = console.prepare(self._crew, plan, f"Demo {datetime.now(UTC):%H:%M} UTC")
+            self._start_agents(console)
+            self._screen.print(
+                f"\n  console   [bold]{self._address}[/]\n"
+                f"  login     [bold]{username}[/]  password  [bold]{password}[/]\n"
+                f"  data      {self._folder}\n"
+            )
+            self._screen.print("Ctrl-C ends everything." if for_s is None else "")
+            self._watch(console, stop, for_s)
+            self._summarise(console)
+            console.close_incident(incident)
+        self._screen.print(
+            f"To replay it: ./muster base replay {incident} --data {self._folder / 'station'}"
+        )
+
+    def _start_station(self) -> tuple[str, str]:
+        data, http = self._folder / "station", self._address.removeprefix("http://")
+        station = self._children.start(
+            "station",
+            ("base", "serve", "--data", str(data), "--listen", self._bus, "--http", http),
+        )
+        wait_for_line(station, "ready", _STATION_PATIENCE_S)
+        login = dict(
+            line.split(": ", 1) for line in (data / "first-login.txt").read_text().splitlines()
+        )
+        return login["username"], login["password"]
+
+    def _simulated_plan(self) -> bytes:
+        """The plan of the building in which the simulated responders work."""
+        printing = self._children.start("plan", ("edge", "plan"))
+        if printing.process.wait() != 0:
+            raise UserError(f"the simulated building has no plan:\n{printing.last_words()}")
+        return printing.output_path.read_bytes()
+
+    def _start_agents(self, console: ConsoleClient) -> None:
+        data = str(self._folder / "units")
+        for responder in self._crew.responder:
+            unit, source = responder.unit, responder.source
+            if source.startswith("recording:"):
+                console.start_unit_at(unit, north_m=-6.0, east_m=4.0)
+            flags = ("--unit", unit, "--source", source, "--connect", self._bus, "--data", data)
+            self._children.start(unit, ("edge", "run", *flags))
+
+    def _watch(self, console: ConsoleClient, stop: Event, for_s: float | None) -> None:
+        """Wait for the end, saying how things stand; UserError when the station dies."""
+        started_s = time.monotonic()
+        mourned: set[str] = {"plan"}
+        while not stop.wait(_WATCH_EVERY_S):
+            elapsed_s = time.monotonic() - started_s
+            if for_s is not None and elapsed_s >= for_s:
+                break
+            for child in self._children.dead():
+                if child.name not in mourned:
+                    mourned.add(child.name)
+                    self._mourn(child)
+            if not self._headless and self._screen.is_terminal:
+                self._screen.print(self._status_line(console, elapsed_s), end="\r")
+        self._screen.print()
+
+    def _mourn(self, child: Child) -> None:
+        if child.name == "station":
+            raise UserError(f"the base station has ended:\n{child.last_words()}")
+        if child.exit_code == 0:
+            self._screen.print(f"{child.name} has come to the end of its walk")
+        else:
+            self._screen.print(f"{child.name} has ended unasked:\n{child.last_words()}")
+
+    def _status_line(self, console: ConsoleClient, elapsed_s: float) -> str:
+        health, alarms = console.health(), console.open_alarms()
+        minutes, seconds = divmod(int(elapsed_s), 60)
+        return (
+            f"{minutes:02}:{seconds:02}  {health['messages']} messages, "
+            f"{health['messages_per_s']:.0f}/s, {len(alarms)} open alarms   "
+        )
+
+    def _summarise(self, console: ConsoleClient) -> None:
+        health, heard = console.health(), console.units_heard()
+        expected = {responder.unit for responder in self._crew.responder}
+        self._screen.print(
+            f"{health['messages']} messages of {len(heard)} units, "
+            f"{health['undecodable']} of them not understood"
+        )
+        for alarm in console.open_alarms():
+            self._screen.print(f"  {alarm['unit_id'] or 'station'}: {alarm['text']}")
+        for problem in health["problems"]:
+            self._screen.print(f"  station: {problem}")
+        if missing := sorted(expected - set(heard)):
+            raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
+
+
+def _recorded_walk() -> Path | None:
+    """One of the recorded walks beside the checkout, where they are there."""
+    data = Path(os.environ.get("MUSTER_DATA", Path("..") / "shared" / "data"))
+    walk = data / _USUAL_RECORDING
+    return walk if walk.is_dir() else None
+
+
+def _free_port(usual: int) -> int:
+    """The usual port where it is free, else any."""
+    for port in (usual, 0):
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return int(probe.getsockname()[1])
+    raise UserError("no port is free on the loopback")
