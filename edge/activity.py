@@ -22,6 +22,7 @@ _WALKS_FOR_NS = 5 * NS_PER_S // 2  # after the last stride
 _RUNNING_STEPS_HZ = 2.4
 _LYING_COS = 0.6  # the foot rests 53 degrees or more from where it stands
 _LYING_AFTER_S = 2.0
+_COLLAPSE_NS = 2 * NS_PER_S  # from the last stride to rest
 _STANCE_SHARE = 0.1  # of a new window in the learned tilt
 
 
@@ -35,6 +36,7 @@ class ActivityMonitor:
         self._stride_count = 0
         self._standing_force_mps2: Floats | None = None
         self._resting_force_mps2: Floats | None = None
+        self._collapse_told = False
         self._seen = False
 
     @property
@@ -57,6 +59,7 @@ class ActivityMonitor:
             self._seen = True
             self._learn_posture(window)
             falls += self._falls.confirm(window.end_ns, self._motion.motionless_s)
+            falls += self._has_collapsed(window.end_ns)
         return falls
 
     def cadence_hz(self, t_ns: int) -> float:
@@ -102,6 +105,17 @@ class ActivityMonitor:
                 self._standing_force_mps2 = window.force_mps2
         elif window.moving and self._is_striding(window.end_ns):
             self._standing_force_mps2 = standing + _STANCE_SHARE * (window.force_mps2 - standing)
+
+    def _has_collapsed(self, t_ns: int) -> bool:
+        """From walking to lying without motion, faster than anyone lies down: True once."""
+        if not self._is_lying():
+            self._collapse_told = False
+            return False
+        if self._collapse_told or not self._strides:
+            return False
+        self._collapse_told = True
+        took_ns = t_ns - self._strides[-1][0] - round(self._motion.motionless_s * NS_PER_S)
+        return took_ns <= _COLLAPSE_NS
 
     def _is_lying(self) -> bool:
         resting, standing = self._resting_force_mps2, self._standing_force_mps2

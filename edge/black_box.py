@@ -16,7 +16,7 @@ from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
 from shared.errors import ConfigError
-from shared.mcap_log.writing import SegmentWriter, segment_paths
+from shared.mcap_log import SegmentWriter, segment_paths
 from shared.messages import Message, UnitDescription
 
 logger = logging.getLogger(__name__)

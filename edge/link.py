@@ -18,7 +18,8 @@ from shared.errors import BusError
 logger = logging.getLogger(__name__)
 
 _RETRY_S = 1.0
-_LOOK_EVERY_S = 1.0
+_LOOK_EVERY_S = 0.5
+_LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
 
 
 class Link:
@@ -96,15 +97,18 @@ class Link:
 
     def _watch(self, bus: Bus) -> None:
         """Until the link is no longer wanted; tells when the station comes and goes."""
-        linked: bool | None = None
+        told: bool | None = None
+        looks_without = 0
         over = False
         while not over:
-            if bus.is_linked() != linked:
-                linked = bus.is_linked()
-                if linked:
-                    logger.info("linked to the station")
-                else:
-                    logger.warning("no link to %s; messages are kept and sent later", self._where)
+            linked = bus.is_linked()
+            looks_without = 0 if linked else looks_without + 1
+            if linked and told is not True:
+                told = True
+                logger.info("linked to the station")
+            elif looks_without == _LOOKS_UNTIL_TOLD and told is not False:
+                told = False
+                logger.warning("no link to %s; messages are kept and sent later", self._where)
             with self._changed:
                 over = self._changed.wait_for(
                     lambda: self._ended or not self._wanted_up, timeout=_LOOK_EVERY_S

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from edge.sources.black_box import BlackBoxSource
 from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
 from edge.sources.simulated import SimulatedSource
@@ -24,6 +25,7 @@ class SourceKind:
 SOURCES: tuple[SourceKind, ...] = (
     SourceKind("recording", RecordingSource, "PATH"),
     SourceKind("simulated", SimulatedSource, "SCENARIO"),
+    SourceKind("mcap", BlackBoxSource, "PATH"),
 )
 
 

@@ -8,8 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from edge.black_box import BlackBox
+from edge.raw_stream import RawStream
 from edge.sources import SOURCES, open_source
 from edge.sources.port import Source
+from shared.clock import ManualClock
 from shared.errors import ConfigError, MusterError
 
 Example = Callable[[Path], str]
@@ -27,7 +30,24 @@ def _simulated(_: Path) -> str:
     return "simulated:straight?seed=5"
 
 
-EXAMPLES: dict[str, Example] = {"recording": _recording, "simulated": _simulated}
+def _mcap(folder: Path) -> str:
+    source = open_source("simulated:straight?seed=5")
+    clock = ManualClock()
+    raw = RawStream("u1", 7)
+    description = raw.description(0, source.description, source="", tracker="")
+    black_box = BlackBox(folder / "box", description, 10**9, clock)
+    for batch in source.batches():
+        black_box.write(raw.messages(batch))
+    black_box.close()
+    (boot,) = (folder / "box").iterdir()
+    return f"mcap:{boot}"
+
+
+EXAMPLES: dict[str, Example] = {
+    "recording": _recording,
+    "simulated": _simulated,
+    "mcap": _mcap,
+}
 
 
 @pytest.fixture(params=[kind.scheme for kind in SOURCES])

@@ -1,0 +1,108 @@
+"""Replays a unit's black box: the same batches that its tracker saw, to the last bit."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+
+from edge.raw_stream import batch_of, sensor_of
+from edge.samples import SensorBatch, SensorDescription
+from edge.sources.port import Outage
+from shared.channels import DESCRIPTION, Channel, parse_key
+from shared.codec import decode
+from shared.errors import RecordingError, UnknownChannelError, WireError
+from shared.mcap_log import LogRecord, SegmentReader, read_log, segment_paths
+from shared.messages import Message, RawImu, UnitDescription
+
+logger = logging.getLogger(__name__)
+
+
+class BlackBoxSource:
+    """``path`` is a segment, or the folder of segments of one boot of one unit.
+
+    A black box that is torn is played up to the tear.  Raises RecordingError for what is none.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self._path = Path(path)
+        _check(self._path)
+        self._unit_id, self._description = self._read_description()
+
+    @property
+    def description(self) -> SensorDescription:
+        return self._description
+
+    @property
+    def is_live(self) -> bool:
+        return False
+
+    @property
+    def radio_outages(self) -> tuple[Outage, ...]:
+        return ()
+
+    def batches(self) -> Iterator[SensorBatch]:
+        group: list[Message] = []
+        for message in self._messages():
+            if isinstance(message, RawImu) and group:
+                yield batch_of(tuple(group))
+                group = []
+            group.append(message)
+        if group:
+            yield batch_of(tuple(group))
+
+    def close(self) -> None:
+        """Nothing is held open between batches."""
+
+    def _read_description(self) -> tuple[str, SensorDescription]:
+        for unit_id, channel, payload in self._records():
+            if channel is DESCRIPTION:
+                description = decode(channel, payload)
+                assert isinstance(description, UnitDescription)
+                return unit_id, sensor_of(description)
+        raise RecordingError(
+            f"{self._path} does not say which sensor it is from; it is no black box of a unit"
+        )
+
+    def _messages(self) -> Iterator[Message]:
+        unreadable = 0
+        for unit_id, channel, payload in self._records():
+            if unit_id != self._unit_id:
+                raise RecordingError(
+                    f"{self._path} holds several units ({self._unit_id}, {unit_id}); a black box "
+                    "holds one"
+                )
+            if channel is DESCRIPTION:
+                continue
+            try:
+                yield decode(channel, payload)
+            except WireError:
+                unreadable += 1
+        if unreadable:
+            logger.warning("%s: %d records cannot be understood", self._path, unreadable)
+
+    def _records(self) -> Iterator[tuple[str, Channel, bytes]]:
+        for _, key, payload in _log_records(self._path):
+            try:
+                yield *parse_key(key), payload
+            except UnknownChannelError:
+                logger.warning("%s: a record under %s, which is no channel", self._path, key)
+
+
+def _log_records(path: Path) -> Iterator[LogRecord]:
+    if path.is_dir():
+        yield from read_log(path, on_damage=logger.warning)
+        return
+    with SegmentReader(path) as segment:
+        yield from segment.records()
+        for note in segment.damage:
+            logger.warning(note)
+
+
+def _check(path: Path) -> None:
+    if not path.exists():
+        raise RecordingError(f"there is no black box at {path}; check the path")
+    if path.is_dir() and not segment_paths(path):
+        inside = sorted(folder.name for folder in path.glob("*/") if segment_paths(folder))
+        hint = f"; choose one of {', '.join(inside)} in it" if inside else ""
+        raise RecordingError(f"{path} holds no segments of a black box{hint}")
