@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import secrets
+import threading
 from collections.abc import Sequence
 from enum import IntEnum
 
@@ -23,6 +24,7 @@ from shared.errors import UserError
 
 SESSION_S = 12 * 3600
 MIN_PASSWORD = 10
+_HASHES_AT_ONCE = 2  # each takes 64 MB
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
 
 
@@ -56,10 +58,11 @@ class Principal(msgspec.Struct, frozen=True):
 class Accounts:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store, clock: Clock) -> None:
+    def __init__(self, store: Store, clock: Clock, hasher: PasswordHash | None = None) -> None:
         self._store = store
         self._clock = clock
-        self._hasher = PasswordHash.recommended()
+        self._hasher = hasher or PasswordHash.recommended()
+        self._hashing = threading.BoundedSemaphore(_HASHES_AT_ONCE)
         # Checked for names that do not exist, so that the answer takes as long.
         self._nobody = self._hasher.hash(secrets.token_urlsafe())
 
@@ -112,7 +115,9 @@ class Accounts:
         with self._store.read() as session:
             user = session.get(User, username)
             stored = self._nobody if user is None else user.password_hash
-        if not self._hasher.verify(password, stored) or user is None:
+        with self._hashing:
+            matches = self._hasher.verify(password, stored)
+        if not matches or user is None:
             return None
         secret, now_ns = secrets.token_urlsafe(32), self._clock.utc_ns()
         with self._store.write() as session:

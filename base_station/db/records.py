@@ -104,11 +104,13 @@ class Records:
     # ---- site
 
     def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
-        """The last one set before ``until_ns``."""
+        """The last one set before ``until_ns``; without one, the first set later."""
         with self._store.read() as session:
-            return session.scalars(
-                select(Anchor).where(Anchor.t_ns < until_ns).order_by(Anchor.t_ns.desc()).limit(1)
-            ).first()
+            before = select(Anchor).where(Anchor.t_ns < until_ns).order_by(Anchor.t_ns.desc())
+            return (
+                session.scalars(before.limit(1)).first()
+                or session.scalars(select(Anchor).order_by(Anchor.t_ns).limit(1)).first()
+            )
 
     def plan(self, until_ns: int = FOREVER_NS) -> bytes | None:
         """The last one set before ``until_ns``, as site GeoJSON."""

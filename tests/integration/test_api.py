@@ -1,0 +1,260 @@
+"""The API as a console and a program use it, on the real pipeline and store."""
+
+from __future__ import annotations
+
+import io
+import xml.etree.ElementTree as ET
+from collections.abc import AsyncIterator, Callable, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+import pytest_asyncio
+from PIL import Image
+
+from base_station.db.accounts import Role
+from base_station.exporters import EXPORTERS
+from shared.clock import ManualClock
+from shared.messages import EventKind, Position, UnitEvent
+from tests.station import ORIGIN, PASSWORD, DeskStation
+
+
+@pytest.fixture
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    yield station
+    station.close()
+
+
+@pytest_asyncio.fixture
+async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+    async with station.client(Role.COMMANDER) as client:
+        yield client
+
+
+@pytest_asyncio.fixture
+async def administrator(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+    async with station.client(Role.ADMINISTRATOR) as client:
+        yield client
+
+
+def photo(size: tuple[int, int] = (1200, 800), kind: str = "PNG") -> bytes:
+    written = io.BytesIO()
+    exif = Image.Exif()
+    exif[0x010E] = "taken at home"
+    Image.new("RGB", size, "orange").save(written, kind, exif=exif)
+    return written.getvalue()
+
+
+async def test_a_person_gets_a_photo_and_a_unit(
+    commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    person = (await commander.post("/people", json={"name": "Ada", "crew": "A"})).json()
+    assert person["photo_url"] is None
+    path = f"/people/{person['person_id']}"
+    sent = await commander.put(
+        f"{path}/photo", content=photo(), headers={"content-type": "image/png"}
+    )
+    assert sent.status_code == 204, sent.text
+
+    url = (await commander.get(path)).json()["photo_url"]
+    got = await commander.get(ORIGIN + url)
+    picture = Image.open(io.BytesIO(got.content))
+    assert (picture.format, picture.size) == ("JPEG", (320, 320))
+    assert not picture.getexif()
+
+    assert (await commander.post("/units", json={"unit_id": "FF-01"})).status_code == 201
+    clock.advance(1.0)
+    worn = {"unit_id": "FF-01", "person_id": person["person_id"]}
+    assert (await commander.post("/assignments", json=worn)).status_code == 204
+    (unit,) = (await commander.get("/units")).json()
+    assert (unit["unit_id"], unit["person_id"], unit["registered"]) == (
+        "FF-01",
+        person["person_id"],
+        True,
+    )
+    refused = await commander.delete(path)
+    assert refused.status_code == 409
+    assert "wears FF-01" in refused.json()["detail"]
+    clock.advance(1.0)
+    assert (await commander.delete("/assignments/FF-01")).status_code == 204
+    assert (await commander.delete(path)).status_code == 204
+
+
+@pytest.mark.parametrize(
+    ("upload", "reason"),
+    [
+        (b"<svg onload=alert(1)>", "cannot be read"),
+        (photo(kind="JPEG")[:200], "cannot be read"),
+        (photo((8000, 8000)), "million pixels"),
+    ],
+)
+async def test_what_is_no_photo_is_refused(
+    commander: httpx.AsyncClient, upload: bytes, reason: str
+) -> None:
+    person_id = (await commander.post("/people", json={"name": "Ada"})).json()["person_id"]
+    answer = await commander.put(
+        f"/people/{person_id}/photo", content=upload, headers={"content-type": "image/jpeg"}
+    )
+    assert answer.status_code == 422
+    assert reason in answer.json()["detail"]
+
+
+async def test_an_incident_is_opened_once_and_closed(
+    commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    incident = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
+    assert incident["opened_by"] == "commander"
+    again = await commander.post("/incidents", json={"name": "Cellar"})
+    assert again.status_code == 409
+    assert "close it first" in again.json()["detail"]
+    clock.advance(60.0)
+    path = f"/incidents/{incident['incident_id']}"
+    assert (await commander.post(f"{path}/close")).status_code == 204
+    closed = (await commander.get(path)).json()
+    assert closed["closed_ms"] - closed["opened_ms"] == 60_000
+
+
+async def test_an_alarm_is_acknowledged_and_resolved(
+    station: DeskStation,
+    commander: httpx.AsyncClient,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> None:
+    await commander.post("/units", json={"unit_id": "FF-01"})
+    header = make_position().header
+    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    station.projection.flush()
+    (alarm,) = (await commander.get("/alarms")).json()
+    assert (alarm["priority"], alarm["state"]) == (1, "raised")
+    path = f"/alarms/{alarm['alarm_id']}"
+    clock.advance(1.0)
+    assert (await commander.post(f"{path}/acknowledge")).status_code == 204
+    clock.advance(1.0)
+    assert (await commander.post(f"{path}/resolve", json={"note": "found"})).status_code == 204
+    told = (await commander.get(path)).json()
+    assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged", "resolved"]
+    assert told["changes"][1]["by"] == "commander"
+
+
+async def _walk(
+    station: DeskStation,
+    commander: httpx.AsyncClient,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> str:
+    """Ada walks north for ten seconds in an incident; returns its id."""
+    await commander.post("/units", json={"unit_id": "FF-01"})
+    person_id = (await commander.post("/people", json={"name": "=Ada", "crew": "A"})).json()[
+        "person_id"
+    ]
+    await commander.post("/assignments", json={"unit_id": "FF-01", "person_id": person_id})
+    incident = (await commander.post("/incidents", json={"name": "Kitchen <1>"})).json()
+    for step in range(11):
+        clock.advance(1.0)
+        station.drive.hear(make_position(north_m=float(step)))
+    await commander.post(f"/incidents/{incident['incident_id']}/close")
+    return str(incident["incident_id"])
+
+
+async def test_tracks_can_be_thinned(
+    station: DeskStation,
+    commander: httpx.AsyncClient,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> None:
+    incident_id = await _walk(station, commander, clock, make_position)
+    (every,) = (await commander.get(f"/incidents/{incident_id}/tracks")).json()
+    (thin,) = (await commander.get(f"/incidents/{incident_id}/tracks?every_s=5")).json()
+    assert every["unit_id"] == "FF-01"
+    assert len(every["points"]) == 10
+    assert 2 <= len(thin["points"]) <= 3
+    assert all(point in every["points"] for point in thin["points"])
+
+
+async def test_exports_say_what_they_need_and_hold_the_track(
+    station: DeskStation,
+    commander: httpx.AsyncClient,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> None:
+    incident_id = await _walk(station, commander, clock, make_position)
+    for exporter in EXPORTERS:
+        answer = await commander.get(f"/incidents/{incident_id}/export/{exporter.name}")
+        assert answer.status_code == (409 if exporter.needs_anchor else 200)
+
+    table = (await commander.get(f"/incidents/{incident_id}/export/csv")).text.splitlines()
+    assert len(table) == 11
+    assert table[1].startswith("FF-01,'=Ada,A,")
+
+    await commander.put("/site/anchor", json={"lat_deg": 52.0, "lon_deg": 13.0})
+    assert (await commander.get("/site/anchor")).json()["lat_deg"] == 52.0
+    late = await commander.get(f"/incidents/{incident_id}/export/gpx")
+    assert late.status_code == 200  # an anchor that comes late is better than none
+
+
+async def test_gpx_follows_its_schema(
+    station: DeskStation,
+    commander: httpx.AsyncClient,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> None:
+    await commander.put("/site/anchor", json={"lat_deg": 52.0, "lon_deg": 13.0})
+    incident_id = await _walk(station, commander, clock, make_position)
+    gpx = ET.fromstring((await commander.get(f"/incidents/{incident_id}/export/gpx")).content)
+    points = list(gpx.iter("{http://www.topografix.com/GPX/1/1}trkpt"))
+    assert len(points) == 10
+    assert [child.tag.rpartition("}")[2] for child in points[0]] == ["ele", "time"]
+    assert float(points[-1].get("lat", "0")) > float(points[0].get("lat", "0"))
+    collection = (await commander.get(f"/incidents/{incident_id}/export/geojson")).json()
+    (line,) = collection["features"]
+    assert line["geometry"]["coordinates"][0][:2] == pytest.approx([13.0, 52.0], abs=1e-3)
+
+
+async def test_a_plan_without_scale_is_refused(commander: httpx.AsyncClient) -> None:
+    answer = await commander.put("/site/plan", json={"type": "FeatureCollection", "features": []})
+    assert answer.status_code == 422
+    assert "site-m" in answer.json()["detail"]
+    plan = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": []}
+    assert (await commander.put("/site/plan", json=plan)).status_code == 204
+    assert (await commander.get("/site/plan")).json() == plan
+
+
+async def test_errors_are_sentences(commander: httpx.AsyncClient) -> None:
+    unknown = await commander.post("/units", json={"unit_id": "FF-01", "lable": "x"})
+    assert unknown.status_code == 422
+    assert unknown.headers["content-type"] == "application/problem+json"
+    assert "lable" in unknown.json()["detail"]
+    assert (await commander.get("/nothing")).json()["status"] == 404
+    not_finite = await commander.put(
+        "/site/anchor",
+        content='{"lat_deg": NaN, "lon_deg": 1}',
+        headers={"content-type": "application/json"},
+    )
+    assert not_finite.status_code == 422
+
+
+async def test_what_was_done_is_in_the_audit(
+    commander: httpx.AsyncClient, administrator: httpx.AsyncClient
+) -> None:
+    await commander.post("/incidents", json={"name": "Kitchen"})
+    entries = (await administrator.get("/audit")).json()
+    assert ("commander", "OpenIncident") in {(one["by"], one["action"]) for one in entries}
+
+
+async def test_users_are_an_administrators_work(
+    station: DeskStation, administrator: httpx.AsyncClient
+) -> None:
+    new = {"username": "mia", "password": PASSWORD, "role": "viewer"}
+    assert (await administrator.post("/users", json=new)).status_code == 204
+    assert (await administrator.post("/users", json=new)).status_code == 409
+    last = await administrator.delete("/users/administrator")
+    assert last.status_code == 409
+    assert "only administrator" in last.json()["detail"]
+    async with station.client() as client:
+        client.headers["origin"] = ORIGIN
+        credentials = {"username": "mia", "password": PASSWORD}
+        assert (await client.post("/login", json=credentials)).json()["role"] == "viewer"
+        changed = {"old_password": PASSWORD, "new_password": "another long one"}
+        assert (await client.post("/me/password", json=changed)).status_code == 204
+        assert (await client.get("/me")).status_code == 401  # its sessions ended

@@ -1,0 +1,177 @@
+"""Who may do what, from where, how often."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+import pytest_asyncio
+
+from base_station.api.security import COOKIE
+from base_station.db.accounts import SESSION_S, Role
+from shared.clock import ManualClock
+from tests.station import ORIGIN, PASSWORD, DeskStation
+
+
+@pytest.fixture
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    yield station
+    station.close()
+
+
+@pytest_asyncio.fixture
+async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+    """Logged in as the commander with a cookie."""
+    async with station.client() as client:
+        client.headers["origin"] = ORIGIN
+        credentials = {"username": "commander", "password": PASSWORD}
+        answer = await client.post("/login", json=credentials)
+        assert answer.status_code == 200, answer.text
+        yield client
+
+
+# What each role may do at least; everything else of the API is in the OpenAPI test.
+ROLES = [
+    ("GET", "/people", None, Role.VIEWER),
+    ("GET", "/health", None, Role.VIEWER),
+    ("POST", "/people", {"name": "Ada"}, Role.COMMANDER),
+    ("POST", "/units", {"unit_id": "FF-01"}, Role.COMMANDER),
+    ("POST", "/incidents", {"name": "Kitchen"}, Role.COMMANDER),
+    ("PUT", "/site/anchor", {"lat_deg": 1.0, "lon_deg": 2.0}, Role.COMMANDER),
+    ("GET", "/users", None, Role.ADMINISTRATOR),
+    ("GET", "/audit", None, Role.ADMINISTRATOR),
+    (
+        "POST",
+        "/users",
+        {"username": "mia", "password": PASSWORD, "role": "viewer"},
+        Role.ADMINISTRATOR,
+    ),
+]
+
+
+@pytest.mark.parametrize(("method", "path", "body", "least"), ROLES)
+async def test_a_role_is_enforced(
+    station: DeskStation, method: str, path: str, body: dict[str, object] | None, least: Role
+) -> None:
+    for role in (None, *Role):
+        async with station.client(role) as client:
+            answer = await client.request(method, path, json=body)
+        if role is None:
+            assert answer.status_code == 401
+        elif role < least:
+            assert answer.status_code == 403
+        else:
+            assert answer.status_code not in (401, 403)
+
+
+async def test_every_route_but_the_login_wants_a_login(station: DeskStation) -> None:
+    async with station.client() as client:
+        document = (await client.get("/openapi.json")).json()
+        open_paths = set()
+        for path, operations in document["paths"].items():
+            for method in operations:
+                concrete = path.removeprefix("/api/v1")
+                for name in ("person_id", "unit_id", "incident_id", "alarm_id", "replay_id"):
+                    concrete = concrete.replace(f"{{{name}}}", "x")
+                concrete = concrete.replace("{token_id}", "x").replace("{username}", "x")
+                concrete = concrete.replace("{format_name}", "csv")
+                answer = await client.request(method, concrete)
+                if answer.status_code != 401:
+                    open_paths.add((method, path, answer.status_code))
+    assert open_paths == {("post", "/api/v1/login", 422), ("post", "/api/v1/logout", 204)}
+
+
+async def test_the_cookie_is_for_the_station_alone(station: DeskStation) -> None:
+    async with station.client() as client:
+        answer = await client.post(
+            "/login", json={"username": "viewer", "password": PASSWORD}, headers={"origin": ORIGIN}
+        )
+    cookie = answer.headers["set-cookie"].lower()
+    assert "httponly" in cookie
+    assert "samesite=strict" in cookie
+
+
+async def test_another_site_changes_nothing(browser: httpx.AsyncClient) -> None:
+    for origin in ("http://evil.example", "null", "http://station.evil.example"):
+        answer = await browser.post("/incidents", json={"name": "x"}, headers={"origin": origin})
+        assert answer.status_code == 403
+    del browser.headers["origin"]
+    assert (await browser.post("/incidents", json={"name": "x"})).status_code == 403
+    assert (await browser.get("/incidents")).json() == []
+
+
+async def test_a_session_ends(browser: httpx.AsyncClient, clock: ManualClock) -> None:
+    assert (await browser.get("/me")).json() == {"username": "commander", "role": "commander"}
+    clock.advance(SESSION_S - 1.0)
+    assert (await browser.get("/me")).status_code == 200
+    clock.advance(1.0)
+    assert (await browser.get("/me")).status_code == 401
+
+
+async def test_logging_out_ends_the_session_at_the_station(browser: httpx.AsyncClient) -> None:
+    secret = browser.cookies[COOKIE]
+    assert (await browser.post("/logout")).status_code == 204
+    browser.cookies.set(COOKIE, secret, domain="station")
+    assert (await browser.get("/me")).status_code == 401
+
+
+async def test_passwords_cannot_be_tried_without_end(station: DeskStation) -> None:
+    async with station.client() as client:
+        wrong = {"username": "commander", "password": "guess"}
+        answers = [(await client.post("/login", json=wrong)) for _ in range(12)]
+        assert [one.status_code for one in answers] == [401] * 10 + [429] * 2
+        assert answers[-1].headers["retry-after"] == "60"
+        # The name is locked from this address, whoever has the right password.
+        right = {"username": "commander", "password": PASSWORD}
+        assert (await client.post("/login", json=right)).status_code == 429
+
+
+async def test_a_wrong_name_and_a_wrong_password_look_the_same(station: DeskStation) -> None:
+    async with station.client() as client:
+        one = await client.post("/login", json={"username": "commander", "password": "x"})
+        other = await client.post("/login", json={"username": "nobody", "password": "x"})
+    assert (one.status_code, one.json()) == (other.status_code, other.json())
+
+
+async def test_secrets_are_not_in_the_database(browser: httpx.AsyncClient, tmp_path: Path) -> None:
+    made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
+    secrets = (browser.cookies[COOKIE], made["token"], PASSWORD)
+    connection = sqlite3.connect(tmp_path / "station.sqlite")
+    dump = "\n".join(connection.iterdump())
+    connection.close()
+    assert "argon2id" in dump
+    assert not any(secret in dump for secret in secrets)
+
+
+async def test_a_token_may_do_no_more_than_its_maker(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    higher = {"name": "t", "role": "administrator"}
+    assert (await browser.post("/tokens", json=higher)).status_code == 403
+    made = (await browser.post("/tokens", json={"name": "t", "role": "viewer", "days": 1})).json()
+    async with station.client() as program:
+        program.headers["authorization"] = f"Bearer {made['token']}"
+        assert (await program.get("/me")).json()["role"] == "viewer"
+        assert (await program.post("/people", json={"name": "Ada"})).status_code == 403
+        assert (await browser.delete(f"/tokens/{made['token_id']}")).status_code == 204
+        assert (await program.get("/me")).status_code == 401
+
+
+async def test_security_headers_are_on_every_answer(station: DeskStation) -> None:
+    async with station.client() as client:
+        for path in ("/me", "/nothing", f"{ORIGIN}/", f"{ORIGIN}/nothing"):
+            headers = (await client.get(path)).headers
+            assert headers["content-security-policy"].startswith("default-src 'self'")
+            assert headers["x-content-type-options"] == "nosniff"
+            assert headers["x-frame-options"] == "DENY"
+
+
+async def test_a_body_without_end_is_refused(browser: httpx.AsyncClient) -> None:
+    answer = await browser.post(
+        "/people", content=b"x" * 13_000_000, headers={"content-type": "application/json"}
+    )
+    assert answer.status_code == 413

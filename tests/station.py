@@ -1,0 +1,145 @@
+"""A station without threads of its own, bus or log: what the API's tests talk to.
+
+The pipeline is the real one; an action is stepped in the thread that submits it.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from pathlib import Path
+
+import httpx
+from pwdlib import PasswordHash
+from pwdlib.hashers.argon2 import Argon2Hasher
+
+from base_station.alarms import ALARMS
+from base_station.api.app import create_app
+from base_station.api.hub import Hub
+from base_station.api.replays import ReplayPlayer, Replays
+from base_station.api.services import Services
+from base_station.api.wire import Delta, Snapshot
+from base_station.db.accounts import Accounts, Role
+from base_station.db.models import Incident
+from base_station.db.projection import SqlProjection
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.store import Store
+from base_station.events import Received, Refused
+from base_station.fusion import FUSERS
+from base_station.pipeline import StationPipeline
+from base_station.sinks import ActionDone, Projection
+from base_station.views import StationFacts, snapshot
+from shared.clock import Clock
+from shared.envelope import Stamper
+from shared.errors import UserError
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    FusedPosition,
+    Message,
+    OperatorAction,
+    UnitDescription,
+)
+from shared.messages.station import Action
+
+PASSWORD = "correct horse battery"
+ORIGIN = "http://station"
+QUICK_HASH = PasswordHash((Argon2Hasher(time_cost=1, memory_cost=8, parallelism=1),))
+
+
+class DeskDrive:
+    """Gate, live source and projection in one, stepped by whoever calls."""
+
+    def __init__(self, clock: Clock, projection: SqlProjection, roster: Roster, hub: Hub) -> None:
+        self._clock = clock
+        self._projection = projection
+        self._roster = roster
+        self._hub = hub
+        self._stamper = Stamper(STATION_ID, 1, clock)
+        self._pipeline = StationPipeline(ALARMS, FUSERS[0])
+        self._lock = threading.RLock()
+        self._seq = 0
+
+    def hear(self, message: Message) -> list[object]:
+        """Step the pipeline with a message, as if it had come now."""
+        with self._lock:
+            t_ns = self._clock.utc_ns()
+            outputs = list(self._pipeline.step(Received(t_ns, message.header.unit_id, message)))
+            refused = any(isinstance(output, Refused) for output in outputs)
+            self._projection.project(
+                Projection(
+                    t_ns,
+                    alarms=tuple(one for one in outputs if isinstance(one, AlarmChange)),
+                    tracks=tuple(one for one in outputs if isinstance(one, FusedPosition)),
+                    actions=(message,)
+                    if isinstance(message, OperatorAction) and not refused
+                    else (),
+                    descriptions=(message,) if isinstance(message, UnitDescription) else (),
+                    heard=((message.header.unit_id, t_ns),)
+                    if message.header.unit_id != STATION_ID
+                    else (),
+                )
+            )
+            self._seq += 1
+            self._hub.delta(Delta(self._seq, t_ns // 1_000_000))
+            return outputs
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        done: Future[ActionDone] = Future()
+        header = self._stamper.header()
+        outputs = self.hear(OperatorAction(header, f"action-{header.seq}", by, action))
+        refused = next((one for one in outputs if isinstance(one, Refused)), None)
+        done.set_result(ActionDone(f"action-{header.seq}", self._clock.utc_ns(), refused))
+        return done
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        with self._lock:
+            deliver(
+                snapshot(self._pipeline.state, self._seq, StationFacts(), self._roster.photo_url)
+            )
+
+
+def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:
+    raise UserError("this station has no log")
+
+
+class DeskStation:
+    """The API on a fresh data folder with one user of each role, each named like the role."""
+
+    def __init__(self, folder: Path, clock: Clock) -> None:
+        self.store = Store(folder / "station.sqlite")
+        self.projection = SqlProjection(self.store)
+        self.hub = Hub()
+        roster = Roster(self.store, clock)
+        self.drive = DeskDrive(clock, self.projection, roster, self.hub)
+        self.services = Services(
+            accounts=Accounts(self.store, clock, QUICK_HASH),
+            roster=roster,
+            records=Records(self.store, clock),
+            hub=self.hub,
+            gate=self.drive,
+            settle=self.projection.flush,
+            replays=Replays(no_replays),
+            clock=clock,
+            secure=False,
+        )
+        self.app = create_app(
+            self.services, started=lambda loop: self.hub.connect(loop, self.drive)
+        )
+        for role in Role:
+            self.services.accounts.add_user(role.word, PASSWORD, role)
+
+    def client(self, role: Role | None = None) -> httpx.AsyncClient:
+        """Over ASGI, with an API token of the user of this role."""
+        headers = {}
+        if role is not None:
+            _, secret = self.services.accounts.add_token(role.word, "test", role, None)
+            headers["Authorization"] = f"Bearer {secret}"
+        transport = httpx.ASGITransport(self.app, raise_app_exceptions=False)
+        return httpx.AsyncClient(transport=transport, base_url=f"{ORIGIN}/api/v1", headers=headers)
+
+    def close(self) -> None:
+        self.projection.close()
+        self.store.close()

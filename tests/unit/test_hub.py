@@ -1,0 +1,167 @@
+"""The console hub: one encoding for all, bounded queues, a snapshot after a gap."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+import pytest
+
+from base_station.api.hub import QUEUE, Client, Hub
+from base_station.api.wire import Delta, HealthView, Snapshot
+
+HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
+
+
+class Source:
+    """A live source whose thread is whoever calls it; it answers snapshots when told to."""
+
+    def __init__(self, hub: Hub) -> None:
+        self._hub = hub
+        self.seq = 0
+        self.asked: list[Callable[[Snapshot], None]] = []
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        self.asked.append(deliver)
+
+    def say(self, times: int = 1) -> None:
+        for _ in range(times):
+            self.seq += 1
+            self._hub.delta(Delta(self.seq, self.seq))
+
+    def snapshot(self) -> Snapshot:
+        return Snapshot(self.seq, self.seq, None, (), (), {}, None, None, HEALTH, None)
+
+    def answer(self) -> None:
+        for deliver in self.asked:
+            deliver(self.snapshot())
+        self.asked.clear()
+
+
+async def settle() -> None:
+    await asyncio.sleep(0)
+    await asyncio.sleep(0)
+
+
+async def next_one(client: Client) -> dict[str, Any]:
+    message = await asyncio.wait_for(client.next_message(), 1.0)
+    decoded: dict[str, Any] = msgspec.json.decode(message)
+    return decoded
+
+
+@pytest.fixture
+async def hub() -> Hub:
+    return Hub()
+
+
+@pytest.fixture
+async def source(hub: Hub) -> Source:
+    source = Source(hub)
+    hub.connect(asyncio.get_running_loop(), source)
+    return source
+
+
+async def test_a_client_gets_a_snapshot_and_then_every_delta(hub: Hub, source: Source) -> None:
+    source.say(3)
+    client = hub.join()
+    source.answer()
+    source.say(5)
+    await settle()
+    first = await next_one(client)
+    assert (first["type"], first["seq"]) == ("snapshot", 3)
+    assert [(await next_one(client))["seq"] for _ in range(5)] == [4, 5, 6, 7, 8]
+
+
+async def test_deltas_before_the_snapshot_are_left_out(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    source.say(4)  # before the source has looked at its requests
+    source.answer()
+    source.say()
+    await settle()
+    assert [(await next_one(client))["seq"] for _ in range(2)] == [4, 5]
+
+
+async def test_everyone_gets_the_same_bytes_encoded_once(hub: Hub, source: Source) -> None:
+    clients = [hub.join() for _ in range(3)]
+    assert len(source.asked) == 1  # they share one snapshot
+    source.answer()
+    source.say()
+    await settle()
+    received = [[await client.next_message() for _ in range(2)] for client in clients]
+    assert received[0][0] is received[1][0] is received[2][0]
+    assert received[0][1] is received[1][1] is received[2][1]
+
+
+async def test_a_slow_client_gets_a_new_snapshot_and_the_others_nothing_of_it(
+    hub: Hub, source: Source
+) -> None:
+    slow, quick = hub.join(), hub.join()
+    source.answer()
+    await settle()
+    await next_one(slow)
+    seen = [await next_one(quick)]
+    for _ in range(3 * QUEUE):
+        source.say()
+        await settle()
+        seen.append(await next_one(quick))
+    assert [one["seq"] for one in seen[1:]] == list(range(1, 3 * QUEUE + 1))
+    assert not source.asked  # nothing is made for a client that takes nothing
+
+    waiting = asyncio.create_task(next_one(slow))
+    await settle()
+    source.answer()
+    caught_up = await waiting
+    assert (caught_up["type"], caught_up["seq"]) == ("snapshot", source.seq)
+    source.say()
+    await settle()
+    assert (await next_one(slow))["seq"] == source.seq
+    assert (slow.lapses, quick.lapses) == (1, 0)
+
+
+async def test_a_client_may_ask_again_and_asks_once(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    source.answer()
+    await settle()
+    await next_one(client)
+    source.say(2)
+    await settle()
+    for _ in range(5):
+        client.ask_for_snapshot()
+    assert len(source.asked) == 1
+    source.answer()
+    await settle()
+    assert (await next_one(client))["type"] == "snapshot"
+
+
+async def test_a_reset_reaches_all(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    source.answer()
+    source.say(2)
+    hub.reset(source.snapshot())
+    source.say()
+    await settle()
+    assert [(await next_one(client))["type"] for _ in range(2)] == ["snapshot", "delta"]
+
+
+async def test_the_source_may_speak_from_its_own_thread(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    source.answer()
+    thread = threading.Thread(target=source.say, args=(50,))
+    thread.start()
+    seqs = [(await next_one(client))["seq"] for _ in range(51)]
+    thread.join()
+    assert seqs == list(range(51))
+
+
+async def test_without_clients_nothing_is_encoded(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    hub.leave(client)
+    source.answer()
+    source.say(10)
+    await settle()
+    assert hub.watchers == 0
+    with pytest.raises(TimeoutError):
+        await asyncio.wait_for(client.next_message(), 0.01)
