@@ -18,12 +18,12 @@ const PLAN: Plan = {
 };
 
 describe("the region of a position", () => {
-  it("is as stated while the position is fresh", () => {
-    expect(regionAt(position(), 2_000).major_m).toBe(2);
+  it("is as the station stated while the station can be heard", () => {
+    expect(regionAt(position(), 0).major_m).toBe(2);
   });
 
-  it("grows with age in every direction", () => {
-    const region = regionAt(position(), 33_000);
+  it("grows in every direction while the station cannot be heard", () => {
+    const region = regionAt(position(), 30_000);
     expect(region.major_m).toBe(32);
     expect(region.minor_m).toBe(31);
   });

@@ -22,11 +22,18 @@ export interface LinkDown {
 }
 export type LinkState = { kind: "connecting" } | LinkUp | LinkDown;
 
+const SILENCE_MS = 3000;
+
 export class Picture {
   readonly link = signal<LinkState>({ kind: "connecting" });
   readonly ready = signal(false);
   /** Now, in station time; goes on by itself when the station is silent. */
   readonly nowMs = signal(0);
+  /** For how long the station has been silent; 0 while it speaks as it should. */
+  readonly silentMs: ReadonlySignal<number> = computed(() => {
+    const silentMs = this.nowMs.value - this.heardMs.value;
+    return silentMs < SILENCE_MS ? 0 : silentMs;
+  });
   readonly incident = signal<IncidentView | null>(null);
   readonly alarms = signal<ReadonlyMap<string, AlarmView>>(new Map());
   readonly plan = signal<Plan | null>(null);
@@ -42,6 +49,7 @@ export class Picture {
     openAlarms(this.alarms.value.values()),
   );
 
+  private readonly heardMs = signal(0);
   private readonly units = new Map<string, Signal<UnitView>>();
 
   /** The signal of one unit; it exists for every id in `unitIds`. */
@@ -56,6 +64,7 @@ export class Picture {
 
   show(state: State): void {
     batch(() => {
+      this.heardMs.value = state.now_ms;
       this.incident.value = state.incident;
       this.alarms.value = state.alarms;
       this.plan.value = state.plan;

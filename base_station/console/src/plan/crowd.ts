@@ -20,6 +20,7 @@ export interface Scene {
   alarms: ReadonlyMap<string, AlarmView>;
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
   nowMs: number;
+  silentMs: number;
   floor: FloorChoice;
   chosen: string | null;
   colours: Colours;
@@ -77,7 +78,7 @@ export class Crowd {
     const centre = siteCoordinate(position);
     const walked = scene.trails.get(unit.unit_id) ?? [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
-    region.getGeometry()?.setCoordinates([ring(centre, regionAt(position, scene.nowMs))]);
+    region.getGeometry()?.setCoordinates([ring(centre, regionAt(position, scene.silentMs))]);
     mark.getGeometry()?.setCoordinates(centre);
     label.getGeometry()?.setCoordinates(centre);
     trail.setStyle(trailStyle(looks, scene.colours));

@@ -1,13 +1,11 @@
-/** The region where a person is with 95 % probability, and how it grows with age.  Pure. */
+/** The region where a person is with 95 % probability, and when a position is old.  Pure. */
 import type { PositionView } from "../wire";
 
-/** A person in gear moves no faster than this for long; the region of an old position grows so. */
-export const GROWTH_MPS = 1.0;
-/** Positions come several times a second: below this age nothing is missing. */
-export const FRESH_MS = 2000;
-/** From here a position is marked as old everywhere. */
+/** As the station widens the region of a unit that it cannot hear (base_station/views.py). */
+const ROAMING_MPS = 1.0;
+const ROAMING_MOST_M = 250;
+/** From this age a position is marked as old everywhere. */
 export const OLD_MS = 10_000;
-const LARGEST_M = 500;
 const SIDES = 48;
 
 export interface Region {
@@ -16,11 +14,13 @@ export interface Region {
   heading_rad: number;
 }
 
-export function regionAt(position: PositionView, nowMs: number): Region {
-  const grownM = (GROWTH_MPS * Math.max(0, nowMs - position.t_ms - FRESH_MS)) / 1000;
+/** The station says how far somebody may have got whom it does not hear; the console goes on with
+ * that for the time in which it does not hear the station. */
+export function regionAt(position: PositionView, silentMs: number): Region {
+  const roamedM = Math.min((ROAMING_MPS * silentMs) / 1000, ROAMING_MOST_M);
   return {
-    major_m: Math.min(position.ellipse_major_m + grownM, LARGEST_M),
-    minor_m: Math.min(position.ellipse_minor_m + grownM, LARGEST_M),
+    major_m: position.ellipse_major_m + roamedM,
+    minor_m: position.ellipse_minor_m + roamedM,
     heading_rad: position.ellipse_heading_rad,
   };
 }

@@ -15,6 +15,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       alarms: picture.alarms.peek(),
       trails: picture.trails.peek(),
       nowMs: picture.nowMs.peek(),
+      silentMs: picture.silentMs.peek(),
       floor: floor.peek(),
       chosen: selectedUnit.peek(),
     }),

@@ -83,7 +83,7 @@ function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const now = picture.nowMs.value;
   return (
     <dl class="facts">
-      <Where unit={unit} now={now} />
+      <Where unit={unit} now={now} silentMs={picture.silentMs.value} />
       <Heard unit={unit} now={now} />
       <Fact icon="heat" label="Environment" level={unit.heat_level}>
         {words.temperature(unit.ambient_degc)}
@@ -97,7 +97,13 @@ function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
   );
 }
 
-function Where({ unit, now }: { unit: UnitView; now: number }) {
+interface WhereProps {
+  unit: UnitView;
+  now: number;
+  silentMs: number;
+}
+
+function Where({ unit, now, silentMs }: WhereProps) {
   const { position } = unit;
   if (position === null) {
     return (
@@ -110,7 +116,7 @@ function Where({ unit, now }: { unit: UnitView; now: number }) {
   const note = words.qualityNote(position);
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
-      {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, now).major_m)}
+      {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, silentMs).major_m)}
       {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
       {note !== "" && <small>{note}</small>}
     </Fact>
