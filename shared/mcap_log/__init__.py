@@ -1,0 +1,31 @@
+"""The log: folders of MCAP segments, written so that a crash costs half a second at most and
+read as they are, complete, growing, torn or damaged.  The only package that imports ``mcap``.
+"""
+
+from __future__ import annotations
+
+from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
+from shared.mcap_log.recovery import Recovery, recover_log
+from shared.mcap_log.schemas import location_topic, log_topic
+from shared.mcap_log.writing import (
+    SegmentInfo,
+    SegmentPolicy,
+    SegmentState,
+    SegmentWriter,
+    segment_paths,
+)
+
+__all__ = [
+    "LogRecord",
+    "Recovery",
+    "SegmentInfo",
+    "SegmentPolicy",
+    "SegmentReader",
+    "SegmentState",
+    "SegmentWriter",
+    "location_topic",
+    "log_topic",
+    "read_log",
+    "recover_log",
+    "segment_paths",
+]

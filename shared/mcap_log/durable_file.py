@@ -1,0 +1,71 @@
+"""An append-only file that outlives a full disk."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from pathlib import Path
+
+
+class DurableFile:
+    """Takes whatever is written at once; ``sync`` brings it to the disk.
+
+    What the disk does not take waits here and goes to the same place at the next ``sync``, so
+    nothing is lost and nothing is written twice.  The file is made by the first ``sync``.
+    It is what an MCAP writer needs of an output stream.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._descriptor: int | None = None
+        self._waiting: deque[bytes] = deque()
+        self._waiting_bytes = 0
+        self._on_disk_bytes = 0
+
+    @property
+    def waiting_bytes(self) -> int:
+        return self._waiting_bytes
+
+    def tell(self) -> int:
+        """Bytes written so far, on the disk or not."""
+        return self._on_disk_bytes + self._waiting_bytes
+
+    def write(self, data: bytes) -> int:
+        if data:
+            self._waiting.append(bytes(data))
+            self._waiting_bytes += len(data)
+        return len(data)
+
+    def flush(self) -> None:
+        """Asked for by stream writers after each chunk; ``sync`` is what reaches the disk."""
+
+    def sync(self) -> None:
+        """Returns when everything written is on the disk for good; raises OSError."""
+        if self._descriptor is None:
+            self._descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o640)
+            sync_folder(self.path.parent)
+        while self._waiting:
+            block = self._waiting[0]
+            count = os.pwrite(self._descriptor, block, self._on_disk_bytes)
+            self._on_disk_bytes += count
+            self._waiting_bytes -= count
+            if count == len(block):
+                self._waiting.popleft()
+            else:
+                self._waiting[0] = block[count:]
+        os.fsync(self._descriptor)
+
+    def close(self) -> None:
+        """Lets go of the file; what still waits is lost."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+
+def sync_folder(folder: Path) -> None:
+    """Make new names in a folder outlive a loss of power."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

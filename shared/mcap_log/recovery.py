@@ -1,0 +1,86 @@
+"""Ends segments in order that a crash or a loss of power left torn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from shared.errors import LogError
+from shared.mcap_log.durable_file import sync_folder
+from shared.mcap_log.reading import SegmentReader
+from shared.mcap_log.writing import Segment, SegmentPolicy, segment_paths
+
+_TORN = ".torn"
+_MAKING = ".recovering"
+
+
+@dataclass(frozen=True, slots=True)
+class Recovery:
+    """What became of one torn segment."""
+
+    path: Path  # the clean segment
+    torn_path: Path  # the original as it was found
+    messages: int
+    bytes_lost: int  # behind the last intact chunk
+    damage: tuple[str, ...]  # in between, in words
+
+    def __str__(self) -> str:
+        lost = f"{self.bytes_lost} bytes behind the tear are lost" if self.bytes_lost else "whole"
+        return "; ".join((f"{self.path.name}: {self.messages} records kept, {lost}", *self.damage))
+
+
+def recover_log(folder: Path, policy: SegmentPolicy = SegmentPolicy()) -> list[Recovery]:  # noqa: B008  # frozen
+    """Make every segment of a log complete; nobody may be writing to it.
+
+    A torn file is kept beside its clean segment, with ``.torn`` added to its name.  Torn again
+    at any instant, the next recovery goes on.  Raises LogError when the disk refuses; the torn
+    segments can be read all the same.
+    """
+    try:
+        for half_made in folder.glob(f"*.mcap{_MAKING}"):
+            half_made.unlink()
+        for torn in folder.glob(f"*.mcap{_TORN}"):
+            clean = torn.with_name(torn.name.removesuffix(_TORN))
+            if not clean.exists():  # the last recovery came to an end between its two renamings
+                torn.rename(clean)
+        return [
+            recovery
+            for path in segment_paths(folder)
+            if (recovery := _recover_segment(path, policy)) is not None
+        ]
+    except OSError as error:
+        raise LogError(
+            f"the log in {folder} was not ended in order and cannot be mended "
+            f"({error.strerror}): free or mend the disk"
+        ) from error
+
+
+def _recover_segment(path: Path, policy: SegmentPolicy) -> Recovery | None:
+    """None when the segment is complete."""
+    with SegmentReader(path) as reader:
+        if reader.is_complete:
+            return None
+        clean = Segment(path.with_name(path.name + _MAKING), policy.chunk_bytes)
+        try:
+            for record in reader.records(derived=True):
+                clean.add(*record)
+            clean.finish()
+            clean.file.sync()
+        finally:
+            clean.file.close()
+        info = reader.info()
+        torn_path = _free_name(path)
+        path.rename(torn_path)
+        clean.file.path.rename(path)
+        sync_folder(path.parent)
+        return Recovery(path, torn_path, info.messages, reader.bytes_lost, tuple(reader.damage))
+
+
+def _free_name(path: Path) -> Path:
+    """Where the torn original goes; an earlier one of the same segment is kept too."""
+    torn = path.with_name(path.name + _TORN)
+    number = 2
+    while torn.exists():
+        torn = path.with_name(f"{path.name}{_TORN}{number}")
+        number += 1
+    return torn

@@ -1,0 +1,67 @@
+"""What a log says of its topics: the protobuf schema of each key, for any reader of MCAP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from google.protobuf.descriptor import FileDescriptor
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
+from google.protobuf.message import DecodeError
+
+from shared.channels import parse_key
+from shared.codec import WIRE_TYPES
+from shared.errors import UnknownChannelError
+from shared.messages.muster.v1.header_pb2 import Header
+
+DERIVED = "foxglove/"  # topics made from others for Foxglove; our own readers skip them
+_DERIVED_TYPES: dict[str, Any] = {"location": LocationFix, "log": Log}
+
+
+def location_topic(unit_id: str) -> str:
+    return f"{DERIVED}{unit_id}/location"
+
+
+def log_topic(unit_id: str) -> str:
+    return f"{DERIVED}{unit_id}/log"
+
+
+def wire_type_of(key: str) -> Any | None:
+    """The generated message class of a key's payloads; None where the key says nothing."""
+    if key.startswith(DERIVED):
+        return _DERIVED_TYPES.get(key.rpartition("/")[2])
+    try:
+        return WIRE_TYPES[parse_key(key)[1].message]
+    except UnknownChannelError:
+        return None
+
+
+def descriptor_set(wire_type: Any) -> bytes:
+    """A serialised FileDescriptorSet of the message's file and all that it imports."""
+    files = FileDescriptorSet()
+    seen: set[str] = set()
+
+    def add(file: FileDescriptor) -> None:
+        if file.name not in seen:
+            seen.add(file.name)
+            for imported in file.dependencies:
+                add(imported)
+            file.CopyToProto(files.file.add())
+
+    add(wire_type.DESCRIPTOR.file)
+    return files.SerializeToString()
+
+
+def sender_time_and_sequence(payload: bytes) -> tuple[int, int]:
+    """``(t_utc_ns, seq)`` of a message's header, the first field of every message; (0, 0) where
+    the bytes are no message of ours.
+    """
+    # Field 1, length-delimited; a header is shorter than 128 bytes for any valid unit id.
+    if len(payload) < 2 or payload[0] != 0x0A or payload[1] > 0x7F:
+        return 0, 0
+    try:
+        header = Header.FromString(payload[2 : 2 + payload[1]])
+    except DecodeError:
+        return 0, 0
+    return max(header.t_utc_ns, 0), header.seq & 0xFFFFFFFF

@@ -1,0 +1,264 @@
+"""Writes a log as a folder of MCAP segments."""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from enum import Enum
+from pathlib import Path
+
+from mcap.writer import CompressionType, Writer
+
+from shared.clock import NS_PER_S
+from shared.errors import LogError
+from shared.mcap_log.durable_file import DurableFile
+from shared.mcap_log.schemas import descriptor_set, sender_time_and_sequence, wire_type_of
+
+_PROFILE = "muster"
+_TOPICS_MAX = 60_000  # a channel id has 16 bits
+_NUMBER = re.compile(r"(\d{6,})-.*\.mcap(?:\.torn)?")
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentPolicy:
+    """How a log is cut into segments and brought to the disk."""
+
+    segment_s: float = 900.0
+    flush_every_s: float = 0.5
+    chunk_bytes: int = 256 * 1024
+    # Each topic of each chunk has an entry in the segment's index, which is kept in memory
+    # until the segment ends: many units make shorter segments.
+    index_entries_max: int = 200_000
+    waiting_bytes_max: int = 64 * 1024 * 1024  # kept in memory while the disk takes nothing
+
+
+class SegmentState(Enum):
+    OPEN = "open"  # being written
+    CLOSED = "closed"
+    TORN = "torn"  # not ended in order; readable up to the tear
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentInfo:
+    """What is known of a segment; times are log times, 0 while it is empty."""
+
+    path: Path
+    state: SegmentState
+    start_ns: int
+    end_ns: int
+    messages: int
+    size_bytes: int
+
+
+class Segment:
+    """One MCAP file being written: topics are keys, payloads are kept as they are."""
+
+    def __init__(self, path: Path, chunk_bytes: int) -> None:
+        self.file = DurableFile(path)
+        self._writer = Writer(self.file, chunk_bytes, CompressionType.ZSTD)  # type: ignore[arg-type]  # a stream is what it writes to
+        self._writer.start(profile=_PROFILE)
+        self._schemas: dict[str, int] = {}
+        self._topics: dict[str, int] = {}
+        self._chunk_topics: set[int] = set()
+        self._chunk_start = self.file.tell()
+        self.index_entries = 0
+        self.start_ns = 0
+        self.end_ns = 0
+        self.messages = 0
+
+    def add(self, t_ns: int, key: str, payload: bytes) -> None:
+        topic = self._topics.get(key)
+        if topic is None:
+            topic = self._register(key)
+        utc_ns, sequence = sender_time_and_sequence(payload)
+        self._chunk_topics.add(topic)
+        self._writer.add_message(topic, t_ns, payload, utc_ns or t_ns, sequence)
+        if self.file.tell() != self._chunk_start:
+            self._count_chunk()
+        if self.messages == 0:
+            self.start_ns = t_ns
+        self.end_ns = max(self.end_ns, t_ns)
+        self.messages += 1
+
+    def end_chunk(self) -> None:
+        """Everything added so far is in the file, which may still have to reach the disk."""
+        self._writer.flush()  # type: ignore[no-untyped-call]
+        self._count_chunk()
+
+    def finish(self) -> None:
+        """Write what makes the file complete."""
+        self._writer.finish()  # type: ignore[no-untyped-call]
+
+    @property
+    def is_full_of_topics(self) -> bool:
+        return len(self._topics) >= _TOPICS_MAX
+
+    def info(self, state: SegmentState) -> SegmentInfo:
+        return SegmentInfo(
+            self.file.path, state, self.start_ns, self.end_ns, self.messages, self.file.tell()
+        )
+
+    def _count_chunk(self) -> None:
+        self.index_entries += len(self._chunk_topics)
+        self._chunk_topics.clear()
+        self._chunk_start = self.file.tell()
+
+    def _register(self, key: str) -> int:
+        wire_type = wire_type_of(key)
+        if wire_type is None:
+            topic = self._writer.register_channel(key, "", 0)
+        else:
+            name = wire_type.DESCRIPTOR.full_name
+            if name not in self._schemas:
+                self._schemas[name] = self._writer.register_schema(
+                    name, "protobuf", descriptor_set(wire_type)
+                )
+            topic = self._writer.register_channel(key, "protobuf", self._schemas[name])
+        self._topics[key] = topic
+        return topic
+
+
+class SegmentWriter:
+    """Appends records to the newest segment of a folder, and begins new ones.
+
+    A record is on the disk for good ``flush_every_s`` of log time later at the latest, and at
+    once when it is urgent.  Time is passed in.  No disk trouble raises: records wait in memory,
+    ``problem`` says so in words, and everything goes to its place when the disk takes it again.
+    Records beyond ``waiting_bytes_max`` are refused and counted in ``lost``.
+
+    One thread at a time.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        policy: SegmentPolicy = SegmentPolicy(),
+        on_closed: Callable[[SegmentInfo], None] = lambda _: None,
+    ) -> None:
+        """``on_closed`` is told of each segment that is complete and on the disk.
+
+        Raises LogError when the folder cannot be made or read.
+        """
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._next_number = 1 + max(map(_number_of, folder.iterdir()), default=0)
+        except OSError as error:
+            raise LogError(f"the log folder {folder} cannot be used: {error.strerror}") from error
+        self._folder = folder
+        self._policy = policy
+        self._flush_every_ns = round(policy.flush_every_s * NS_PER_S)
+        self._on_closed = on_closed
+        self._segment: Segment | None = None
+        self._ended: deque[Segment] = deque()  # complete, but not all on the disk
+        self._flush_due_ns: int | None = None
+        self._trouble: OSError | None = None
+        self.lost = 0
+
+    @property
+    def problem(self) -> str:
+        """Why records do not reach the disk, as a sentence for a person; empty: they do."""
+        if self._trouble is None:
+            return ""
+        lost = f", {self.lost} records are lost" if self.lost else ""
+        return (
+            f"the log cannot be written to {self._folder} ({self._trouble.strerror}): "
+            f"{self.waiting_bytes / 1e6:.1f} MB wait in memory{lost}; free or mend the disk"
+        )
+
+    @property
+    def waiting_bytes(self) -> int:
+        return sum(segment.file.waiting_bytes for segment in self._segments())
+
+    def current(self) -> SegmentInfo | None:
+        """The segment being written."""
+        return None if self._segment is None else self._segment.info(SegmentState.OPEN)
+
+    def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
+        """Append a record with log time ``t_ns``, which must not go back; False: it is lost."""
+        if self._trouble is not None and self.waiting_bytes > self._policy.waiting_bytes_max:
+            self.lost += 1
+            self.advance(t_ns)
+            return False
+        if self._segment is None or self._is_over(self._segment, t_ns):
+            self._begin_segment(t_ns)
+        assert self._segment is not None
+        self._segment.add(t_ns, key, payload)
+        if self._flush_due_ns is None:
+            self._flush_due_ns = t_ns + self._flush_every_ns
+        if urgent:
+            self.flush()
+        else:
+            self.advance(t_ns)
+        return True
+
+    def advance(self, t_ns: int) -> None:
+        """Time goes on: flush when it is due.  Call it where records may stay away."""
+        if self._flush_due_ns is not None and t_ns >= self._flush_due_ns:
+            self._flush_due_ns = t_ns + self._flush_every_ns  # when to try again
+            self.flush()
+
+    def flush(self) -> None:
+        """Bring everything to the disk; what fails is in ``problem``."""
+        if self._segment is not None:
+            self._segment.end_chunk()
+        try:
+            for segment in self._segments():
+                segment.file.sync()
+        except OSError as error:
+            self._trouble = error
+            return
+        self._trouble = None
+        self._flush_due_ns = None
+        while self._ended:
+            segment = self._ended.popleft()
+            segment.file.close()
+            self._on_closed(segment.info(SegmentState.CLOSED))
+
+    def close(self) -> None:
+        """End the log in order; what the disk does not take is left in ``problem``."""
+        self._end_segment()
+        self.flush()
+        for segment in self._ended:
+            segment.file.close()
+        self._ended.clear()
+
+    def _segments(self) -> list[Segment]:
+        return [*self._ended, *([] if self._segment is None else [self._segment])]
+
+    def _is_over(self, segment: Segment, t_ns: int) -> bool:
+        return (
+            t_ns - segment.start_ns >= self._policy.segment_s * NS_PER_S
+            or segment.index_entries >= self._policy.index_entries_max
+            or segment.is_full_of_topics
+        )
+
+    def _begin_segment(self, t_ns: int) -> None:
+        self._end_segment()
+        began = datetime.fromtimestamp(t_ns // NS_PER_S, UTC).strftime("%Y%m%dT%H%M%SZ")
+        path = self._folder / f"{self._next_number:06d}-{began}.mcap"
+        self._segment = Segment(path, self._policy.chunk_bytes)
+        self._next_number += 1
+
+    def _end_segment(self) -> None:
+        if self._segment is not None:
+            self._segment.finish()
+            self._ended.append(self._segment)
+            self._segment = None
+
+
+def segment_paths(folder: Path) -> list[Path]:
+    """The segments of a log in the order of writing."""
+    if not folder.is_dir():
+        return []
+    return sorted(
+        (path for path in folder.iterdir() if path.suffix == ".mcap" and _number_of(path)),
+        key=_number_of,
+    )
+
+
+def _number_of(path: Path) -> int:
+    match = _NUMBER.fullmatch(path.name)
+    return int(match.group(1)) if match else 0

@@ -1,0 +1,162 @@
+"""A log that is torn or damaged anywhere gives back everything else, and says what is missing."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from shared.channels import CHANNELS
+from shared.mcap_log import (
+    LogRecord,
+    SegmentPolicy,
+    SegmentReader,
+    SegmentWriter,
+    read_log,
+    recover_log,
+    segment_paths,
+)
+from shared.mcap_log.schemas import location_topic
+
+MANY = settings(max_examples=60, deadline=None)
+FIXTURES = [HealthCheck.function_scoped_fixture]
+T0_NS = 1_700_000_000_000_000_000
+POLICY = SegmentPolicy(chunk_bytes=2048)
+
+
+def records() -> list[LogRecord]:
+    """Payloads as random as bytes can be, over known and unknown keys."""
+    chance = random.Random(7)
+    keys = [channel.key(unit) for channel in CHANNELS for unit in ("anna", "ben")]
+    keys += ["muster/v1/anna/up/unheard_of", "elsewhere"]
+    return [
+        (T0_NS + number * 1_000_000, chance.choice(keys), chance.randbytes(chance.randrange(90)))
+        for number in range(400)
+    ]
+
+
+RECORDS = records()
+
+
+def write_log(folder: Path, *, close: bool) -> Path:
+    writer = SegmentWriter(folder, POLICY)
+    for index, record in enumerate(RECORDS):
+        writer.write(*record)
+        if index % 50 == 0:
+            writer.write(record[0], location_topic("anna"), b"derived")
+            writer.flush()
+    if close:
+        writer.close()
+    else:
+        writer.flush()
+    return segment_paths(folder)[0]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_log(tmp_path_factory.mktemp("whole"), close=True)
+
+
+@pytest.fixture(scope="module")
+def unfinished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_log(tmp_path_factory.mktemp("unfinished"), close=False)
+
+
+def log_of(folder: Path, content: bytes) -> Path:
+    for old in folder.iterdir():
+        old.unlink()
+    (folder / "000001-20260301T100000Z.mcap").write_bytes(content)
+    return folder
+
+
+def assert_in_order_of(found: list[LogRecord], written: list[LogRecord]) -> None:
+    """Every record found was written, in that order, none twice."""
+    rest = iter(written)
+    assert all(record in rest for record in found)
+
+
+@settings(MANY, suppress_health_check=FIXTURES)
+@given(cut=st.floats(0.0, 1.0))
+def test_a_log_torn_anywhere_is_read_and_mended_up_to_the_tear(
+    tmp_path: Path, whole: Path, cut: float
+) -> None:
+    content = whole.read_bytes()
+    size = round(cut * len(content))
+    folder = log_of(tmp_path, content[:size])
+    found = list(read_log(folder))
+    assert found == RECORDS[: len(found)]
+
+    recoveries = recover_log(folder, POLICY)
+    assert len(recoveries) == (0 if size == len(content) else 1)
+    damage: list[str] = []
+    assert list(read_log(folder, on_damage=damage.append)) == found
+    assert damage == []
+    with SegmentReader(segment_paths(folder)[0]) as mended:
+        assert mended.is_complete
+        assert mended.info().messages == len(found)
+    for recovery in recoveries:
+        assert recovery.messages == len(found)
+        assert recovery.torn_path.read_bytes() == content[:size]
+    assert recover_log(folder, POLICY) == []
+
+
+@settings(MANY, suppress_health_check=FIXTURES)
+@given(cut=st.floats(0.0, 1.0))
+def test_what_was_flushed_before_a_tear_is_there(
+    tmp_path: Path, unfinished: Path, cut: float
+) -> None:
+    folder = log_of(tmp_path, unfinished.read_bytes() + b"\0" * round(cut * 5000))
+    assert list(read_log(folder)) == RECORDS
+    assert recover_log(folder, POLICY)[0].bytes_lost == round(cut * 5000)
+
+
+@settings(MANY, suppress_health_check=FIXTURES)
+@given(at=st.floats(0.0, 1.0, exclude_max=True), bit=st.integers(0, 7), end=st.booleans())
+def test_a_flipped_bit_costs_one_chunk_at_most_and_is_told(
+    tmp_path: Path, whole: Path, unfinished: Path, at: float, bit: int, end: bool
+) -> None:
+    content = bytearray((whole if end else unfinished).read_bytes())
+    content[int(at * len(content))] ^= 1 << bit
+    folder = log_of(tmp_path, bytes(content))
+    damage: list[str] = []
+    found = list(read_log(folder, on_damage=damage.append))
+    assert_in_order_of(found, RECORDS)
+    assert found == RECORDS or damage or not end
+    assert len(found) > 0.7 * len(RECORDS) or not end
+    key = RECORDS[-1][1]
+    assert_in_order_of(list(read_log(folder, keys={key})), [r for r in RECORDS if r[1] == key])
+
+
+@settings(MANY, suppress_health_check=FIXTURES)
+@given(content=st.binary(max_size=300), magic=st.booleans())
+def test_bytes_that_are_no_log_yield_nothing(tmp_path: Path, content: bytes, magic: bool) -> None:
+    folder = log_of(tmp_path, (b"\x89MCAP0\r\n" if magic else b"") + content)
+    assert list(read_log(folder)) == []
+    recover_log(folder, POLICY)
+    assert list(read_log(folder)) == []
+
+
+@settings(MANY, suppress_health_check=FIXTURES)
+@given(st.data())
+def test_a_window_and_keys_select_what_a_filter_selects(
+    tmp_path: Path, data: st.DataObject
+) -> None:
+    end = data.draw(st.booleans())
+    if not any(tmp_path.iterdir()):
+        write_log(tmp_path / "whole", close=True)
+        write_log(tmp_path / "unfinished", close=False)
+    folder = tmp_path / ("whole" if end else "unfinished")
+    times = st.none() | st.integers(-5, 405).map(lambda number: T0_NS + number * 1_000_000)
+    start_ns, end_ns = data.draw(times), data.draw(times)
+    keys = data.draw(st.none() | st.sets(st.sampled_from(sorted({r[1] for r in RECORDS}))))
+    expected = [
+        record
+        for record in RECORDS
+        if (start_ns is None or record[0] >= start_ns)
+        and (end_ns is None or record[0] < end_ns)
+        and (keys is None or record[1] in keys)
+    ]
+    assert list(read_log(folder, start_ns, end_ns, keys)) == expected

@@ -1,0 +1,195 @@
+"""Writing the log: segments, flushing, schemas, and what any other reader of MCAP sees."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
+from mcap.reader import make_reader
+
+from shared.channels import STATUS, TEMPERATURE
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import LogError
+from shared.mcap_log import (
+    SegmentInfo,
+    SegmentPolicy,
+    SegmentReader,
+    SegmentState,
+    SegmentWriter,
+    location_topic,
+    read_log,
+    recover_log,
+    segment_paths,
+)
+from shared.messages import Header, Temperature
+
+T0_NS = 1_700_000_000 * NS_PER_S
+KEY = TEMPERATURE.key("anna")
+
+
+def temperature(header: Header) -> bytes:
+    return encode(Temperature(header, 21.5))
+
+
+def on_disk(folder: Path) -> list[bytes]:
+    return [payload for _, _, payload in read_log(folder)]
+
+
+def as_others_read(path: Path) -> list[tuple[Any, Any, Any]]:
+    with path.open("rb") as file:
+        return list(make_reader(file, validate_crcs=True).iter_messages(log_time_order=False))
+
+
+def test_a_record_is_on_the_disk_half_a_second_of_log_time_later(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1")
+    writer.write(T0_NS + 400_000_000, KEY, b"2")
+    assert on_disk(tmp_path) == []
+    writer.advance(T0_NS + 499_999_999)
+    assert on_disk(tmp_path) == []
+    writer.advance(T0_NS + 500_000_000)
+    assert on_disk(tmp_path) == [b"1", b"2"]
+
+
+def test_an_urgent_record_is_on_the_disk_at_once_with_all_before_it(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1")
+    writer.write(T0_NS + 1, KEY, b"mayday", urgent=True)
+    assert on_disk(tmp_path) == [b"1", b"mayday"]
+
+
+def test_records_with_equal_times_keep_their_order(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path, SegmentPolicy(chunk_bytes=100))
+    payloads = [bytes([number]) for number in range(100)]
+    for number, payload in enumerate(payloads):
+        writer.write(T0_NS, f"key/{number % 7}", payload)
+    writer.close()
+    assert on_disk(tmp_path) == payloads
+
+
+def test_segments_end_by_time_and_are_told_of(tmp_path: Path) -> None:
+    closed: list[SegmentInfo] = []
+    writer = SegmentWriter(tmp_path, SegmentPolicy(segment_s=10.0), closed.append)
+    for second in range(25):
+        writer.write(T0_NS + second * NS_PER_S, KEY, bytes([second]))
+    writer.close()
+    assert [path.name for path in segment_paths(tmp_path)] == [
+        "000001-20231114T221320Z.mcap",
+        "000002-20231114T221330Z.mcap",
+        "000003-20231114T221340Z.mcap",
+    ]
+    assert [info.path for info in closed] == segment_paths(tmp_path)
+    assert [(info.start_ns - T0_NS) // NS_PER_S for info in closed] == [0, 10, 20]
+    assert [(info.end_ns - T0_NS) // NS_PER_S for info in closed] == [9, 19, 24]
+    assert [info.messages for info in closed] == [10, 10, 5]
+    for info in closed:
+        with SegmentReader(info.path) as reader:
+            assert reader.info() == info
+    assert on_disk(tmp_path) == [bytes([second]) for second in range(25)]
+
+
+def test_a_segment_ends_before_its_index_fills_the_memory(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path, SegmentPolicy(index_entries_max=50))
+    for number in range(300):
+        writer.write(T0_NS + number, f"key/{number % 20}", b"", urgent=number % 20 == 19)
+    writer.close()
+    assert len(segment_paths(tmp_path)) == 5
+    assert len(on_disk(tmp_path)) == 300
+
+
+def test_a_new_writer_goes_on_behind_the_old_segments(tmp_path: Path) -> None:
+    for payload in (b"first", b"second"):
+        writer = SegmentWriter(tmp_path)
+        writer.write(T0_NS, KEY, payload)
+        writer.close()
+    assert on_disk(tmp_path) == [b"first", b"second"]
+
+
+def test_a_writer_without_records_leaves_no_file(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path / "log")
+    writer.advance(T0_NS)
+    writer.close()
+    assert list((tmp_path / "log").iterdir()) == []
+
+
+def test_any_reader_of_mcap_sees_key_schema_times_and_sequence(tmp_path: Path) -> None:
+    stamper = Stamper("anna", 77, ManualClock(utc_ns=T0_NS))
+    payload = temperature(stamper.header())
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS + 5, KEY, payload)
+    writer.close()
+    [(schema, channel, message)] = as_others_read(segment_paths(tmp_path)[0])
+    assert (channel.topic, channel.message_encoding) == (KEY, "protobuf")
+    assert (schema.name, schema.encoding) == ("muster.v1.Temperature", "protobuf")
+    described = FileDescriptorSet.FromString(schema.data)
+    assert {file.package for file in described.file} == {"muster.v1"}
+    assert len(described.file) >= 2  # the header's file comes along
+    assert message.data == payload
+    assert (message.log_time, message.publish_time, message.sequence) == (T0_NS + 5, T0_NS, 1)
+
+
+@pytest.mark.parametrize("payload", [b"", b"\n", b"\x0a\xff", b"\x0a\x05xxxxx", b"no message"])
+def test_bytes_that_are_no_message_are_kept_as_they_came(tmp_path: Path, payload: bytes) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, STATUS.key("anna"), payload)
+    writer.write(T0_NS, "muster/v1/anna/up/unheard_of", payload)
+    writer.close()
+    assert on_disk(tmp_path) == [payload, payload]
+    [known, unknown] = as_others_read(segment_paths(tmp_path)[0])
+    assert known[2].publish_time == T0_NS
+    assert unknown[0] is None
+
+
+def test_topics_made_for_foxglove_are_there_for_others_only(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"ours")
+    writer.write(T0_NS, location_topic("anna"), b"")
+    writer.close()
+    assert on_disk(tmp_path) == [b"ours"]
+    [path] = segment_paths(tmp_path)
+    assert [schema.name for schema, _, _ in as_others_read(path)] == [
+        "muster.v1.Temperature",
+        "foxglove.LocationFix",
+    ]
+    with SegmentReader(path) as reader:
+        assert reader.info().messages == 1
+        assert len(list(reader.records(derived=True))) == 2
+
+
+def test_what_is_being_written_can_be_read_up_to_the_last_flush(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    writer.write(T0_NS + 1, KEY, b"2")
+    with SegmentReader(segment_paths(tmp_path)[0]) as reader:
+        assert list(reader.records()) == [(T0_NS, KEY, b"1")]
+        assert reader.info().state is SegmentState.TORN
+        assert reader.damage == []
+
+
+def test_a_recovery_that_was_cut_off_goes_on(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    path.with_name(path.name + ".recovering").write_bytes(b"half made")
+    path.rename(path.with_name(path.name + ".torn"))
+    [recovery] = recover_log(tmp_path)
+    assert recovery.path == path
+    assert recovery.bytes_lost == 0
+    assert "1 records kept" in str(recovery)
+    assert on_disk(tmp_path) == [b"1"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, path.name + ".torn"]
+
+
+def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
+    (tmp_path / "log").write_text("a file")
+    with pytest.raises(LogError, match="cannot be used"):
+        SegmentWriter(tmp_path / "log")
+
+
+def test_a_folder_that_is_not_there_has_no_records(tmp_path: Path) -> None:
+    assert list(read_log(tmp_path / "nowhere")) == []
+    assert recover_log(tmp_path / "nowhere") == []
