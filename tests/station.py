@@ -26,7 +26,7 @@ from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
-from base_station.events import Received, Refused
+from base_station.events import Output, Received, Refused
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline
 from base_station.sinks import ActionDone, Projection
@@ -62,11 +62,11 @@ class DeskDrive:
         self._lock = threading.RLock()
         self._seq = 0
 
-    def hear(self, message: Message) -> list[object]:
+    def hear(self, message: Message) -> list[Output]:
         """Step the pipeline with a message, as if it had come now."""
         with self._lock:
             t_ns = self._clock.utc_ns()
-            outputs = list(self._pipeline.step(Received(t_ns, message.header.unit_id, message)))
+            outputs = self._pipeline.step(Received(t_ns, message.header.unit_id, message))
             refused = any(isinstance(output, Refused) for output in outputs)
             self._projection.project(
                 Projection(

@@ -1,0 +1,83 @@
+"""The station's settings; every default stands here."""
+
+from __future__ import annotations
+
+import ipaddress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+from shared.config import Within
+from shared.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class BusConfig:
+    """The Zenoh router inside the station."""
+
+    listen: tuple[str, ...] = ("tcp/127.0.0.1:7447",)  # where units connect
+
+
+@dataclass(frozen=True, slots=True)
+class HttpConfig:
+    """The console and its API."""
+
+    listen: str = "127.0.0.1:8080"
+    certificate: Path | None = None  # PEM; with it and the key the console is served over TLS
+    private_key: Path | None = None
+
+    def __post_init__(self) -> None:
+        host_and_port(self.listen)
+        if (self.certificate is None) != (self.private_key is None):
+            raise ConfigError("certificate and private_key belong together: give both or neither")
+
+
+@dataclass(frozen=True, slots=True)
+class LogConfig:
+    """How the log is cut into segments and brought to the disk."""
+
+    segment_s: Annotated[float, Within(1.0, 86_400.0)] = 900.0
+    flush_every_s: Annotated[float, Within(0.05, 60.0)] = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class StationConfig:
+    data: Path = Path("muster-data")  # log, database and first login; one station a folder
+    insecure: bool = False  # accept plain connections from other machines
+    log_level: str = "INFO"
+    bus: BusConfig = field(default_factory=BusConfig)
+    http: HttpConfig = field(default_factory=HttpConfig)
+    log: LogConfig = field(default_factory=LogConfig)
+
+    def plain_endpoints(self) -> tuple[str, ...]:
+        """Where others could listen in: what is not encrypted and leaves this machine."""
+        plain = [one for one in self.bus.listen if not one.startswith("tls/")]
+        if self.http.certificate is None:
+            plain.append(self.http.listen)
+        return tuple(one for one in plain if not _is_loopback(one.rpartition("/")[2]))
+
+    def refuse_plain(self) -> None:
+        """ConfigError where plain connections from other machines were not asked for."""
+        if self.insecure or not (plain := self.plain_endpoints()):
+            return
+        raise ConfigError(
+            f"{', '.join(plain)} would be open to the network without encryption; listen on "
+            "127.0.0.1, give certificates, or accept it with --insecure"
+        )
+
+
+def host_and_port(address: str) -> tuple[str, int]:
+    """``HOST:PORT`` or ``[IPV6]:PORT``; raises ConfigError."""
+    host, _, port = address.rpartition(":")
+    host = host.removeprefix("[").removesuffix("]")
+    if not host or not port.isdecimal() or int(port) > 65_535:
+        raise ConfigError(f"{address!r} is no address: write HOST:PORT, as in 127.0.0.1:8080")
+    return host, int(port)
+
+
+def _is_loopback(address: str) -> bool:
+    host, _ = host_and_port(address)
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,219 @@
+"""The database: migrations, damaged and newer files, the projection's writer."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from alembic import command
+from sqlalchemy import inspect
+
+from base_station.db.migrate import alembic_config
+from base_station.db.models import Base, Person
+from base_station.db.projection import SqlProjection
+from base_station.db.records import FOREVER_NS, Records, Window
+from base_station.db.roster import Roster
+from base_station.db.store import Store, copy_database
+from base_station.sinks import Projection
+from shared.clock import NS_PER_S, ManualClock
+from shared.envelope import Stamper
+from shared.errors import StoreError
+from shared.messages import AlarmChange, AlarmState, FusedPosition, Header, OperatorAction
+from shared.messages.station import (
+    Action,
+    Assign,
+    CloseIncident,
+    OpenIncident,
+    RegisterUnit,
+    Unassign,
+)
+from shared.quality import Quality
+
+ALL = Window(0, FOREVER_NS)
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "station.sqlite"
+
+
+@pytest.fixture
+def store(path: Path) -> Iterator[Store]:
+    with Store(path) as store:
+        yield store
+
+
+def test_an_empty_file_is_migrated_to_what_the_models_say(store: Store) -> None:
+    assert set(inspect(store.engine).get_table_names()) == {
+        *Base.metadata.tables,
+        "alembic_version",
+    }
+    with store.engine.connect() as connection:
+        command.check(alembic_config(connection))  # raises where models and migrations differ
+
+
+def test_what_is_committed_survives_a_power_cut(store: Store) -> None:
+    with store.engine.connect() as connection:
+        settings = [
+            connection.exec_driver_sql(f"PRAGMA {name}").scalar()
+            for name in ("journal_mode", "synchronous", "foreign_keys")
+        ]
+    assert settings == ["wal", 2, 1]
+
+
+def test_a_database_of_a_newer_program_is_refused(path: Path) -> None:
+    Store(path).close()
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+        connection.commit()
+    with pytest.raises(StoreError, match="a newer Muster wrote it"):
+        Store(path)
+
+
+def test_what_is_no_database_is_refused_and_kept(path: Path) -> None:
+    path.write_bytes(b"this is a shopping list, not a database" * 100)
+    with pytest.raises(StoreError, match="move it away"):
+        Store(path)
+    assert path.read_bytes().startswith(b"this is a shopping list")
+
+
+def test_a_copy_can_be_taken_while_someone_writes(
+    store: Store, path: Path, tmp_path: Path, clock: ManualClock
+) -> None:
+    roster = Roster(store, clock)
+    roster.add_person("Ada", "A", "")
+    with store.write() as session:
+        session.add(
+            Person(person_id="x", name="half", crew="", role="", created_ns=0, photo_hash=None)
+        )
+        session.flush()
+        copy_database(path, tmp_path / "copy.sqlite")
+    with Store(tmp_path / "copy.sqlite") as copy:
+        assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
+
+
+def test_a_full_disk_is_said_and_nothing_is_half_written(store: Store, clock: ManualClock) -> None:
+    roster = Roster(store, clock)
+    _limit_pages(store)
+    with pytest.raises(StoreError, match="full"):
+        roster.add_person("Ada" * 10_000, "A", "")
+    assert roster.people() == []
+
+
+def _limit_pages(store: Store, pages: int = 0) -> None:
+    """As if the disk were full: SQLite refuses in the same words.  0: not a page more."""
+    with store.engine.connect() as connection:
+        now = connection.exec_driver_sql("PRAGMA page_count").scalar_one()
+        connection.exec_driver_sql(f"PRAGMA max_page_count = {pages or now}")
+
+
+# ---- the projection
+
+
+def header(t_s: float) -> Header:
+    t_ns = round(t_s * NS_PER_S)
+    return Header("station", 1, 1, t_ns, t_utc_ns=t_ns)
+
+
+def alarm(t_s: float, state: AlarmState, by: str = "") -> AlarmChange:
+    return AlarmChange(
+        header(t_s), "heat:FF-01:5", "heat", "FF-01", 1, state, "critical", "hot", by, 5 * NS_PER_S
+    )
+
+
+def fused(t_s: float, north_m: float) -> FusedPosition:
+    return FusedPosition(
+        header(t_s), "FF-01", round(t_s * NS_PER_S), north_m, 0.0, 0.0, 0.1, 0.1, 0.1, 0.0,
+        0.0, 0.1, None, Quality.GOOD, "", "test", None,
+    )  # fmt: skip
+
+
+def acted(t_s: float, *actions: Action) -> Projection:
+    stamper = Stamper("station", round(t_s), ManualClock())
+    return Projection(
+        round(t_s * NS_PER_S),
+        actions=tuple(
+            OperatorAction(header(t_s), f"{t_s}-{stamper.header().seq}", "mia", action)
+            for action in actions
+        ),
+    )
+
+
+STORY = (
+    acted(1, RegisterUnit("FF-01", "one"), RegisterUnit("FF-02", "two")),
+    acted(2, OpenIncident("i-1", "Kitchen")),
+    acted(3, Assign("FF-01", "p-1", "Ada", "A", "")),
+    Projection(5 * NS_PER_S, alarms=(alarm(5, AlarmState.RAISED),), heard=(("FF-01", 5),)),
+    Projection(6 * NS_PER_S, tracks=(fused(5.2, 1.0), fused(6.2, 2.0)), heard=(("FF-03", 6),)),
+    acted(7, Assign("FF-02", "p-1", "Ada", "A", "")),
+    Projection(8 * NS_PER_S, alarms=(alarm(8, AlarmState.ACKNOWLEDGED, "mia"),)),
+    acted(9, Unassign("FF-02")),
+    acted(10, CloseIncident("i-1")),
+)
+
+
+def contents(store: Store) -> dict[str, list[Any]]:
+    with store.engine.connect() as connection:
+        return {
+            name: sorted(map(repr, connection.execute(table.select())))
+            for name, table in Base.metadata.tables.items()
+        }
+
+
+def test_a_story_is_told_by_the_tables(store: Store, clock: ManualClock) -> None:
+    projection = SqlProjection(store)
+    for part in STORY:
+        projection.project(part)
+    assert projection.flush()
+    roster, records = Roster(store, clock), Records(store, clock)
+    assert [unit.unit_id for unit, _ in roster.units()] == ["FF-01", "FF-02", "FF-03"]
+    assert [unit.registered_ns is not None for unit, _ in roster.units()] == [True, True, False]
+    worn = [(one.unit_id, one.from_ns, one.until_ns) for one in roster.assignments(0, FOREVER_NS)]
+    second = NS_PER_S
+    assert worn == [("FF-01", 3 * second, 7 * second), ("FF-02", 7 * second, 9 * second)]
+    (incident,) = records.incidents()
+    assert (incident.opened_ns, incident.closed_ns) == (2 * second, 10 * second)
+    (stands,) = records.alarms(ALL)
+    assert (stands.state, stands.by) == ("acknowledged", "mia")
+    assert [one.state for one in records.alarm_life(stands.alarm_id)] == ["raised", "acknowledged"]
+    assert [point.north_m for point in records.track("FF-01", ALL)] == [1.0, 2.0]
+    projection.close()
+
+
+def test_projecting_the_log_again_changes_nothing(store: Store, clock: ManualClock) -> None:
+    projection = SqlProjection(store)
+    for part in STORY:
+        projection.project(part)
+    projection.flush()
+    before = contents(store)
+    for part in STORY:
+        projection.project(part)
+    projection.flush()
+    assert contents(store) == before
+
+    Records(store, clock).forget_projections()
+    for part in STORY:
+        projection.project(part)
+    projection.close()
+    assert contents(store) == before
+
+
+def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualClock) -> None:
+    projection = SqlProjection(store)
+    projection.project(STORY[0])
+    assert projection.flush()
+    assert projection.problem() == ""
+    _limit_pages(store)
+    long_names = acted(20, *(RegisterUnit(f"U-{n}", "x" * 4000) for n in range(50)))
+    projection.project(long_names)
+    assert not projection.flush(timeout_s=1.0)
+    assert "full" in projection.problem()
+    _limit_pages(store, 1_000_000)
+    assert projection.flush()
+    assert projection.problem() == ""
+    assert len(Roster(store, clock).units()) == 52
+    projection.close()
