@@ -15,6 +15,8 @@ from shared.messages.status import Activity
 
 SENSOR_HEIGHT_M = 0.08  # of the instep above the sole
 _HALF_TRACK_M = 0.09  # from the body's middle to the foot
+_SETTLE_RAD = radians(1.0)  # how far a shoe tips when it touches down
+_ROLL_OVER_RAD = radians(3)  # how far it has rolled when the heel leaves the ground
 _SHARP_TURN_RAD = radians(100)  # from here on a person stops and turns
 _CRAWL_PITCH_RAD = radians(-72)
 _LIE_PITCH_RAD = radians(75)
@@ -88,8 +90,12 @@ class Planner:
             self._crawl(leg.to)
 
     def _stand(self, duration_s: float) -> None:
+        plan = self.plan
         self._begin(Activity.STILL)
-        self.plan.duration_s += duration_s
+        for curve in (plan.pitch, plan.roll):
+            if curve.last != 0.0:
+                curve.move(self.t_s, self.t_s + min(0.3, duration_s), 0.0)
+        plan.duration_s += duration_s
 
     def _face(self, heading_rad: float, at_least_rad: float = radians(5)) -> None:
         """Turn on the spot in as many strides as a person needs."""
@@ -142,8 +148,7 @@ class Planner:
         yaw_rad = plan.yaw.last + remainder(heading_rad - plan.yaw.last, 2.0 * pi)
         yaw_rad += float(self._rng.normal(0.0, radians(2)))
         north_m, east_m = self._foothold(middle, yaw_rad)
-        if plan.pivot.last != 0.0:
-            plan.pivot.move(begin_s, off_s, 0.0)
+        self._stance(begin_s, off_s)
         plan.pivot.move(*window(0.40, 0.85), 1.0)
         plan.north.move(*window(*gait.forward), north_m)
         plan.east.move(*window(*gait.forward), east_m)
@@ -153,15 +158,26 @@ class Planner:
         plan.lift.move(*window(0.60, 0.90), 0.0)
         plan.pitch.move(*window(0.00, 0.42), gait.toe_off_rad * float(jitter[2]))
         plan.pitch.move(*window(0.42, 0.84), gait.strike_rad * float(jitter[3]))
-        plan.pitch.move(*window(0.84, 1.00), 0.0)
+        plan.pitch.move(*window(0.84, 1.00), float(abs(self._rng.normal(0.0, _SETTLE_RAD))))
         plan.roll.move(*window(0.15, 0.50), float(self._rng.normal(radians(7), radians(2))))
-        plan.roll.move(*window(0.50, 0.95), 0.0)
+        plan.roll.move(*window(0.50, 0.95), float(self._rng.normal(0.0, _SETTLE_RAD)))
         # The toes point outward in mid-swing.
         plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + radians(6))
         plan.yaw.move(*window(0.55, 0.95), yaw_rad)
         plan.duration_s = begin_s + stride_s
         plan.footfall_s.append(plan.duration_s)
         self._middle, self._heading_rad = middle, heading_rad
+
+    def _stance(self, begin_s: float, off_s: float) -> None:
+        """The shoe settles, is flat for a moment, and begins to roll over the ball."""
+        plan = self.plan
+        flat_s = begin_s + 0.35 * (off_s - begin_s)
+        rise_s = begin_s + 0.60 * (off_s - begin_s)
+        plan.pitch.move(begin_s, flat_s, 0.0)
+        plan.roll.move(begin_s, flat_s, 0.0)
+        # The pivot changes while the foot is flat, where it has no effect.
+        plan.pivot.move(flat_s, rise_s, 0.0)
+        plan.pitch.move(rise_s, off_s, -float(abs(self._rng.normal(_ROLL_OVER_RAD, _SETTLE_RAD))))
 
     def _lie(self, leg: Lie) -> None:
         """Go down onto the back, the toes up; nothing moves until getting up."""
