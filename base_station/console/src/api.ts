@@ -91,8 +91,8 @@ export const incidentAlarms = (incidentId: string) =>
 
 export const acknowledge = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
-export const resolve = (alarmId: string, note: string) =>
-  call<void>("POST", `/alarms/${id(alarmId)}/resolve`, { note });
+export const resolve = (alarmId: string) =>
+  call<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
 
 export const startReplay = (incidentId: string) =>
   call<{ replay_id: string }>("POST", "/replays", { incident_id: incidentId });

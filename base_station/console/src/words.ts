@@ -1,5 +1,5 @@
 /** Numbers as a tired person reads them.  Pure. */
-import type { Link, PositionView, UnitView } from "./wire";
+import type { AlarmView, Link, PositionView, UnitView } from "./wire";
 
 /** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
 export function duration(ms: number): string {
@@ -98,6 +98,13 @@ const HEAT: Record<string, string> = {
 
 export function heatWord(level: string): string {
   return HEAT[level] ?? level;
+}
+
+/** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
+export function alarmWord(alarm: AlarmView): string {
+  const rule = alarm.rule.replaceAll("_", " ");
+  const word = rule.charAt(0).toUpperCase() + rule.slice(1);
+  return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
 }
 
 /** Why a position is not to be trusted fully; empty where it is good. */

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import * as words from "../src/words";
-import { position, STATUS, unit } from "./fixtures";
+import { alarm, position, STATUS, unit } from "./fixtures";
 
 describe("words", () => {
   it.each([
@@ -45,6 +45,15 @@ describe("words", () => {
     expect(words.qualityNote(position({ quality: "lost", quality_reason: "sample_gap" }))).toBe(
       "tracking lost: sample gap",
     );
+  });
+
+  it.each([
+    ["no_motion", "pre-alert", "No motion: pre-alert"],
+    ["no_motion", "alarm", "No motion"],
+    ["link_lost", "lost", "Link lost"],
+    ["mayday", "mayday", "Mayday"],
+  ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
+    expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
   });
 
   it("make initials of any name", () => {

@@ -3,7 +3,6 @@ import { attempt, mayCommand, select } from "../app";
 import * as api from "../api";
 import { useBeeper } from "../sound";
 import type { Picture } from "../live/picture";
-import { displayName } from "../live/urgency";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
 import { Icon } from "./Icon";
@@ -42,38 +41,39 @@ export function AlarmStrip({ picture, actions }: Props) {
 }
 
 function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
-  const unit = picture.unit(alarm.unit_id)?.value;
-  const who = unit ? displayName(unit) : alarm.unit_id || "Station";
   const taken = alarm.state === "acknowledged";
+  const placeable = picture.unit(alarm.unit_id) !== undefined;
   return (
     <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
       <span class="priority">{PRIORITY[alarm.priority] ?? `Priority ${alarm.priority}`}</span>
-      <button type="button" class="who" disabled={!unit} onClick={() => select(alarm.unit_id)}>
-        {who}
+      <button
+        type="button"
+        class="what"
+        title="Show on the plan"
+        disabled={!placeable}
+        onClick={() => select(alarm.unit_id)}
+      >
+        {alarm.text}
       </button>
-      <span class="what">{alarm.text}</span>
       <span class="for" aria-live="off">
         for {duration(picture.nowMs.value - alarm.raised_ms)}
       </span>
       <span class="state">{taken ? `acknowledged by ${alarm.by}` : "not acknowledged"}</span>
-      {actions && mayCommand.value && <AlarmAction alarm={alarm} who={who} />}
+      {actions && mayCommand.value && <AlarmAction alarm={alarm} />}
     </li>
   );
 }
 
-function AlarmAction({ alarm, who }: { alarm: AlarmView; who: string }) {
+function AlarmAction({ alarm }: { alarm: AlarmView }) {
   const taken = alarm.state === "acknowledged";
-  const send = () =>
-    taken
-      ? api.resolve(alarm.alarm_id, "resolved at the console")
-      : api.acknowledge(alarm.alarm_id);
+  const send = () => (taken ? api.resolve(alarm.alarm_id) : api.acknowledge(alarm.alarm_id));
   const word = taken ? "Resolve" : "Acknowledge";
   return (
     <button
       type="button"
       class="act"
-      aria-label={`${word}: ${alarm.text}, ${who}`}
+      aria-label={`${word}: ${alarm.text}`}
       onClick={() => void attempt(send())}
     >
       {word}

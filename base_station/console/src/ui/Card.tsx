@@ -72,7 +72,7 @@ function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<stri
       {open.map((alarm) => (
         <li key={alarm.alarm_id} class={`p${alarm.priority}`}>
           <Icon name="alarm" />
-          {alarm.text}
+          {words.alarmWord(alarm)}
         </li>
       ))}
     </ul>
