@@ -3,7 +3,9 @@ it is kept.  Liveness, logging, decoding and the documentation are derived from 
 
 Keys: ``muster/v1/{unit}/up/...`` from a unit, ``muster/v1/{unit}/alert/...`` from a unit and
 urgent, ``muster/v1/{unit}/command/...`` to a unit (``all`` for every unit), and
-``muster/v1/station/...`` what the station itself decides.
+``muster/v1/station/...`` what the station itself decides.  A message that the station fetched
+later from a unit's journal is logged under ``muster/v1/{unit}/journal/...``, followed by what
+its key would have been.
 """
 
 from __future__ import annotations
@@ -33,6 +35,7 @@ from shared.messages import (
 
 ROOT = "muster/v1"
 EVERY_UNIT = "all"
+_BACKFILLED = "journal/"
 
 
 class Qos(Enum):
@@ -115,10 +118,21 @@ def parse_key(key: str) -> tuple[str, Channel]:
     """``(unit_id, channel)`` of a key; UnknownChannelError where no row of the table has it."""
     parts = key.split("/", 3)
     if len(parts) == 4 and f"{parts[0]}/{parts[1]}" == ROOT:
-        channel = _BY_SUFFIX.get(parts[3])
+        channel = _BY_SUFFIX.get(parts[3].removeprefix(_BACKFILLED))
         if channel is not None:
             return parts[2], channel
     raise UnknownChannelError(f"no channel has the key {key!r}")
+
+
+def backfilled_key(unit_id: str, suffix: str) -> str:
+    """The key under which a message out of a unit's journal is logged."""
+    return f"{ROOT}/{unit_id}/{_BACKFILLED}{suffix}"
+
+
+def is_backfilled(key: str) -> bool:
+    """Whether a logged message came out of a unit's journal rather than live."""
+    parts = key.split("/", 3)
+    return len(parts) == 4 and parts[3].startswith(_BACKFILLED)
 
 
 def alive_key(unit_id: str) -> str:

@@ -5,7 +5,7 @@ Messages come nearly in order, so a long history is a handful of runs.
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -47,6 +47,15 @@ class SequenceSet(msgspec.Struct, array_like=True):
             self.firsts.insert(place, number)
             self.lasts.insert(place, number)
         return True
+
+    def add_run(self, run: Run) -> None:
+        """Add all numbers of a run at once."""
+        begin = bisect_left(self.lasts, run.first - 1)
+        end = bisect_right(self.firsts, run.last + 1)
+        if begin < end:
+            run = Run(min(run.first, self.firsts[begin]), max(run.last, self.lasts[end - 1]))
+        self.firsts[begin:end] = [run.first]
+        self.lasts[begin:end] = [run.last]
 
     def runs(self) -> Iterator[Run]:
         return map(Run, self.firsts, self.lasts)

@@ -8,7 +8,7 @@ import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
 
-from shared.sequence_set import SequenceSet
+from shared.sequence_set import Run, SequenceSet
 
 NUMBERS = st.lists(st.integers(0, 60))
 
@@ -52,6 +52,14 @@ def test_complete_to_is_where_the_first_gap_begins(numbers, first):
     while expected + 1 in set(numbers):
         expected += 1
     assert filled(numbers).complete_to(first) == expected
+
+
+@given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
+def test_a_run_is_all_its_numbers(numbers, one, other):
+    first, last = sorted((one, other))
+    at_once = filled(numbers)
+    at_once.add_run(Run(first, last))
+    assert at_once == filled([*numbers, *range(first, last + 1)])
 
 
 @given(NUMBERS)

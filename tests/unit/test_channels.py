@@ -9,7 +9,9 @@ from shared.channels import (
     POSITION,
     Direction,
     Qos,
+    backfilled_key,
     channel_of,
+    is_backfilled,
     parse_key,
     validate_unit_id,
 )
@@ -20,6 +22,13 @@ from shared.errors import ConfigError, UnknownChannelError
 @pytest.mark.parametrize("channel", CHANNELS, ids=lambda channel: channel.name)
 def test_every_key_leads_back_to_its_channel(channel):
     assert parse_key(channel.key("FF-01")) == ("FF-01", channel)
+
+
+def test_a_message_from_a_journal_keeps_its_channel_and_is_told_apart():
+    live, fetched = POSITION.key("FF-01"), backfilled_key("FF-01", POSITION.suffix)
+    assert parse_key(fetched) == parse_key(live)
+    assert is_backfilled(fetched)
+    assert not is_backfilled(live)
 
 
 def test_every_message_has_exactly_one_channel_and_one_wire_type():
