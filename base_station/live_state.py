@@ -31,7 +31,7 @@ TRAIL_POINTS = 900  # a unit's trail in the console; the log has all of it
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
-SEEN_RUNS = 256
+BOOTS = 16  # runs of a unit's program that are told from each other
 CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -66,16 +66,6 @@ class BootState(msgspec.Struct):
     seen: SequenceSet = msgspec.field(default_factory=SequenceSet)
     offset_ns: int = 0  # station time less the unit's monotonic time, of the fastest message
     offset_t_ns: int = 0  # station time at which that was judged; 0: not yet
-
-    def is_repeat(self, seq: int) -> bool:
-        """Note a sequence number; True where it came before.  What came long ago, with many
-        gaps since, can no longer be told: such a message is old news either way.
-        """
-        if not self.seen.add(seq):
-            return True
-        if len(self.seen.firsts) > 2 * SEEN_RUNS:
-            del self.seen.firsts[:SEEN_RUNS], self.seen.lasts[:SEEN_RUNS]
-        return False
 
     def note_clock(self, t_ns: int, t_mono_ns: int) -> None:
         """The least delayed message tells the offset; it may drift by what clocks do."""
@@ -141,7 +131,7 @@ class UnitState(msgspec.Struct):
     def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
         """Note that a message came, and say what it is worth."""
         boot = self._boot(header.boot_id)
-        if boot.is_repeat(header.seq):
+        if not boot.seen.add(header.seq):
             self.duplicates += 1
             return "repeat"
         self.heard_ns = t_ns
@@ -159,7 +149,7 @@ class UnitState(msgspec.Struct):
         for boot in reversed(self.boots):
             if boot.boot_id == boot_id:
                 return boot
-        self.boots = [*self.boots[-3:], BootState(boot_id)]
+        self.boots = [*self.boots[1 - BOOTS :], BootState(boot_id)]
         self.latest_mono_ns.clear()
         return self.boots[-1]
 

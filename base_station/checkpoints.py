@@ -1,0 +1,83 @@
+"""The pipeline's state as files, one now and then, so that neither a restart nor a seek in a
+replay has to step the whole log.
+
+They are a cache: a file that is torn, older than the program or missing only costs time.
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+
+import msgspec
+
+from base_station.pipeline import Checkpoint, read_checkpoint
+from shared.clock import NS_PER_S
+
+SUFFIX = ".checkpoint"
+KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
+KEPT_FAR = 500
+SPARSE_NS = 300 * NS_PER_S
+
+
+class SavedState(msgspec.Struct, frozen=True):
+    """A checkpoint and its place in the log."""
+
+    t_ns: int  # station time of the last event stepped
+    events_at_t: int  # how many events of that very time were stepped
+    pipeline: Checkpoint
+
+
+class _File(msgspec.Struct, frozen=True, array_like=True):
+    t_ns: int
+    events_at_t: int
+    crc32: int
+    pipeline: bytes
+
+
+class Checkpoints:
+    """A folder of checkpoints, named by their times."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
+        """Raises OSError where the disk does not take it."""
+        content = msgspec.msgpack.encode(_File(t_ns, events_at_t, zlib.crc32(pipeline), pipeline))
+        path = self._folder / f"{t_ns:020d}{SUFFIX}"
+        part = path.with_suffix(".part")
+        part.write_bytes(content)
+        part.replace(path)
+        self._thin_out()
+
+    def latest(self, until_ns: int | None = None) -> SavedState | None:
+        """The newest usable one, at or before ``until_ns`` where that is given."""
+        for path in reversed(self._paths()):
+            if until_ns is not None and int(path.stem) > until_ns:
+                continue
+            saved = _read(path)
+            if saved is not None:
+                return saved
+        return None
+
+    def _paths(self) -> list[Path]:
+        return sorted(self._folder.glob(f"*{SUFFIX}"))
+
+    def _thin_out(self) -> None:
+        old = self._paths()[:-KEPT_CLOSE]
+        for path in old[:-KEPT_FAR]:
+            path.unlink(missing_ok=True)
+        if len(old) > 1 and int(old[-1].stem) - int(old[-2].stem) < SPARSE_NS:
+            old[-1].unlink(missing_ok=True)
+
+
+def _read(path: Path) -> SavedState | None:
+    try:
+        file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
+    except (OSError, msgspec.MsgspecError, UnicodeDecodeError):
+        return None
+    if zlib.crc32(file.pipeline) != file.crc32:
+        return None
+    checkpoint = read_checkpoint(file.pipeline)
+    return SavedState(file.t_ns, file.events_at_t, checkpoint) if checkpoint else None

@@ -1,0 +1,317 @@
+"""The thread that runs the live station: feed, log, pipeline, and everybody who wants to know.
+
+What arrives is written to the log first and stepped second.  Time (ticks) and people's actions
+become log records like any other, so that the log alone gives the same run again.  Nothing in
+here waits for the network, the store or a console.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Protocol
+
+import msgspec
+
+from base_station.api.wire import Snapshot
+from base_station.backfill import Held, Report
+from base_station.checkpoints import Checkpoints
+from base_station.events import Output, Received, Refused, StationEvent, event_of
+from base_station.picture import Picture
+from base_station.pipeline import StationPipeline
+from base_station.projector import Projector
+from base_station.sinks import ActionDone, LiveSink, PhotoUrls, ProjectionSink
+from base_station.views import StationFacts
+from shared.channels import OPERATOR, TICK, Direction, Qos, channel_of, parse_key
+from shared.clock import NS_PER_S, Clock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import StoreError, UnknownChannelError
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, Tick
+from shared.messages.station import Action, ReportProblem
+
+TICK_NS = NS_PER_S
+DELTA_NS = NS_PER_S // 20
+CHECKPOINT_NS = 60 * NS_PER_S
+STOP_TIMEOUT_S = 10.0
+OWN_PARTS = ("log", "store", "bus", "checkpoint", "pipeline", "picture")  # reported by the drive
+
+Record = tuple[int, str, bytes]  # station time, key, payload
+log = logging.getLogger(__name__)
+
+
+class Feed(Protocol):
+    """Where records come from while the station is live."""
+
+    def take(self, timeout_s: float) -> Sequence[Record]:
+        """What came since, in order; waits for something to come or for ``wake``."""
+        ...
+
+    def wake(self) -> None:
+        """From any thread: end the wait of ``take``."""
+        ...
+
+
+class Log(Protocol):
+    """Where records are kept; never waits long and never raises for a disk that fails."""
+
+    @property
+    def problem(self) -> str:
+        """Why records are not kept, as a sentence for a person; empty: they are."""
+        ...
+
+    def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
+        """Keep a record, at once on the disk where it is urgent; False: it is lost."""
+        ...
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the drive works with."""
+
+    feed: Feed
+    log: Log
+    live: LiveSink
+    projection: ProjectionSink
+    checkpoints: Checkpoints
+    photo_urls: PhotoUrls
+    facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
+    report: Callable[[Report], None]  # hears once a second what is there of each linked unit
+    clock: Clock
+    boot_id: int
+
+
+class StationDrive:
+    """``OperatorGate`` and ``LiveSource`` of the live station."""
+
+    def __init__(self, pipeline: StationPipeline, surroundings: Surroundings) -> None:
+        self._pipeline = pipeline
+        self._around = surroundings
+        self._stamper = Stamper(STATION_ID, surroundings.boot_id, surroundings.clock)
+        self._picture = Picture(pipeline, surroundings.live, surroundings.photo_urls)
+        self._projector = Projector()
+        self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
+        self._asked: deque[Callable[[Snapshot], None]] = deque()
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="station-drive")
+        self._events_at_t = 0  # stepped at the pipeline's present time
+        self._messages_before = 0
+        self._failed: dict[str, str] = {}  # parts that failed since the last tick, and how
+
+    # ---- from any thread
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Finish what was taken, and end."""
+        self._stopping.set()
+        self._around.feed.wake()
+        self._thread.join(STOP_TIMEOUT_S)
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        future: Future[ActionDone] = Future()
+        self._inbox.append((by, action, future))
+        self._around.feed.wake()
+        if self._stopping.is_set() and not self._thread.is_alive():
+            self._refuse_waiting()
+        return future
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        self._asked.append(deliver)
+        self._around.feed.wake()
+
+    # ---- before the thread runs
+
+    def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
+        """Step what a log says happened; gives the number of events stepped.
+
+        ``after`` is the place (time, events at that time) of the checkpoint with which the
+        pipeline was made.  Decisions that a crash kept from the log are written to it now.
+        """
+        from_ns, skip = after
+        self._events_at_t = skip
+        unlogged: list[FusedPosition | AlarmChange] = []
+        told = False  # whether the log has a decision that followed the last event
+        stepped = 0
+        for t_ns, key, payload in records:
+            event = event_of(t_ns, key, payload)
+            message = event.message if isinstance(event, Received) else None
+            if isinstance(message, FusedPosition | AlarmChange):
+                del unlogged[:1]
+                told = True
+                continue
+            if t_ns == from_ns and skip > 0:
+                skip -= 1
+                continue
+            stepped += 1
+            if told:
+                unlogged.clear()
+                told = False
+            outputs = self._step(event)
+            unlogged += [o for o in outputs if isinstance(o, FusedPosition | AlarmChange)]
+        for output in unlogged:
+            self._keep_output(output)
+        self._project()
+        return stepped
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        clock = self._around.clock
+        next_tick_ns = next_delta_ns = clock.monotonic_ns()
+        next_checkpoint_ns = next_tick_ns + CHECKPOINT_NS
+        while not self._stopping.is_set():
+            now_ns = clock.monotonic_ns()
+            wait_ns = min(next_tick_ns, next_delta_ns) - now_ns
+            for t_ns, key, payload in self._around.feed.take(max(wait_ns, 0) / NS_PER_S):
+                self._hear(t_ns, key, payload)
+            self._take_actions()
+            now_ns = clock.monotonic_ns()
+            if now_ns >= next_tick_ns:
+                self._tick()
+                next_tick_ns = max(next_tick_ns + TICK_NS, now_ns)
+            if now_ns >= next_checkpoint_ns:
+                self._save_checkpoint()
+                next_checkpoint_ns = now_ns + CHECKPOINT_NS
+            if now_ns >= next_delta_ns:
+                self._guarded("picture", self._picture.flush)
+                next_delta_ns = now_ns + DELTA_NS
+            self._project()
+            self._deliver_snapshots()
+        self._finish()
+
+    def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
+        """A record from the bus."""
+        try:
+            channel = parse_key(key)[1]
+        except UnknownChannelError:
+            channel = None  # kept, counted and shown as what could not be read
+        if channel is not None and not channel.logged:
+            return
+        if channel is not None and channel.direction is Direction.STATION:
+            self._failed["bus"] = f"Somebody on the bus speaks as the station ({key}): not believed"
+            return
+        self._keep_and_step(
+            t_ns, key, payload, urgent=channel is not None and channel.qos is Qos.ALERT
+        )
+
+    def _take_actions(self) -> None:
+        while self._inbox:
+            by, action, future = self._inbox.popleft()
+            done = self._do(by, action)
+            self._project()
+            if future.set_running_or_notify_cancel():
+                future.set_result(done)
+
+    def _do(self, by: str, action: Action) -> ActionDone:
+        header = self._stamper.header()
+        action_id = f"{header.boot_id:016x}-{header.seq}"
+        message = OperatorAction(header, action_id, by, action)
+        outputs = self._keep_and_step(
+            header.t_utc_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
+        )
+        refused = next((output for output in outputs if isinstance(output, Refused)), None)
+        return ActionDone(action_id, self._pipeline.state.t_ns, refused)
+
+    def _tick(self) -> None:
+        header = self._stamper.header()
+        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
+        self._keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
+        self._report_problems()
+        self._around.report(self._held())
+        messages = self._pipeline.state.counts.messages
+        self._picture.facts = msgspec.structs.replace(
+            self._around.facts(), messages_per_s=float(messages - self._messages_before)
+        )
+        self._messages_before = messages
+        self._guarded("picture", lambda: self._picture.flush(health=True))
+
+    def _keep_and_step(
+        self, t_ns: int, key: str, payload: bytes, urgent: bool = False
+    ) -> list[Output]:
+        """Station time never goes back, whatever the machine's clock does."""
+        t_ns = max(t_ns, self._pipeline.state.t_ns)
+        self._around.log.write(t_ns, key, payload, urgent=urgent)
+        outputs = self._step(event_of(t_ns, key, payload))
+        for output in outputs:
+            if isinstance(output, FusedPosition | AlarmChange):
+                self._keep_output(output)
+        return outputs
+
+    def _step(self, event: StationEvent) -> list[Output]:
+        same_time = event.t_ns == self._pipeline.state.t_ns
+        self._events_at_t = self._events_at_t + 1 if same_time else 1
+        outputs: list[Output] = []
+        self._guarded("pipeline", lambda: outputs.extend(self._pipeline.step(event)))
+        self._picture.note(outputs)
+        self._projector.note(event, outputs)
+        return outputs
+
+    def _keep_output(self, output: FusedPosition | AlarmChange) -> None:
+        key = channel_of(output).key(STATION_ID)
+        self._around.log.write(
+            output.header.t_utc_ns, key, encode(output), urgent=isinstance(output, AlarmChange)
+        )
+
+    def _project(self) -> None:
+        projection = self._projector.take(self._pipeline.state.t_ns)
+        if projection is not None:
+            self._around.projection.project(projection)
+
+    def _deliver_snapshots(self) -> None:
+        while self._asked:
+            self._asked.popleft()(self._picture.snapshot())
+
+    def _save_checkpoint(self) -> None:
+        try:
+            self._around.checkpoints.save(
+                self._pipeline.state.t_ns, self._events_at_t, self._pipeline.checkpoint()
+            )
+        except OSError as error:
+            self._failed["checkpoint"] = f"The live state cannot be saved ({error}): free the disk"
+
+    def _report_problems(self) -> None:
+        """A part that fails, or is well again, is an event like any other."""
+        now = {"log": self._around.log.problem, "store": self._around.projection.problem()}
+        now |= self._failed
+        self._failed = {}
+        known = self._pipeline.state.problems
+        for part in (*now, *(own for own in OWN_PARTS if own in known and own not in now)):
+            text = now.get(part, "")
+            if bool(text) != (part in known):
+                log.warning("%s: %s", part, text or "works again")
+                self._do(STATION_ID, ReportProblem(part, text))
+
+    def _held(self) -> Report:
+        return {
+            unit.unit_id: tuple(Held(boot.boot_id, tuple(boot.seen.runs())) for boot in unit.boots)
+            for unit in self._pipeline.state.units.values()
+            if unit.registered and unit.link == "live"
+        }
+
+    def _guarded(self, part: str, function: Callable[[], None]) -> None:
+        """A mistake in one event's handling must not end the station."""
+        try:
+            function()
+        except Exception as error:
+            log.exception("the station's %s failed", part)
+            self._failed[part] = f"The station's {part} failed: {error!r}; please report it"
+
+    def _finish(self) -> None:
+        for t_ns, key, payload in self._around.feed.take(0.0):
+            self._hear(t_ns, key, payload)
+        self._take_actions()
+        self._guarded("picture", self._picture.flush)
+        self._project()
+        self._save_checkpoint()
+        self._refuse_waiting()
+
+    def _refuse_waiting(self) -> None:
+        while self._inbox:
+            future = self._inbox.popleft()[2]
+            future.set_exception(StoreError("the station is stopping; do it again when it runs"))

@@ -1,0 +1,91 @@
+"""Keeps consoles up to date with a pipeline: which units and alarms changed since the last
+delta, and when only a whole new snapshot will do.  Live and replay both draw through it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from base_station.api.wire import Delta, ReplayView, Snapshot
+from base_station.events import Output, UnitTouched
+from base_station.pipeline import StationPipeline
+from base_station.sinks import LiveSink, PhotoUrls
+from base_station.views import (
+    NS_PER_MS,
+    StationFacts,
+    alarm_view,
+    health_view,
+    snapshot,
+    unit_view,
+)
+from shared.messages import AlarmChange
+
+
+class Picture:
+    """What the consoles were told of one pipeline."""
+
+    def __init__(self, pipeline: StationPipeline, sink: LiveSink, photo_urls: PhotoUrls) -> None:
+        self._sink = sink
+        self._photo_urls = photo_urls
+        self._seq = 0
+        self.facts = StationFacts()  # of the station's surroundings, as last measured
+        self.show(pipeline)
+
+    def show(self, pipeline: StationPipeline) -> None:
+        """Go on with another pipeline; the next ``flush`` or ``reset`` tells it."""
+        self._pipeline = pipeline
+        self._units: dict[str, None] = {}  # an ordered set
+        self._alarms: list[AlarmChange] = []
+        self._frame = self._frame_now()
+
+    def note(self, outputs: Sequence[Output]) -> None:
+        for output in outputs:
+            if isinstance(output, UnitTouched):
+                self._units[output.unit_id] = None
+            elif isinstance(output, AlarmChange):
+                self._alarms.append(output)
+                if output.unit_id:
+                    self._units[output.unit_id] = None
+
+    def flush(self, health: bool = False, replay: ReplayView | None = None) -> None:
+        """Tell what changed, and when asked for, how the station is."""
+        if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
+            self.reset(replay)
+            return
+        if not (self._units or self._alarms or health or replay):
+            return
+        state = self._pipeline.state
+        self._seq += 1
+        delta = Delta(
+            seq=self._seq,
+            now_ms=state.t_ns // NS_PER_MS,
+            units=tuple(
+                unit_view(state, state.units[unit_id], self._photo_urls) for unit_id in self._units
+            ),
+            alarms=tuple(map(alarm_view, self._alarms)),
+            health=health_view(state, self.facts) if health else None,
+            replay=replay,
+        )
+        self._units.clear()
+        self._alarms.clear()
+        self._sink.delta(delta)
+
+    def reset(self, replay: ReplayView | None = None) -> None:
+        """Everybody begins again."""
+        self._frame = self._frame_now()
+        self._units.clear()
+        self._alarms.clear()
+        self._sink.reset(self._snapshot(replay))
+
+    def snapshot(self, replay: ReplayView | None = None) -> Snapshot:
+        """For one console, after what was noted so far was told to all."""
+        self.flush(replay=replay)
+        return self._snapshot(replay)
+
+    def _snapshot(self, replay: ReplayView | None) -> Snapshot:
+        return snapshot(self._pipeline.state, self._seq, self.facts, self._photo_urls, replay)
+
+    def _frame_now(self) -> tuple[object, ...]:
+        """What deltas do not carry; replaced whole by the pipeline when it changes."""
+        state = self._pipeline.state
+        return state.incident, state.plan, state.anchor
