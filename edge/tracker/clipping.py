@@ -39,9 +39,7 @@ def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: Es
 
 
 @njit(cache=True)
-def _bridge_run(
-    ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig
-) -> None:
+def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig) -> None:
     mask = len(ring.t_ns) - 1
     begin_s = ring.t_s[first & mask]
     duration_s = ring.t_s[(end - 1) & mask] - begin_s + ring.period_s[first & mask]

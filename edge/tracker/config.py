@@ -31,7 +31,11 @@ class EskfConfig(NamedTuple):
     threshold_max_m2ps4: float = 150.0
 
     # Pseudo-measurements in stance.
+    # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.
     stance_velocity_mps_rthz: float = 7.1e-4
+    stance_velocity_per_motion: float = 0.002  # m/s/sqrt(Hz) for each m/s^2 of motion
+    stance_excess_power: float = 3.0
+    stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
     stance_rate_radps_rthz: float = 3.5e-4
     stance_rate_per_motion: float = 0.7  # grows with the statistic to the power 1.5
 
@@ -43,8 +47,8 @@ class EskfConfig(NamedTuple):
 
     # What a clipped gyroscope hides (clipping.py).
     hidden_rate_limit_radps: float = 6.0
-    hidden_rate_floor_radps: float = 0.3
-    hidden_rate_doubt: float = 0.5  # of the bridged peak
+    hidden_rate_floor_radps: float = 0.5
+    hidden_rate_doubt: float = 1.0  # of the bridged peak
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005

@@ -178,7 +178,11 @@ def _stand(ring: Ring, state: FilterState, slot: int, motion: float, config: Esk
     interval_s = max(ring.interval_s[slot], MIN_INTERVAL_S)
     for i in range(15):
         state.error[i] = 0.0
-    velocity_variance = config.stance_velocity_mps_rthz**2 / interval_s
+    velocity_noise = config.stance_velocity_mps_rthz**2
+    velocity_noise += config.stance_velocity_per_motion**2 * motion
+    excess = motion / max(ring.stride_minimum_m2ps4[slot], config.stance_excess_floor_m2ps4)
+    velocity_noise *= max(excess, 1.0) ** config.stance_excess_power
+    velocity_variance = velocity_noise / interval_s
     for i in range(3):
         _update(ring, state, slot, VELOCITY + i, -state.velocity_n_mps[i], velocity_variance)
     rate_noise = config.stance_rate_radps_rthz**2
