@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import msgspec
 
-from shared.channels import parse_key
+from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.errors import WireError
 from shared.messages import AlarmChange, FusedPosition, Message
@@ -21,6 +21,7 @@ class Received(msgspec.Struct, frozen=True):
     t_ns: int  # station time (UTC, never going back) at which it came
     unit_id: str  # from the key
     message: Message
+    backfilled: bool = False  # fetched later from the unit's journal
 
 
 class Rejected(msgspec.Struct, frozen=True):
@@ -61,4 +62,4 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         return Rejected(
             t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
         )
-    return Received(t_ns, unit_id, message)
+    return Received(t_ns, unit_id, message, is_backfilled(key))

@@ -32,6 +32,7 @@ TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
 BOOTS = 16  # runs of a unit's program that are told from each other
+BOOTS_KEPT = 16  # of a unit; older ones are in the log
 CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
 
 Link = Literal["live", "stale", "lost", "never"]

@@ -91,7 +91,7 @@ class StationPipeline:
             if isinstance(message, OperatorAction):
                 return self._act(message)
             if channel_of(message).direction is Direction.UP:
-                return self._hear(event.unit_id, message)
+                return self._hear(event.unit_id, message, event.backfilled)
             return []  # what the station itself had decided, in a log that is stepped again
         assert_never(event)
 
@@ -118,14 +118,17 @@ class StationPipeline:
                 outputs.append(UnitTouched(effect.unit_id))
         return outputs
 
-    def _hear(self, unit_id: str, message: Message) -> list[Output]:
+    def _hear(self, unit_id: str, message: Message, backfilled: bool) -> list[Output]:
         state = self.state
         state.counts.messages += 1
         unit = state.units.get(unit_id) or self._stranger(unit_id)
         if unit is None:
             state.counts.units_left_out += 1
             return []
-        news = unit.accept(channel_of(message), message.header, state.t_ns)
+        if backfilled:
+            news = unit.recall(message.header)
+        else:
+            news = unit.accept(channel_of(message), message.header, state.t_ns)
         if news == "repeat":
             return []
         unit.link = unit.link_at(state.t_ns)
