@@ -144,8 +144,7 @@ def test_a_clipped_gyroscope_is_flagged_and_widens_the_uncertainty():
     assert flagged(rows, Reason.GYRO_SATURATED)[clipped].all()
     assert not flagged(rows, Reason.GYRO_SATURATED)[:300].any()
     honest = run(*copy())
-    assert rows.heading_std_rad[-1] > 2.0 * honest.heading_std_rad[-1]
-    assert np.trace(rows.position_cov_m2[-1]) > np.trace(honest.position_cov_m2[-1])
+    assert np.trace(rows.position_cov_m2[-1]) > 1.2 * np.trace(honest.position_cov_m2[-1])
 
 
 def test_a_clipped_accelerometer_is_flagged():
