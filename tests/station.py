@@ -96,9 +96,12 @@ class DeskDrive:
 
     def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
         with self._lock:
-            deliver(
-                snapshot(self._pipeline.state, self._seq, StationFacts(), self._roster.photo_url)
-            )
+            deliver(self.picture())
+
+    def picture(self) -> Snapshot:
+        with self._lock:
+            state = self._pipeline.state
+            return snapshot(state, self._seq, StationFacts(), self._roster.photo_url)
 
 
 def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:

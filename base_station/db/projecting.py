@@ -53,8 +53,8 @@ def project_into(session: Session, projection: Projection) -> None:
     """Write one projection."""
     for action in projection.actions:
         if not isinstance(action.action, ReportProblem):  # that is no person's doing
-            _audit(session, projection.t_ns, action)
-        _action(session, projection.t_ns, action)
+            _audit(session, action.header.t_utc_ns, action)
+        _action(session, action.header.t_utc_ns, action)
     for change in projection.alarms:
         _alarm(session, change)
     if projection.tracks:

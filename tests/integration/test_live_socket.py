@@ -1,0 +1,172 @@
+"""The live WebSocket over a real server on the loopback."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+import pytest_asyncio
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from base_station.api.hub import QUEUE
+from base_station.api.routes import live
+from base_station.api.security import COOKIE
+from base_station.db.accounts import Role
+from base_station.server import ConsoleServer
+from shared.clock import ManualClock
+from shared.messages.station import OpenIncident
+from tests.station import PASSWORD, DeskStation
+
+
+@pytest.fixture
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    yield station
+    station.close()
+
+
+@pytest_asyncio.fixture
+async def address(station: DeskStation) -> AsyncIterator[str]:
+    """HOST:PORT of the running server."""
+    server = ConsoleServer(station.app, "127.0.0.1", 0)
+    task = asyncio.create_task(server.serve())
+    await asyncio.wait_for(server.wait_started(), 10.0)
+    yield f"127.0.0.1:{server.port}"
+    server.stop()
+    await asyncio.wait_for(task, 10.0)
+
+
+def token_of(station: DeskStation, role: Role = Role.VIEWER) -> dict[str, str]:
+    _, secret = station.services.accounts.add_token(role.word, "test", role, None)
+    return {"Authorization": f"Bearer {secret}"}
+
+
+async def heard(socket: ClientConnection) -> dict[str, Any]:
+    message: dict[str, Any] = json.loads(await asyncio.wait_for(socket.recv(), 5.0))
+    return message
+
+
+async def close_code(socket: ClientConnection) -> int:
+    with pytest.raises(ConnectionClosed) as closed:
+        await asyncio.wait_for(_drain(socket), 15.0)
+    assert closed.value.rcvd is not None
+    return closed.value.rcvd.code
+
+
+async def _drain(socket: ClientConnection) -> None:
+    while True:
+        await socket.recv()
+
+
+async def act(station: DeskStation, name: str) -> None:
+    await asyncio.to_thread(station.services.gate.submit, "mia", OpenIncident(name, name))
+
+
+async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
+    station: DeskStation, address: str
+) -> None:
+    headers = token_of(station)
+    async with connect(f"ws://{address}/api/v1/live", additional_headers=headers) as socket:
+        first = await heard(socket)
+        assert first["type"] == "snapshot"
+        await act(station, "kitchen")
+        delta = await heard(socket)
+        assert (delta["type"], delta["seq"]) == ("delta", first["seq"] + 1)
+        await socket.send('{"type": "snapshot"}')
+        again = await heard(socket)
+        assert (again["type"], again["seq"]) == ("snapshot", delta["seq"])
+        assert again["incident"]["name"] == "kitchen"
+
+
+async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: str) -> None:
+    async with httpx.AsyncClient(base_url=f"http://{address}") as browser:
+        browser.headers["origin"] = f"http://{address}"
+        credentials = {"username": "viewer", "password": PASSWORD}
+        assert (await browser.post("/api/v1/login", json=credentials)).status_code == 200
+        headers = {"Cookie": f"{COOKIE}={browser.cookies[COOKIE]}"}
+    url = f"ws://{address}/api/v1/live"
+    own, foreign = f"http://{address}", "http://evil.example"
+    async with connect(url, additional_headers=headers, origin=own) as socket:  # type: ignore[arg-type]  # a str will do
+        assert (await heard(socket))["type"] == "snapshot"
+    with pytest.raises(InvalidStatus):
+        async with connect(url, additional_headers=headers, origin=foreign):  # type: ignore[arg-type]  # a str will do
+            pass
+
+
+async def test_without_a_login_there_is_a_code_for_it(address: str) -> None:
+    async with connect(f"ws://{address}/api/v1/live") as socket:
+        assert await close_code(socket) == live.NOT_LOGGED_IN
+
+
+async def test_a_replay_that_is_not_there(station: DeskStation, address: str) -> None:
+    url = f"ws://{address}/api/v1/replays/none/live"
+    async with connect(url, additional_headers=token_of(station)) as socket:
+        assert await close_code(socket) == live.NOT_FOUND
+
+
+@pytest.mark.parametrize("message", ["hello", '{"type": "delta"}', "[]", "{", b"\x00\x01"])
+async def test_what_is_no_request_ends_the_connection(
+    station: DeskStation, address: str, message: str | bytes
+) -> None:
+    url = f"ws://{address}/api/v1/live"
+    async with connect(url, additional_headers=token_of(station)) as socket:
+        await heard(socket)
+        await socket.send(message)
+        assert await close_code(socket) == live.NOT_UNDERSTOOD
+
+
+async def test_the_end_of_a_session_ends_its_socket(
+    station: DeskStation, address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live, "CHECK_LOGIN_S", 0.1)
+    headers = token_of(station)
+    url = f"ws://{address}/api/v1/live"
+    async with connect(url, additional_headers=headers) as socket:
+        await heard(socket)
+        (token,) = station.services.accounts.tokens("viewer")
+        station.services.accounts.remove_token("viewer", token.token_id)
+        assert await close_code(socket) == live.NOT_LOGGED_IN
+
+
+async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
+    station: DeskStation, address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live, "SEND_TIMEOUT_S", 0.5)
+    headers = token_of(station)
+    url = f"ws://{address}/api/v1/live"
+    async with (
+        connect(url, additional_headers=headers, max_queue=1) as stuck,
+        connect(url, additional_headers=headers, max_queue=100_000) as reading,
+    ):
+        await heard(stuck)
+        last = (await heard(reading))["seq"]
+        # Big messages, so that the buffers of the kernel are soon full.
+        name = "x" * 60_000
+        for _ in range(20 * QUEUE):
+            await act(station, name)
+            while (message := await heard(reading))["type"] == "snapshot":
+                pass
+            assert message["seq"] == last + 1
+            last = message["seq"]
+            if station.hub.watchers == 1:
+                break
+            station.hub.reset(station.drive.picture())
+        assert station.hub.watchers == 1
+
+
+async def test_the_server_stops_with_consoles_connected(station: DeskStation) -> None:
+    server = ConsoleServer(station.app, "127.0.0.1", 0)
+    task = asyncio.create_task(server.serve())
+    await server.wait_started()
+    url = f"ws://127.0.0.1:{server.port}/api/v1/live"
+    async with connect(url, additional_headers=token_of(station)) as socket:
+        await heard(socket)
+        server.stop()
+        await asyncio.wait_for(task, 10.0)
+        assert await close_code(socket) in (1001, 1012)
