@@ -32,7 +32,6 @@ TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
 BOOTS = 16  # runs of a unit's program that are told from each other
-BOOTS_KEPT = 16  # of a unit; older ones are in the log
 CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -146,13 +145,28 @@ class UnitState(msgspec.Struct):
         self.stopped_ns = None
         return "new"
 
+    def recall(self, header: Header) -> News:
+        """Note that a message came out of the unit's journal; it says nothing of the present."""
+        boot = self._known_boot(header.boot_id)
+        if boot is None:
+            boot = BootState(header.boot_id)
+            self.boots = [boot, *self.boots[1 - BOOTS :]]
+        if not boot.seen.add(header.seq):
+            self.duplicates += 1
+            return "repeat"
+        return "old"
+
     def _boot(self, boot_id: int) -> BootState:
-        for boot in reversed(self.boots):
-            if boot.boot_id == boot_id:
-                return boot
-        self.boots = [*self.boots[1 - BOOTS :], BootState(boot_id)]
-        self.latest_mono_ns.clear()
-        return self.boots[-1]
+        """The boot of a live message; one not heard of before is the one that runs now."""
+        boot = self._known_boot(boot_id)
+        if boot is None:
+            boot = BootState(boot_id)
+            self.boots = [*self.boots[1 - BOOTS :], boot]
+            self.latest_mono_ns.clear()
+        return boot
+
+    def _known_boot(self, boot_id: int) -> BootState | None:
+        return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)
 
     def extend_trail(self, fused: FusedPosition) -> bool:
         """Add a point where the wearer moved, at most one a second; True where one was added."""
