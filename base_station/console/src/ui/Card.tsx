@@ -84,7 +84,7 @@ function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
   return (
     <dl class="facts">
       <Where unit={unit} now={now} silentMs={picture.silentMs.value} />
-      <Heard unit={unit} now={now} />
+      <Heard unit={unit} now={now} silent={picture.silentMs.value > 0} />
       <Fact icon="heat" label="Environment" level={unit.heat_level}>
         {words.temperature(unit.ambient_degc)}
         {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
@@ -123,12 +123,19 @@ function Where({ unit, now, silentMs }: WhereProps) {
   );
 }
 
-function Heard({ unit, now }: { unit: UnitView; now: number }) {
-  const level = unit.link === "live" ? "" : unit.link === "stale" ? "caution" : "critical";
+interface HeardProps {
+  unit: UnitView;
+  now: number;
+  silent: boolean; // the station cannot be heard, so nobody knows of the unit's link
+}
+
+function Heard({ unit, now, silent }: HeardProps) {
+  const good = unit.link === "live" && !silent;
+  const level = good ? "" : unit.link === "stale" ? "caution" : "critical";
   return (
     <Fact
-      icon={level === "" ? "linkGood" : "linkLost"}
-      label={words.linkWord(unit.link)}
+      icon={good ? "linkGood" : "linkLost"}
+      label={silent ? "Not updated" : words.linkWord(unit.link)}
       level={level}
     >
       {unit.last_heard_ms === null ? "—" : `${words.age(now - unit.last_heard_ms)} ago`}

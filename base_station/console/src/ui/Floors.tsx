@@ -34,19 +34,21 @@ interface ButtonProps {
 }
 
 function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
-  const spoken = choice === "all" ? "All floors" : `Floor ${name}`;
   return (
     <button
       type="button"
       class={`floor ${alarmed ? "alarmed" : ""}`}
       aria-pressed={floor.value === choice}
-      aria-label={`${spoken}: ${people} people${alarmed ? ", alarm" : ""}`}
       onClick={() => (floor.value = choice)}
     >
-      <span class="floor-name">{name}</span>
+      <span class="floor-name">
+        <span class="spoken">{choice === "all" ? "Floors: " : "Floor "}</span>
+        {name}
+      </span>
       <span class="floor-people">
         <Icon name={alarmed ? "alarm" : "people"} />
         {people}
+        <span class="spoken"> people{alarmed ? ", alarm" : ""}</span>
       </span>
     </button>
   );
