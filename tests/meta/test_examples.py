@@ -1,0 +1,49 @@
+"""The example settings load, and name every setting there is."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from base_station.config import StationConfig
+from edge.config import EdgeConfig
+from shared.config import load_config
+from tests.conftest import PROJECT_ROOT
+
+EXAMPLES = PROJECT_ROOT / "deploy" / "examples"
+# Explained in a comment rather than set, or only meant for the command line.
+LEFT_OUT = {"http.certificate", "http.private_key", "speed"}
+
+
+def keys_of(config_class: type, prefix: str = "") -> set[str]:
+    keys = set()
+    for each in dataclasses.fields(config_class):
+        default = each.default_factory() if callable(each.default_factory) else None
+        if dataclasses.is_dataclass(default):
+            keys |= keys_of(type(default), f"{prefix}{each.name}.")
+        else:
+            keys.add(f"{prefix}{each.name}")
+    return keys
+
+
+def keys_in(table: dict[str, object], prefix: str = "") -> set[str]:
+    keys: set[str] = set()
+    for name, value in table.items():
+        if isinstance(value, dict):
+            keys |= keys_in(value, f"{prefix}{name}.")
+        else:
+            keys.add(f"{prefix}{name}")
+    return keys
+
+
+@pytest.mark.parametrize(
+    ("path", "config_class"),
+    [(EXAMPLES / "station.toml", StationConfig), (EXAMPLES / "unit.toml", EdgeConfig)],
+    ids=["station", "unit"],
+)
+def test_an_example_loads_and_names_every_setting(path: Path, config_class: type):
+    load_config(path, config_class)
+    assert keys_in(tomllib.loads(path.read_text())) == keys_of(config_class) - LEFT_OUT
