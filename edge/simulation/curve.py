@@ -72,6 +72,18 @@ class Curve:
             step_speed * speed * 420.0 * hump * hump * (rest - x),
         )
 
+    def smoothed(self, t_s: Floats, span_s: float) -> Jet:
+        """The curve's mean over ``span_s`` around ``t_s``, weighted by a raised cosine."""
+        offsets = np.arange(-4, 5) / 10.0
+        weights = 0.2 * np.cos(np.pi * offsets) ** 2
+        value, rate, accel = np.zeros((3, len(t_s)))
+        for offset, weight in zip(offsets * span_s, weights, strict=True):
+            jet = self.jet(np.maximum(t_s + offset, 0.0))
+            value += weight * jet.value
+            rate += weight * jet.rate
+            accel += weight * jet.accel
+        return Jet(value, rate, accel)
+
     def _make_pieces(self) -> tuple[Floats, Floats, Floats, Floats]:
         # One knot more makes the hold after the last move an ordinary piece.
         knot_s = np.array([*self._knot_s, self.end_s + 1.0])

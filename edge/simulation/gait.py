@@ -24,21 +24,39 @@ class Gait:
     toe_off_rad: float  # pitch when the toe leaves the ground, toe down negative
     strike_rad: float  # pitch when the foot touches down, toe up positive
     clearance_m: float  # extra height in mid-swing
+    bounce_m: float = 0.018  # half of the trunk's rise and fall
+    sway_m: float = 0.02  # of the trunk to either side
     forward: tuple[float, float] = (0.22, 0.95)  # when the foot goes forward
     upward: tuple[float, float] = (0.25, 0.90)  # when it goes to another height
 
 
 WALK = Gait(Activity.WALKING, 1.36, 1.06, 0.34, radians(-62), radians(20), 0.04)
-SEARCH = Gait(Activity.WALKING, 0.95, 1.15, 0.42, radians(-45), radians(12), 0.05)
-HURRY = Gait(Activity.WALKING, 1.60, 0.96, 0.30, radians(-68), radians(24), 0.04)
-RUN = Gait(Activity.RUNNING, 2.10, 0.74, 0.20, radians(-75), radians(12), 0.10)
-SPRINT = Gait(Activity.RUNNING, 3.10, 0.60, 0.15, radians(-85), radians(5), 0.16)
-TURN = Gait(Activity.WALKING, 0.40, 0.95, 0.40, radians(-25), radians(4), 0.05)
+SEARCH = Gait(Activity.WALKING, 0.95, 1.15, 0.42, radians(-45), radians(12), 0.05, 0.010)
+HURRY = Gait(Activity.WALKING, 1.60, 0.96, 0.30, radians(-68), radians(24), 0.04, 0.022)
+RUN = Gait(Activity.RUNNING, 2.10, 0.74, 0.20, radians(-75), radians(12), 0.10, 0.035, 0.01)
+SPRINT = Gait(Activity.RUNNING, 3.10, 0.60, 0.15, radians(-85), radians(5), 0.16, 0.03, 0.01)
+TURN = Gait(Activity.WALKING, 0.40, 0.95, 0.40, radians(-25), radians(4), 0.05, 0.006)
 STAIRS_UP = Gait(
-    Activity.STAIRS_UP, 0.56, 1.30, 0.42, radians(-40), radians(3), 0.05, (0.35, 0.95), (0.2, 0.7)
+    activity=Activity.STAIRS_UP,
+    stride_m=0.56,
+    stride_s=1.30,
+    flat=0.42,
+    toe_off_rad=radians(-40),
+    strike_rad=radians(3),
+    clearance_m=0.05,
+    forward=(0.35, 0.95),
+    upward=(0.2, 0.7),
 )
 STAIRS_DOWN = Gait(
-    Activity.STAIRS_DOWN, 0.56, 1.20, 0.40, radians(-32), radians(3), 0.04, (0.2, 0.7), (0.4, 0.96)
+    activity=Activity.STAIRS_DOWN,
+    stride_m=0.56,
+    stride_s=1.20,
+    flat=0.40,
+    toe_off_rad=radians(-32),
+    strike_rad=radians(3),
+    clearance_m=0.04,
+    forward=(0.2, 0.7),
+    upward=(0.4, 0.96),
 )
 
 PACES: dict[str, Gait] = {

@@ -14,7 +14,7 @@ from math import radians
 import numpy as np
 
 from edge.samples import Floats
-from edge.simulation.foot import Motion
+from edge.simulation.kinematics import Motion
 
 GRAVITY_MPS2 = 9.80665
 _CALIBRATED_AT_DEGC = 25.0

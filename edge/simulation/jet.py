@@ -58,6 +58,12 @@ def _through(x: Jet, value: Floats, slope: Floats, curvature: Floats) -> Jet:
     return Jet(value, slope * x.rate, slope * x.accel + curvature * x.rate**2)
 
 
+def constant(t_s: Floats, value: float) -> Jet:
+    """The same at every instant of ``t_s``."""
+    zero = np.zeros_like(t_s)
+    return Jet(zero + value, zero, zero)
+
+
 def oscillation(t_s: Floats, amplitude: float, frequency_hz: float, phase_rad: float) -> Jet:
     """A harmonic, smooth to every order."""
     omega = 2.0 * np.pi * frequency_hz

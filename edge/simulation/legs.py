@@ -15,6 +15,7 @@ Point = tuple[float, float]
 Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(gt=0.0, le=1e6)]
 Pace = Literal["search", "walk", "hurry", "run", "sprint"]
+Segment = Literal["foot", "shank", "hip", "chest"]
 
 
 class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from edge.simulation.legs import Leg, Point
+from edge.simulation.legs import Leg, Point, Segment
 from shared.errors import ConfigError
 from shared.geo import Anchor
 
@@ -34,6 +34,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)
     battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
     battery_life_s: Annotated[float, Meta(ge=1.0)] = 6 * 3600.0  # from full to empty
+    worn_on: Segment = "foot"
     rate_hz: Annotated[float, Meta(ge=20.0, le=5000.0)] = 200.0
 
     def __post_init__(self) -> None:

@@ -18,12 +18,14 @@ from edge.samples import (
     SensorBatch,
     SensorDescription,
 )
+from edge.simulation.body_plan import BodyPlan
 from edge.simulation.building import load_building
-from edge.simulation.foot import Motion, Tremor, foot_motion
 from edge.simulation.gps import Gps
 from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, Imu, ImuErrors
-from edge.simulation.planner import FootPlan, Planner
+from edge.simulation.kinematics import Motion
+from edge.simulation.planner import Planner
 from edge.simulation.scenario import Scenario
+from edge.simulation.segments import Tremor, segment_motion
 from edge.simulation.surroundings import (
     CONSUMER_BARO,
     CONSUMER_MAG,
@@ -56,7 +58,7 @@ CONSUMER_SENSORS = SensorErrors(CONSUMER_IMU, CONSUMER_MAG, CONSUMER_BARO)
 class Simulation:
     """One performance of a scenario; equal seeds give equal samples to the last bit.
 
-    The sensor sits on the instep at an angle drawn from the seed.  Navigation axes
+    The sensor sits on its part of the body at an angle drawn from the seed.  Navigation axes
     are those of the site frame (NED, origin at its anchor); time starts at 0.
     """
 
@@ -96,12 +98,15 @@ class Simulation:
 
     def truth(self, t_s: Floats) -> Motion:
         """The sensor's true motion at times ``t_s`` (n,); body axes are the sensor's own."""
-        foot = foot_motion(self.plan, self._tremor, t_s)
+        body = self._body(t_s)
         return replace(
-            foot,
-            rotation_nb=foot.rotation_nb @ self._rotation_bs,
-            rate_b_radps=foot.rate_b_radps @ self._rotation_bs,
+            body,
+            rotation_nb=body.rotation_nb @ self._rotation_bs,
+            rate_b_radps=body.rate_b_radps @ self._rotation_bs,
         )
+
+    def _body(self, t_s: Floats) -> Motion:
+        return segment_motion(self.scenario.worn_on, self.plan, self._tremor, t_s)
 
     def batches(self, batch_s: float = 0.05) -> Iterator[SensorBatch]:
         """The whole walk from its start, generated as it is asked for."""
@@ -126,17 +131,17 @@ class Simulation:
         for start in range(0, total, rows):
             index = np.arange(start, min(start + rows, total))
             t_s = index / rate_hz
-            foot = foot_motion(self.plan, self._tremor, t_s)
+            body = self._body(t_s)
             temperature_degc = self._imu_temperature_degc(t_s)
-            accel_mps2, gyro_radps = imu.measure(foot, temperature_degc)
-            rotation_ns = foot.rotation_nb @ self._rotation_bs
+            accel_mps2, gyro_radps = imu.measure(body, temperature_degc)
+            rotation_ns = body.rotation_nb @ self._rotation_bs
             yield SensorBatch(
                 ImuBatch(
                     t_ns=np.rint(t_s * 1e9).astype(np.int64),
                     accel_mps2=accel_mps2,
                     gyro_radps=gyro_radps,
-                    mag_ut=mag.measure(start, foot.position_n_m, rotation_ns),
-                    pressure_pa=baro.measure(start, t_s, foot.position_n_m),
+                    mag_ut=mag.measure(start, body.position_n_m, rotation_ns),
+                    pressure_pa=baro.measure(start, t_s, body.position_n_m),
                     imu_temperature_degc=temperature_degc,
                 ),
                 others.between(float(t_s[0]), (start + len(index)) / rate_hz),
@@ -192,15 +197,15 @@ class _Others:
         )
 
 
-def _plan(scenario: Scenario, rng: np.random.Generator) -> FootPlan:
+def _plan(scenario: Scenario, rng: np.random.Generator) -> BodyPlan:
     planner = Planner(rng, scenario.start, scenario.down_m, radians(scenario.heading_deg))
     for leg in scenario.legs:
         planner.do(leg)
-    while scenario.loop and planner.t_s < scenario.duration_s:
-        before_s = planner.t_s
+    while scenario.loop and planner.plan.duration_s < scenario.duration_s:
+        before_s = planner.plan.duration_s
         for leg in scenario.loop:
             planner.do(leg)
-        if planner.t_s == before_s:
+        if planner.plan.duration_s == before_s:
             raise ValueError(f"the loop of scenario {scenario.name!r} takes no time")
     return planner.plan
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from edge.samples import Floats
-from edge.simulation.foot import Motion
 from edge.simulation.imu import GRAVITY_MPS2, IDEAL_IMU, Imu, Triad, TriadErrors
+from edge.simulation.kinematics import Motion
 
 RATE_HZ = 200.0
 WARM = 25.0

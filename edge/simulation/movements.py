@@ -1,0 +1,171 @@
+"""What a body can do: each function continues a ``BodyPlan`` by one movement.
+
+Footholds are (north, east) in metres, angles in radians.  The small differences
+between one stride and the next are drawn from the generator.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, radians, remainder, sin
+
+import numpy as np
+
+from edge.simulation.body_plan import STANDING_PELVIS_M, BodyPlan
+from edge.simulation.gait import Gait
+from edge.simulation.legs import Point
+from shared.messages.status import Activity
+
+_SETTLE_RAD = radians(1.0)  # how far a shoe tips when it touches down
+_ROLL_OVER_RAD = radians(3)  # how far it has rolled when the heel leaves the ground
+_CRAWL_PITCH_RAD = radians(-72)
+_CRAWL_TRUNK_RAD = radians(-75)
+_CRAWL_PELVIS_M = 0.45
+_LIE_PITCH_RAD = radians(75)
+_LIE_ROLL_RAD = radians(25)
+_LIE_TRUNK_RAD = radians(82)
+_LIE_PELVIS_M = 0.06
+
+
+def stand(plan: BodyPlan, duration_s: float) -> None:
+    plan.begin(Activity.STILL)
+    settled_s = plan.duration_s + min(0.4, duration_s)
+    for curve in (plan.pitch, plan.roll, plan.shank_pitch):
+        if curve.last != 0.0:
+            curve.move(plan.duration_s, settled_s, 0.0)
+    plan.duration_s += duration_s
+
+
+def stride(
+    plan: BodyPlan,
+    rng: np.random.Generator,
+    gait: Gait,
+    foothold: Point,
+    yaw_rad: float,
+    down_m: float | None = None,
+) -> None:
+    """Stand flat for a while, then move the foot to its next place (and height)."""
+    plan.begin(gait.activity)
+    jitter = np.clip(rng.normal(1.0, 0.03, size=4), 0.9, 1.1)
+    begin_s = plan.duration_s
+    end_s = begin_s + gait.stride_s * float(jitter[0])
+    off_s = begin_s + gait.flat * (end_s - begin_s)
+
+    def window(start: float, end: float) -> tuple[float, float]:
+        return off_s + start * (end_s - off_s), off_s + end * (end_s - off_s)
+
+    _stand_on_it(plan, rng, begin_s, off_s)
+    plan.pivot.move(*window(0.40, 0.85), 1.0)
+    plan.north.move(*window(*gait.forward), foothold[0])
+    plan.east.move(*window(*gait.forward), foothold[1])
+    if down_m is not None:
+        plan.down.move(*window(*gait.upward), down_m)
+    plan.lift.move(*window(0.30, 0.60), -gait.clearance_m * float(jitter[1]))
+    plan.lift.move(*window(0.60, 0.90), 0.0)
+    toe_off_rad = gait.toe_off_rad * float(jitter[2])
+    plan.pitch.move(*window(0.00, 0.42), toe_off_rad)
+    plan.pitch.move(*window(0.42, 0.84), gait.strike_rad * float(jitter[3]))
+    plan.pitch.move(*window(0.84, 1.00), float(abs(rng.normal(0.0, _SETTLE_RAD))))
+    plan.roll.move(*window(0.15, 0.50), float(rng.normal(radians(7), radians(2))))
+    plan.roll.move(*window(0.50, 0.95), float(rng.normal(0.0, _SETTLE_RAD)))
+    # The toes point outward in mid-swing.
+    plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + radians(6))
+    plan.yaw.move(*window(0.55, 0.95), yaw_rad)
+    # The shank leans forward over the standing foot, folds back and swings out.
+    plan.shank_pitch.move(begin_s, off_s, radians(-14))
+    plan.shank_pitch.move(*window(0.00, 0.45), 0.85 * toe_off_rad)
+    plan.shank_pitch.move(*window(0.45, 0.90), 0.8 * gait.strike_rad)
+    _swing_trunk(plan, gait, begin_s, end_s)
+    plan.duration_s = end_s
+    plan.footfall_s.append(end_s)
+
+
+def _stand_on_it(plan: BodyPlan, rng: np.random.Generator, begin_s: float, off_s: float) -> None:
+    """The shoe settles, is flat for a moment, and begins to roll over the ball."""
+    flat_s = begin_s + 0.35 * (off_s - begin_s)
+    rise_s = begin_s + 0.60 * (off_s - begin_s)
+    plan.pitch.move(begin_s, flat_s, 0.0)
+    plan.roll.move(begin_s, flat_s, 0.0)
+    # The pivot changes while the foot is flat, where it has no effect.
+    plan.pivot.move(flat_s, rise_s, 0.0)
+    plan.pitch.move(rise_s, off_s, -float(abs(rng.normal(_ROLL_OVER_RAD, _SETTLE_RAD))))
+
+
+def _swing_trunk(plan: BodyPlan, gait: Gait, begin_s: float, end_s: float) -> None:
+    """The trunk rises over each standing leg and leans towards it."""
+    quarter_s = (end_s - begin_s) / 4.0
+    for quarter, bounce_m in enumerate((-gait.bounce_m, gait.bounce_m, -gait.bounce_m, 0.0)):
+        start_s = begin_s + quarter * quarter_s
+        plan.bounce.move(start_s, start_s + quarter_s, bounce_m)
+    plan.sway.move(begin_s, begin_s + quarter_s, gait.sway_m)
+    plan.sway.move(begin_s + quarter_s, begin_s + 3.0 * quarter_s, -gait.sway_m)
+    plan.sway.move(begin_s + 3.0 * quarter_s, end_s, 0.0)
+
+
+def lie(plan: BodyPlan, duration_s: float, fall: bool) -> None:
+    """Go down onto the back, the toes up; nothing moves until getting up."""
+    plan.begin(Activity.FALLING if fall else Activity.LYING)
+    begin_s = plan.duration_s
+    down_s = begin_s + (0.9 if fall else 2.4)
+    rest_s = down_s + duration_s
+    up_s = rest_s + 2.6
+    standing = plan.north.last, plan.east.last
+    reach = 0.45 * cos(plan.yaw.last), 0.45 * sin(plan.yaw.last)
+    plan.pivot.move(begin_s, begin_s + 0.2, 1.0)
+    for start_s, end_s, down in ((begin_s + 0.2, down_s, True), (rest_s, up_s, False)):
+        plan.north.move(start_s, end_s, standing[0] + down * reach[0])
+        plan.east.move(start_s, end_s, standing[1] + down * reach[1])
+        plan.pitch.move(start_s, end_s, down * _LIE_PITCH_RAD)
+        plan.roll.move(start_s, end_s, down * _LIE_ROLL_RAD)
+        plan.shank_pitch.move(start_s, end_s, down * _LIE_TRUNK_RAD)
+        plan.trunk_pitch.move(start_s, end_s, down * _LIE_TRUNK_RAD)
+        plan.pelvis_height.move(start_s, end_s, _LIE_PELVIS_M if down else STANDING_PELVIS_M)
+        plan.tremor.move(start_s, end_s, float(not down))
+    plan.duration_s = down_s
+    plan.begin(Activity.LYING)
+    plan.duration_s = up_s
+
+
+def kneel(plan: BodyPlan) -> None:
+    """Go down on hands and knees, the foot on its toes."""
+    plan.begin(Activity.CRAWLING)
+    begin_s = plan.duration_s
+    plan.pivot.move(begin_s, begin_s + 0.2, 0.0)
+    _kneel_or_rise(plan, begin_s + 0.2, begin_s + 1.6, down=True)
+    plan.duration_s = begin_s + 1.8
+
+
+def rise(plan: BodyPlan) -> None:
+    """Get up from hands and knees."""
+    _kneel_or_rise(plan, plan.duration_s, plan.duration_s + 1.4, down=False)
+    plan.duration_s += 1.4
+
+
+def _kneel_or_rise(plan: BodyPlan, start_s: float, end_s: float, *, down: bool) -> None:
+    plan.pitch.move(start_s, end_s, down * _CRAWL_PITCH_RAD)
+    plan.shank_pitch.move(start_s, end_s, down * radians(-85))
+    plan.trunk_pitch.move(start_s, end_s, down * _CRAWL_TRUNK_RAD)
+    plan.pelvis_height.move(start_s, end_s, _CRAWL_PELVIS_M if down else STANDING_PELVIS_M)
+
+
+def pull(plan: BodyPlan, rng: np.random.Generator, foothold: Point, yaw_rad: float) -> None:
+    """Crawling: rest on the toes, then drag the foot to its next place."""
+    begin_s = plan.duration_s + float(rng.uniform(0.35, 0.6))
+    # The foot tilts most early in the pull, so that it never glides without turning.
+    mid_s = begin_s + float(rng.uniform(0.15, 0.25))
+    end_s = mid_s + float(rng.uniform(0.45, 0.55))
+    plan.north.move(begin_s, end_s, foothold[0])
+    plan.east.move(begin_s, end_s, foothold[1])
+    plan.yaw.move(begin_s, end_s, yaw_rad)
+    plan.pitch.move(begin_s, mid_s, _CRAWL_PITCH_RAD + float(rng.normal(0.25, 0.06)))
+    plan.pitch.move(mid_s, end_s, _CRAWL_PITCH_RAD)
+    plan.roll.move(begin_s, mid_s, float(rng.normal(0.15, 0.05)))
+    plan.roll.move(mid_s, end_s, 0.0)
+    plan.sway.move(begin_s, mid_s, 0.04)
+    plan.sway.move(mid_s, end_s, 0.0)
+    plan.duration_s = end_s
+    plan.footfall_s.append(end_s)
+
+
+def unwrapped(heading_rad: float, near_rad: float) -> float:
+    """The same heading, by the turns nearest to another."""
+    return near_rad + remainder(heading_rad - near_rad, 2.0 * pi)
