@@ -52,4 +52,10 @@ class Bus(Protocol):
         """Whether another end is there at this moment, as far as this one has noticed."""
         ...
 
+    def is_heard(self, key: str) -> bool:
+        """Whether another end would be sent what is published under ``key``: false without a
+        link or a subscriber, and where the access rules forbid this end to hear of one.
+        """
+        ...
+
     def close(self) -> None: ...

@@ -85,6 +85,13 @@ class MemoryRouter:
                     self._defer(entry.gate, key, payload)
         self._settle()
 
+    def is_heard(self, sender: MemoryBus, key: str) -> bool:
+        with self._lock:
+            return any(
+                intersects(entry.expression, key) and entry.owner is not sender
+                for entry in self._reached_from(sender, Role.SUBSCRIBER)
+            )
+
     def answers(
         self, asker: MemoryBus, key: str, parameters: str, payload: bytes
     ) -> Iterable[bytes]:
@@ -199,6 +206,9 @@ class MemoryBus:
 
     def is_linked(self) -> bool:
         return self._linked and not self._closed
+
+    def is_heard(self, key: str) -> bool:
+        return not self._closed and self._router.is_heard(self, require_key(key))
 
     def close(self) -> None:
         self._closed = True

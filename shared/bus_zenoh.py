@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
@@ -15,6 +15,7 @@ from shared.bus import LivelinessHandler, QueryHandler, SampleHandler, Subscript
 from shared.bus_handlers import HandlerGate, require_key, require_key_expression
 from shared.channels import Qos
 from shared.errors import BusError
+from shared.tls import TlsIdentity
 
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
 _LEASE_MS = 3000
@@ -22,20 +23,15 @@ _KEEP_ALIVES_A_LEASE = 4
 
 
 @dataclass(frozen=True, slots=True)
-class TlsFiles:
-    """Mutual TLS: both sides show a certificate signed by ``root_ca``."""
-
-    root_ca: Path
-    certificate: Path
-    private_key: Path
-
-
-@dataclass(frozen=True, slots=True)
 class StationEndpoint:
-    """The embedded router.  With ``tls`` the endpoints begin with ``tls/``."""
+    """The router.  With ``tls``, which is mutual, the endpoints begin with ``tls/``.
+
+    ``access_control``: Zenoh's section of that name, read once, when the bus is opened.
+    """
 
     listen: tuple[str, ...] = ("tcp/0.0.0.0:7447",)
-    tls: TlsFiles | None = None
+    tls: TlsIdentity | None = None
+    access_control: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +39,23 @@ class UnitEndpoint:
     """A unit of one station: opens without a link, connects when the station is there."""
 
     connect: tuple[str, ...]
-    tls: TlsFiles | None = None
+    tls: TlsIdentity | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ClientEndpoint:
+    """A station beside its router, or an onlooker: opening waits for the router.
+
+    Once open, it finds a router that was away by itself.  It is a client because without
+    gossip a router passes nothing from peer to peer.
+    """
+
+    connect: tuple[str, ...]
+    tls: TlsIdentity | None = None
+    patience_s: float = 10.0
+
+
+Endpoint = StationEndpoint | UnitEndpoint | ClientEndpoint
 
 
 class ZenohBus:
@@ -53,14 +65,15 @@ class ZenohBus:
     after opening.
     """
 
-    def __init__(self, endpoint: StationEndpoint | UnitEndpoint) -> None:
-        """Raises BusError when the endpoint cannot be listened on or makes no sense."""
+    def __init__(self, endpoint: Endpoint) -> None:
+        """Raises BusError when the endpoint cannot be opened or makes no sense."""
         zenoh.init_log_from_env_or("error")
         try:
             config = zenoh.Config.from_json5(json.dumps(_settings(endpoint)))
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
             raise BusError(_in_words(endpoint, str(error))) from error
+        self._watched: dict[str, zenoh.Publisher] = {}
 
     def publish(self, key: str, payload: bytes, qos: Qos) -> None:
         self._require_open()
@@ -141,6 +154,17 @@ class ZenohBus:
             return False
         return bool(self._session.info.routers_zid() or self._session.info.peers_zid())
 
+    def is_heard(self, key: str) -> bool:
+        if self._session.is_closed():
+            return False
+        if key not in self._watched:
+            # Kept: the answer needs a round trip, and its changes come only while it stands.
+            self._watched[key] = self._session.declare_publisher(
+                require_key(key), allowed_destination=zenoh.Locality.REMOTE
+            )
+        status = self._watched[key].matching_status
+        return bool(getattr(status, "matching", False))  # the stub says bool; it is an object
+
     def close(self) -> None:
         self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub leaves it open
 
@@ -174,9 +198,13 @@ def _payloads(replies: SimpleQueue[zenoh.Reply | None]) -> Iterator[bytes]:
             yield reply.ok.payload.to_bytes()
 
 
-def _settings(endpoint: StationEndpoint | UnitEndpoint) -> dict[str, Any]:
+def _settings(endpoint: Endpoint) -> dict[str, Any]:
     link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
-    settings: dict[str, Any] = {
+    if endpoint.tls is not None:
+        role = "listen" if isinstance(endpoint, StationEndpoint) else "connect"
+        link["protocols"] = ["tls"]
+        link["tls"] = _tls_settings(endpoint.tls, role)
+    return {
         # With gossip, units link to each other and go round the station's access rules.
         "scouting": {
             "multicast": {"enabled": False},
@@ -184,43 +212,49 @@ def _settings(endpoint: StationEndpoint | UnitEndpoint) -> dict[str, Any]:
             "delay": 0,  # nobody is scouted for: do not wait half a second for them
         },
         "transport": {"link": link, "shared_memory": {"enabled": False}},
-    }
+    } | _role_settings(endpoint)
+
+
+def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
     if isinstance(endpoint, StationEndpoint):
-        settings |= {
+        settings = {
             "mode": "router",
             "listen": {"endpoints": list(endpoint.listen)},
             "timestamping": {"enabled": True},
         }
-    else:
-        settings |= {
-            "mode": "peer",
-            "listen": {"endpoints": []},
-            "connect": {
-                "endpoints": list(endpoint.connect),
-                "timeout_ms": -1,
-                "exit_on_failure": False,
-                "retry": {
-                    "period_init_ms": 200,
-                    "period_max_ms": 1000,
-                    "period_increase_factor": 1.5,
-                },
+        if endpoint.access_control is not None:
+            settings["access_control"] = dict(endpoint.access_control)
+        return settings
+    patience_s = endpoint.patience_s if isinstance(endpoint, ClientEndpoint) else None
+    return {
+        "mode": "peer" if patience_s is None else "client",
+        "listen": {"endpoints": []},
+        "connect": {
+            "endpoints": list(endpoint.connect),
+            "timeout_ms": -1 if patience_s is None else round(patience_s * 1000),
+            "exit_on_failure": patience_s is not None,
+            "retry": {
+                "period_init_ms": 200,
+                "period_max_ms": 1000,
+                "period_increase_factor": 1.5,
             },
-        }
-    if endpoint.tls is not None:
-        role = "listen" if isinstance(endpoint, StationEndpoint) else "connect"
-        link["protocols"] = ["tls"]
-        link["tls"] = {
-            "root_ca_certificate": str(endpoint.tls.root_ca),
-            f"{role}_certificate": str(endpoint.tls.certificate),
-            f"{role}_private_key": str(endpoint.tls.private_key),
-            "enable_mtls": True,
-            "close_link_on_expiration": True,
-        }
-    return settings
+        },
+    }
 
 
-def _in_words(endpoint: StationEndpoint | UnitEndpoint, reason: str) -> str:
-    if isinstance(endpoint, UnitEndpoint):
+def _tls_settings(identity: TlsIdentity, role: str) -> dict[str, Any]:
+    """Inline rather than as paths: an enrolment is one file, and its key is on disk once."""
+    return {
+        "root_ca_certificate_base64": base64.b64encode(identity.authority).decode(),
+        f"{role}_certificate_base64": base64.b64encode(identity.certificate).decode(),
+        f"{role}_private_key_base64": base64.b64encode(identity.private_key).decode(),
+        "enable_mtls": True,
+        "close_link_on_expiration": True,
+    }
+
+
+def _in_words(endpoint: Endpoint, reason: str) -> str:
+    if not isinstance(endpoint, StationEndpoint):
         return f"the bus cannot be opened towards {', '.join(endpoint.connect)}: {reason}"
     where = ", ".join(endpoint.listen)
     if "address already in use" in reason.lower():

@@ -312,6 +312,18 @@ def test_a_query_handler_that_fails_answers_nothing(
     assert len(caplog.records) == 1
 
 
+def test_one_knows_whether_anybody_else_listens(ends: Ends) -> None:
+    ends.unit.subscribe("muster/v1/anna/command/**", Heard())
+    assert not ends.unit.is_heard(KEY)
+    listening = ends.station.subscribe("muster/v1/*/up/**", Heard())
+    until(lambda: ends.unit.is_heard(KEY), "the station's interest")
+    assert not ends.unit.is_heard(ALIVE)
+    listening.close()
+    until(lambda: not ends.unit.is_heard(KEY), "the end of the station's interest")
+    ends.unit.close()
+    assert not ends.unit.is_heard(KEY)
+
+
 @pytest.mark.parametrize("key", ["a//b", "/a", "a/", "a/*", "a/**", "a?b", "a#b", ""])
 def test_a_key_that_cannot_be_published_under_is_refused(ends: Ends, key: str) -> None:
     with pytest.raises(BusError, match="not a key"):

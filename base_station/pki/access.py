@@ -1,0 +1,90 @@
+"""Zenoh's access rules, made from the registry and the table of channels.
+
+Deny is the default, so a certificate without an entry, or with a revoked one, can do nothing.
+Zenoh reads the rules when the router opens; ``base_station.router`` reopens it on a change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from base_station.pki.registry import Entry, Registry
+from shared.channels import CHANNELS, EVERY_UNIT, ROOT, Direction, alive_key
+from shared.enrolment import Holder
+
+_EVERYTHING = [f"{ROOT}/**"]
+_ALL_MESSAGES = [
+    "put",
+    "delete",
+    "query",
+    "reply",
+    "declare_subscriber",
+    "declare_queryable",
+    "liveliness_token",
+    "declare_liveliness_subscriber",
+    "liveliness_query",
+]
+_INTERESTS = ["declare_subscriber", "declare_liveliness_subscriber", "liveliness_query"]
+
+
+def _rule(
+    rule_id: str, flows: list[str], messages: list[str], keys: Iterable[str]
+) -> dict[str, Any]:
+    return {
+        "id": rule_id,
+        "permission": "allow",
+        "flows": flows,
+        "messages": messages,
+        "key_exprs": list(keys),
+    }
+
+
+_RULES_OF_KIND = {
+    Holder.STATION: (_rule("station", ["ingress", "egress"], _ALL_MESSAGES, _EVERYTHING),),
+    # A unit learns what the station listens to, so that it sends that and nothing else.
+    Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING),),
+    # An operator's program looks on: it hears everything and says nothing.
+    Holder.OPERATOR: (
+        _rule("operator-asks", ["ingress"], _INTERESTS, _EVERYTHING),
+        _rule("operator-hears", ["egress"], ["put", "liveliness_token"], _EVERYTHING),
+    ),
+}
+
+
+def access_control(registry: Registry) -> dict[str, Any]:
+    """The ``access_control`` section of the router's configuration."""
+    rules = [rule for rules_of_kind in _RULES_OF_KIND.values() for rule in rules_of_kind]
+    subjects: list[dict[str, Any]] = []
+    policies: list[dict[str, Any]] = []
+    for entry in registry.entries:
+        if entry.revoked is not None:
+            continue
+        own_rules = _unit_rules(entry) if entry.holder is Holder.UNIT else []
+        rules += own_rules
+        allowed = [rule["id"] for rule in (*_RULES_OF_KIND[entry.holder], *own_rules)]
+        subjects.append({"id": entry.common_name, "cert_common_names": [entry.common_name]})
+        policies.append({"rules": allowed, "subjects": [entry.common_name]})
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _unit_rules(entry: Entry) -> list[dict[str, Any]]:
+    unit_id = entry.name
+    subtree = f"{ROOT}/{unit_id}/**"
+    commands = [c for c in CHANNELS if c.direction is Direction.DOWN]
+    to_all = [channel.key(EVERY_UNIT) for channel in commands]
+    speaks = [c.key(unit_id) for c in CHANNELS if c.direction is Direction.UP]
+    name = entry.common_name
+    return [
+        _rule(f"{name}-speaks", ["ingress"], ["put"], speaks),
+        _rule(f"{name}-lives", ["ingress"], ["liveliness_token"], [alive_key(unit_id)]),
+        _rule(f"{name}-answers", ["ingress"], ["declare_queryable", "reply"], [subtree]),
+        _rule(f"{name}-listens", ["ingress"], ["declare_subscriber"], [subtree, *to_all]),
+        _rule(f"{name}-is-told", ["egress"], ["put", "query"], [subtree, *to_all]),
+    ]

@@ -1,0 +1,176 @@
+"""``muster pki``: who may take part, and as whom."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shared.enrolment import Enrolment, Holder
+
+app = typer.Typer(
+    help="The station's certificate authority: enrol units, revoke them, see who is enrolled.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+Data = Annotated[Path, typer.Option(help="The station's data folder.")]
+Days = Annotated[int, typer.Option(min=1, max=3650, help="How long the certificate is valid.")]
+Operator = Annotated[
+    bool, typer.Option("--operator", help="An operator's program, which only listens.")
+]
+Connect = Annotated[
+    list[str] | None,
+    typer.Option(help="tls/HOST:PORT to write into the enrolment, if not the station's own."),
+]
+Out = Annotated[Path | None, typer.Option(help="The enrolment file; else NAME.enrolment.toml.")]
+Qr = Annotated[bool, typer.Option("--qr", help="Show a QR code instead of writing a file.")]
+Png = Annotated[Path | None, typer.Option(help="Write the QR code as a picture.")]
+_DATA = Path("muster-data")
+
+
+@app.command()
+def init(
+    data: Data = _DATA,
+    organisation: Annotated[str, typer.Option(help="Whose station this is.")] = "Muster",
+    host: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Name or address that units reach this station by, the first one the one they "
+            "are given; may be repeated; else those this machine has now."
+        ),
+    ] = None,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the bus.")] = 7447,
+    days: Days = 365,
+) -> None:
+    """Make the authority and this station's certificate, once."""
+    # Only this command needs what these import, and they take their time.
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+    from base_station.pki.hosts import own_hosts, require_host, tls_endpoint  # noqa: PLC0415
+
+    hosts = [require_host(given) for given in host] if host else [*own_hosts()]
+    endpoint = tls_endpoint(hosts[0] if hosts else "127.0.0.1", port)
+    folder = PkiFolder(data)
+    folder.create(organisation, hosts, [endpoint], timedelta(days=days))
+    typer.echo(f"{folder.path}: authority and certificate of {organisation}'s station")
+    typer.echo(f"valid for: {', '.join(folder.registry().hosts)}")
+    typer.echo(f"units will connect to {endpoint}; enrol one with `muster pki enroll UNIT`")
+    typer.echo(f"keep a copy of {folder.path} where nobody else reads it")
+
+
+@app.command()
+def enroll(
+    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
+    data: Data = _DATA,
+    operator: Operator = False,
+    days: Days = 365,
+    connect: Connect = None,
+    out: Out = None,
+    qr: Qr = False,
+    png: Png = None,
+) -> None:
+    """Make a certificate for a unit, as one file or QR code to carry to it."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+    target = _free_target(name, out, png, qr=qr)
+    enrolment = PkiFolder(data).enroll(
+        name, _holder(operator=operator), timedelta(days=days), connect or ()
+    )
+    _hand_over(enrolment, target, png, qr=qr)
+
+
+@app.command()
+def renew(
+    name: Annotated[str | None, typer.Argument(help="Who; not with --station.")] = None,
+    data: Data = _DATA,
+    operator: Operator = False,
+    station: Annotated[bool, typer.Option("--station", help="This station's own.")] = False,
+    days: Days = 365,
+    connect: Connect = None,
+    out: Out = None,
+    qr: Qr = False,
+    png: Png = None,
+) -> None:
+    """Make a new certificate for somebody enrolled; the old one works until it ends."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+    if station == (name is not None):
+        raise typer.BadParameter("give either a name or --station")
+    folder = PkiFolder(data)
+    if name is None:
+        folder.renew_station(timedelta(days=days))
+        typer.echo(f"the station has a new certificate for {days} days")
+        return
+    target = _free_target(name, out, png, qr=qr)
+    enrolment = folder.renew(name, _holder(operator=operator), timedelta(days=days), connect or ())
+    _hand_over(enrolment, target, png, qr=qr)
+
+
+@app.command()
+def revoke(
+    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
+    data: Data = _DATA,
+    operator: Operator = False,
+) -> None:
+    """Shut a lost unit out: within seconds where a router runs."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+    holder = _holder(operator=operator)
+    PkiFolder(data).revoke(name, holder)
+    typer.echo(f"{holder.value} {name} is shut out; a running router takes it up within seconds")
+
+
+@app.command()
+def show(data: Data = _DATA) -> None:
+    """Who is enrolled, and until when."""
+    from datetime import UTC, datetime  # noqa: PLC0415
+
+    from base_station.pki.folder import EXPIRY_WARNING, PkiFolder  # noqa: PLC0415
+    from base_station.pki.registry import about_to_expire  # noqa: PLC0415
+    from base_station.pki.table import print_registry  # noqa: PLC0415
+
+    registry = PkiFolder(data).registry()
+    now = datetime.now(UTC)
+    print_registry(registry, now)
+    for sentence in about_to_expire(registry, now, EXPIRY_WARNING):
+        typer.secho(sentence, fg=typer.colors.YELLOW)
+
+
+def _holder(*, operator: bool) -> Holder:
+    return Holder.OPERATOR if operator else Holder.UNIT
+
+
+def _free_target(name: str, out: Path | None, png: Path | None, *, qr: bool) -> Path | None:
+    """Where the file goes; asked before a certificate is made that could not be handed over."""
+    from shared.channels import validate_unit_id  # noqa: PLC0415
+    from shared.errors import ConfigError  # noqa: PLC0415
+
+    validate_unit_id(name)
+    only_code = out is None and (qr or png is not None)
+    target = None if only_code else out or Path(f"{name}.enrolment.toml")
+    for path in (target, png):
+        if path is not None and (path.exists() or not path.absolute().parent.is_dir()):
+            problem = "is there already" if path.exists() else "is in no folder that exists"
+            raise ConfigError(f"{path} {problem}; choose another place")
+    return target
+
+
+def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, qr: bool) -> None:
+    from base_station.pki.qr import as_text, qr_code, save_png  # noqa: PLC0415
+
+    if target is not None:
+        enrolment.write(target)
+        typer.echo(
+            f"{target}: carry it to {enrolment.holder.value} {enrolment.name} and keep no other "
+            "copy"
+        )
+        if enrolment.holder is Holder.UNIT:
+            typer.echo(f"start the unit with `muster edge run --enrolment {target.name}`")
+    if png is not None:
+        save_png(qr_code(enrolment), png)
+        typer.echo(f"{png}: the enrolment as a QR code")
+    if qr:
+        typer.echo(as_text(qr_code(enrolment)))
+        typer.echo("Save what the scanner reads as a file; the code is not shown again.")

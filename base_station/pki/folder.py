@@ -1,0 +1,218 @@
+"""The authority's folder, ``DATA/pki``, and what can be done with it.
+
+    authority.pem   authority.key   the root of trust; the key may be kept elsewhere
+    station.pem     station.key     this station on the bus and towards browsers
+    registry.json                   who has been issued what
+
+Private keys of units are made here, put into the enrolment, and not kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import msgspec
+
+from base_station.pki.certificates import Issued, issue, make_authority, read_issued
+from base_station.pki.files import locked, write_atomically
+from base_station.pki.registry import Entry, Registry, load_registry, save_registry
+from shared.channels import validate_unit_id
+from shared.enrolment import Enrolment, Holder
+from shared.errors import ConfigError
+from shared.tls import TlsIdentity, check_identity
+
+STATION_NAME = "station"
+AUTHORITY_VALID = timedelta(days=3650)
+CERTIFICATE_VALID = timedelta(days=365)
+EXPIRY_WARNING = timedelta(days=30)
+
+Clock = Callable[[], datetime]
+
+
+def _utc_now() -> datetime:
+    return datetime.now(UTC)
+
+
+class PkiFolder:
+    """Raises ConfigError throughout: one sentence about what is wrong and what to do."""
+
+    def __init__(self, data: Path, now: Clock = _utc_now) -> None:
+        """``data``: the station's data folder."""
+        self._folder = data / "pki"
+        self._now = now
+
+    @property
+    def path(self) -> Path:
+        return self._folder
+
+    @property
+    def registry_path(self) -> Path:
+        return self._folder / "registry.json"
+
+    def exists(self) -> bool:
+        return self.registry_path.exists()
+
+    def create(
+        self,
+        organisation: str,
+        hosts: Sequence[str],
+        connect: Sequence[str],
+        valid: timedelta = CERTIFICATE_VALID,
+    ) -> None:
+        """Make the authority and the station's certificate; refused where there is one.
+
+        ``hosts``: names and addresses the station is reached by; those of the loopback are
+        added, for the station itself.  ``connect``: endpoints written into enrolments.
+        """
+        if self._folder.exists():
+            raise ConfigError(
+                f"{self._folder} is there already: making a new authority would shut out "
+                "everyone enrolled; move it away if that is meant"
+            )
+        self._folder.mkdir(mode=0o700, parents=True)
+        all_hosts = tuple(dict.fromkeys((*hosts, "localhost", "127.0.0.1", "::1")))
+        with locked(self._folder):
+            authority = make_authority(organisation, self._now(), AUTHORITY_VALID)
+            write_atomically(self._folder / "authority.key", authority.key_pem())
+            write_atomically(self._folder / "authority.pem", authority.certificate_pem())
+            # The registry is written last: what is interrupted is not taken for an authority.
+            self._issue_station(authority, Registry(organisation, all_hosts, tuple(connect)), valid)
+
+    def enroll(
+        self,
+        name: str,
+        holder: Holder = Holder.UNIT,
+        valid: timedelta = CERTIFICATE_VALID,
+        connect: Sequence[str] = (),
+    ) -> Enrolment:
+        """A certificate for somebody new, or for whom the last one was revoked.
+
+        ``connect`` replaces the station's own endpoints in this enrolment.
+        """
+        validate_unit_id(name)
+        with locked(self._existing()):
+            registry = self.registry()
+            current = registry.current(holder, name)
+            if current is not None:
+                raise ConfigError(
+                    f"{holder.value} {name} is enrolled until {current.valid_to:%Y-%m-%d}; "
+                    "renew it for a new certificate, or revoke it when it is lost"
+                )
+            common_name = registry.next_common_name(holder, name)
+            return self._enrol(registry, holder, name, common_name, valid, connect)
+
+    def renew(
+        self,
+        name: str,
+        holder: Holder = Holder.UNIT,
+        valid: timedelta = CERTIFICATE_VALID,
+        connect: Sequence[str] = (),
+    ) -> Enrolment:
+        """A new certificate and key with the same rights; the old one works until it ends."""
+        with locked(self._existing()):
+            registry = self.registry()
+            current = self._current(registry, holder, name)
+            return self._enrol(registry, holder, name, current.common_name, valid, connect)
+
+    def renew_station(self, valid: timedelta = CERTIFICATE_VALID) -> None:
+        """A new certificate for the same hosts; the router takes it up by itself."""
+        with locked(self._existing()):
+            self._issue_station(self._authority(), self.registry(), valid)
+
+    def revoke(self, name: str, holder: Holder = Holder.UNIT) -> None:
+        """Take all rights from the holder's certificate; effective when the router reopens."""
+        with locked(self._existing()):
+            registry = self.registry()
+            current = self._current(registry, holder, name)
+            revoked = msgspec.structs.replace(current, revoked=self._now())
+            save_registry(self.registry_path, registry.with_entry(revoked))
+
+    def registry(self) -> Registry:
+        return load_registry(self.registry_path)
+
+    def station_identity(self) -> TlsIdentity:
+        """What the router and the station show on the bus."""
+        identity = TlsIdentity(
+            self._read("authority.pem"), self._read("station.pem"), self._read("station.key")
+        )
+        check_identity(identity)
+        return identity
+
+    def changed_at(self) -> tuple[int, int]:
+        """Changes whenever the router must read registry or station certificate again."""
+        try:
+            return (
+                self.registry_path.stat().st_mtime_ns,
+                (self._folder / "station.pem").stat().st_mtime_ns,
+            )
+        except OSError as error:
+            raise ConfigError(f"{self._folder} cannot be read: {error}") from error
+
+    def _existing(self) -> Path:
+        if not self.exists():
+            load_registry(self.registry_path)  # says what is missing
+        return self._folder
+
+    def _current(self, registry: Registry, holder: Holder, name: str) -> Entry:
+        current = registry.current(holder, name)
+        if current is None:
+            known = sorted(
+                e.name for e in registry.entries if e.holder is holder and e.revoked is None
+            )
+            listed = f"enrolled are {', '.join(known)}" if known else "none is enrolled"
+            raise ConfigError(f"there is no {holder.value} {name} with a certificate; {listed}")
+        return current
+
+    def _enrol(
+        self,
+        registry: Registry,
+        holder: Holder,
+        name: str,
+        common_name: str,
+        valid: timedelta,
+        connect: Sequence[str],
+    ) -> Enrolment:
+        authority = self._authority()
+        issued = issue(authority, common_name, holder, self._now(), valid)
+        save_registry(
+            self.registry_path, registry.with_entry(_entry(holder, name, common_name, issued))
+        )
+        identity = TlsIdentity(
+            authority.certificate_pem(), issued.certificate_pem(), issued.key_pem()
+        )
+        return Enrolment(holder, name, tuple(connect) or registry.connect, identity)
+
+    def _issue_station(self, authority: Issued, registry: Registry, valid: timedelta) -> None:
+        issued = issue(
+            authority, STATION_NAME, Holder.STATION, self._now(), valid, hosts=registry.hosts
+        )
+        write_atomically(self._folder / "station.key", issued.key_pem())
+        write_atomically(self._folder / "station.pem", issued.certificate_pem())
+        entry = _entry(Holder.STATION, STATION_NAME, STATION_NAME, issued)
+        save_registry(self.registry_path, registry.with_entry(entry))
+
+    def _authority(self) -> Issued:
+        return read_issued(self._read("authority.pem"), self._read("authority.key"))
+
+    def _read(self, name: str) -> bytes:
+        path = self._folder / name
+        try:
+            return path.read_bytes()
+        except FileNotFoundError:
+            raise ConfigError(f"{path} is missing; put it back, or restore a backup") from None
+        except OSError as error:
+            raise ConfigError(f"{path} cannot be read: {error}") from error
+
+
+def _entry(holder: Holder, name: str, common_name: str, issued: Issued) -> Entry:
+    certificate = issued.certificate
+    return Entry(
+        holder,
+        name,
+        common_name,
+        f"{certificate.serial_number:x}",
+        certificate.not_valid_before_utc,
+        certificate.not_valid_after_utc,
+    )

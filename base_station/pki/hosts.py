@@ -1,0 +1,50 @@
+"""Names and addresses under which this machine is found."""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+import socket
+
+import psutil
+
+from shared.errors import ConfigError
+
+_HOST_NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?(\.[A-Za-z0-9-]+)*")
+
+
+def own_hosts() -> tuple[str, ...]:
+    """Addresses of the network interfaces, IPv4 first, then the machine's name."""
+    found = [
+        address.address
+        for addresses in psutil.net_if_addrs().values()
+        for address in addresses
+        if address.family in (socket.AF_INET, socket.AF_INET6)
+    ]
+    usable = sorted({a for a in found if _is_reachable(a)}, key=lambda a: (":" in a, a))
+    name = socket.gethostname()
+    return (*usable, name) if _HOST_NAME.fullmatch(name) else tuple(usable)
+
+
+def require_host(host: str) -> str:
+    """Return ``host`` when a certificate can stand for it, else raise ConfigError."""
+    try:
+        return str(ipaddress.ip_address(host))
+    except ValueError:
+        if _HOST_NAME.fullmatch(host) is None or len(host) > 253:
+            raise ConfigError(
+                f"{host!r} is no host: give a name such as station.local or an address such as "
+                "192.168.1.10, without a port"
+            ) from None
+        return host
+
+
+def tls_endpoint(host: str, port: int) -> str:
+    return f"tls/[{host}]:{port}" if ":" in host else f"tls/{host}:{port}"
+
+
+def _is_reachable(text: str) -> bool:
+    if "%" in text:  # link-local with its interface
+        return False
+    address = ipaddress.ip_address(text)
+    return not (address.is_loopback or address.is_link_local)

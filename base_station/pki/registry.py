@@ -1,0 +1,102 @@
+"""Who has been issued a certificate: the file that the access rules are made from."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import msgspec
+
+from base_station.pki.files import write_atomically
+from shared.enrolment import Holder
+from shared.errors import ConfigError
+
+
+class Entry(msgspec.Struct, frozen=True):
+    """One holder's certificate; renewed, the entry is replaced, revoked, it stays."""
+
+    holder: Holder
+    name: str
+    common_name: str  # exactly one entry has it; access rules name it
+    serial: str  # hexadecimal
+    valid_from: datetime
+    valid_to: datetime
+    revoked: datetime | None = None
+
+
+class Registry(msgspec.Struct, frozen=True):
+    """``connect``: where units find this station.  ``hosts``: what its certificate stands for."""
+
+    organisation: str
+    hosts: tuple[str, ...]
+    connect: tuple[str, ...]
+    entries: tuple[Entry, ...] = ()
+
+    def current(self, holder: Holder, name: str) -> Entry | None:
+        """The holder's certificate that is not revoked."""
+        for entry in self.entries:
+            if (entry.holder, entry.name, entry.revoked) == (holder, name, None):
+                return entry
+        return None
+
+    def with_entry(self, entry: Entry) -> Registry:
+        """Add ``entry``, or put it in the place of the one with its common name."""
+        others = tuple(e for e in self.entries if e.common_name != entry.common_name)
+        return msgspec.structs.replace(self, entries=(*others, entry))
+
+    def next_common_name(self, holder: Holder, name: str) -> str:
+        """One that no certificate of this authority has had.
+
+        A revoked certificate stays valid until it expires, so a name that is enrolled again
+        gets another common name: what was stolen gains nothing from it.  ``:`` and ``#`` are
+        in no unit's name.
+        """
+        plain = name if holder is not Holder.OPERATOR else f"operator:{name}"
+        before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
+        return plain if before == 0 else f"{plain}#{before + 1}"
+
+
+def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tuple[str, ...]:
+    """A sentence for each certificate in use that has ended or ends ``within``, the first
+    to end first.
+    """
+    ending = sorted(
+        (e for e in registry.entries if e.revoked is None and e.valid_to <= now + within),
+        key=lambda entry: (entry.valid_to, entry.common_name),
+    )
+    return tuple(_expiry_sentence(entry, now) for entry in ending)
+
+
+def _expiry_sentence(entry: Entry, now: datetime) -> str:
+    if entry.holder is Holder.STATION:
+        who, command = "this station", "muster pki renew --station"
+    elif entry.holder is Holder.OPERATOR:
+        who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
+    else:
+        who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
+    if entry.valid_to <= now:
+        return f"The certificate of {who} expired on {entry.valid_to:%Y-%m-%d}: {command}"
+    days = (entry.valid_to - now).days
+    left = "in less than a day" if days < 1 else f"in {days} day{'s' if days > 1 else ''}"
+    return f"The certificate of {who} expires {left}: {command}"
+
+
+def load_registry(path: Path) -> Registry:
+    """Raises ConfigError when it is not there or damaged."""
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Registry)
+    except FileNotFoundError:
+        if path.parent.exists():
+            problem = f"{path} is missing; restore it from a backup, or move its folder away"
+        else:
+            problem = f"{path.parent} is no certificate authority; make one with `muster pki init`"
+        raise ConfigError(problem) from None
+    except OSError as error:
+        raise ConfigError(f"{path} cannot be read: {error}") from error
+    except msgspec.DecodeError as error:
+        raise ConfigError(f"{path} is damaged ({error}); restore it from a backup") from error
+
+
+def save_registry(path: Path, registry: Registry) -> None:
+    """Whole or not at all."""
+    write_atomically(path, msgspec.json.format(msgspec.json.encode(registry), indent=2) + b"\n")

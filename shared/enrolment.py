@@ -1,0 +1,190 @@
+"""The one file, or QR code, that is carried to a unit so that its station knows it.
+
+As a file it is TOML; as a QR code it is ``MUSTER1:`` and base32 of the same in compressed
+MessagePack, because a QR code packs capitals and digits best and a scanner that types like a
+keyboard gets them right.  ``read_enrolment`` takes either.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import os
+import tomllib
+import zlib
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+import msgspec
+from cryptography import x509
+from cryptography.hazmat.primitives import serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+
+from shared.errors import ConfigError
+from shared.tls import TlsIdentity, check_identity
+
+_COMPACT_PREFIX = "MUSTER1:"
+_CURVE = ec.SECP256R1()
+_MOST_BYTES = 65_536  # of a file or an unpacked code; an enrolment has about 2,000
+
+
+class Holder(Enum):
+    """What kind of participant a certificate is for."""
+
+    UNIT = "unit"
+    OPERATOR = "operator"
+    STATION = "station"
+
+
+@dataclass(frozen=True, slots=True)
+class Enrolment:
+    """Who somebody is, which station they belong to, and the proof."""
+
+    holder: Holder
+    name: str
+    connect: tuple[str, ...]  # tls/HOST:PORT of the station
+    identity: TlsIdentity
+
+    def to_toml(self) -> str:
+        connect = ", ".join(f'"{endpoint}"' for endpoint in self.connect)
+        return (
+            f"# Enrolment of {self.holder.value} {self.name}. It holds a private key: carry it "
+            "there,\n# keep no other copy, send it over nothing that others read.\n"
+            f'holder = "{self.holder.value}"\n'
+            f'name = "{self.name}"\n'
+            f"connect = [{connect}]\n"
+            f"authority = '''\n{self.identity.authority.decode()}'''\n"
+            f"certificate = '''\n{self.identity.certificate.decode()}'''\n"
+            f"private_key = '''\n{self.identity.private_key.decode()}'''\n"
+        )
+
+    def to_compact(self) -> str:
+        """Capitals, digits and a colon; about 1,200 characters."""
+        key = serialization.load_pem_private_key(self.identity.private_key, password=None)
+        if not isinstance(key, ec.EllipticCurvePrivateKey):
+            raise ConfigError("only a key on the curve P-256 fits a QR code; carry the file")
+        packed = msgspec.msgpack.encode(
+            _Compact(
+                self.holder,
+                self.name,
+                self.connect,
+                _der(self.identity.authority),
+                _der(self.identity.certificate),
+                key.private_numbers().private_value.to_bytes(32, "big"),
+            )
+        )
+        text = base64.b32encode(zlib.compress(packed, 9)).decode().rstrip("=")
+        return _COMPACT_PREFIX + text
+
+    def write(self, path: Path) -> None:
+        """Write the file, readable by its owner alone; ConfigError where one is already."""
+        try:
+            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        except FileExistsError:
+            raise ConfigError(f"{path} is there already; move it away or choose another") from None
+        except OSError as error:
+            raise ConfigError(f"{path} cannot be written: {error}") from error
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+            file.write(self.to_toml())
+
+
+class _Compact(msgspec.Struct, array_like=True):
+    holder: Holder
+    name: str
+    connect: tuple[str, ...]
+    authority: bytes
+    certificate: bytes
+    private_value: bytes
+
+
+class _Table(msgspec.Struct, forbid_unknown_fields=True):
+    holder: Holder
+    name: str
+    connect: tuple[str, ...]
+    authority: str
+    certificate: str
+    private_key: str
+
+
+def read_enrolment(path: Path) -> Enrolment:
+    """Raises ConfigError, one sentence that names the file and what to do."""
+    try:
+        with path.open("rb") as file:
+            text = file.read(_MOST_BYTES).decode()
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: there is no such enrolment file") from None
+    except OSError as error:
+        raise ConfigError(f"{path}: the enrolment cannot be read: {error}") from error
+    except UnicodeDecodeError:
+        raise ConfigError(f"{path}: this is no enrolment, nor text at all") from None
+    try:
+        return parse_enrolment(text)
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}") from error
+
+
+def parse_enrolment(text: str) -> Enrolment:
+    """From a file's text or what a QR code says.  Raises ConfigError, one sentence."""
+    stripped = text.strip()
+    if stripped.upper().startswith(_COMPACT_PREFIX):
+        enrolment = _from_compact(stripped.upper().removeprefix(_COMPACT_PREFIX))
+    else:
+        enrolment = _from_toml(text)
+    if not enrolment.connect:
+        raise ConfigError("the enrolment names no station to connect to; enrol again")
+    check_identity(enrolment.identity)
+    return enrolment
+
+
+def _from_toml(text: str) -> Enrolment:
+    try:
+        table = msgspec.convert(tomllib.loads(text), _Table)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(
+            f"this is no enrolment, or only a part of one ({error}); copy the whole file again"
+        ) from error
+    except msgspec.ValidationError as error:
+        raise ConfigError(
+            f"this is no enrolment, or not all of one ({error}); copy the whole file again"
+        ) from error
+    identity = TlsIdentity(
+        table.authority.encode(), table.certificate.encode(), table.private_key.encode()
+    )
+    return Enrolment(table.holder, table.name, table.connect, identity)
+
+
+def _from_compact(text: str) -> Enrolment:
+    try:
+        squeezed = base64.b32decode(text + "=" * (-len(text) % 8))
+        unpacker = zlib.decompressobj()
+        packed = unpacker.decompress(squeezed, _MOST_BYTES)
+        if not unpacker.eof:
+            raise ConfigError("the scanned enrolment is cut short; scan the code again")
+        compact = msgspec.msgpack.decode(packed, type=_Compact)
+        key = ec.derive_private_key(int.from_bytes(compact.private_value, "big"), _CURVE)
+        identity = TlsIdentity(
+            _pem(compact.authority), _pem(compact.certificate), private_key_pem(key)
+        )
+    except (binascii.Error, zlib.error, msgspec.DecodeError, ValueError) as error:
+        raise ConfigError(
+            "the scanned enrolment is damaged or cut short; scan the code again"
+        ) from error
+    return Enrolment(compact.holder, compact.name, compact.connect, identity)
+
+
+def private_key_pem(key: ec.EllipticCurvePrivateKey) -> bytes:
+    """PKCS #8, not encrypted: a unit starts with nobody there to type a passphrase."""
+    return key.private_bytes(
+        serialization.Encoding.PEM,
+        serialization.PrivateFormat.PKCS8,
+        serialization.NoEncryption(),
+    )
+
+
+def _der(pem: bytes) -> bytes:
+    return x509.load_pem_x509_certificate(pem).public_bytes(serialization.Encoding.DER)
+
+
+def _pem(der: bytes) -> bytes:
+    return x509.load_der_x509_certificate(der).public_bytes(serialization.Encoding.PEM)

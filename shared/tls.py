@@ -1,0 +1,80 @@
+"""Who a program is on a bus with mutual TLS, and what can be wrong with that.
+
+Everything is PEM in memory: an enrolment is one file, and a private key is never written a
+second time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from cryptography import x509
+from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives import serialization
+from cryptography.x509.oid import NameOID
+
+from shared.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class TlsIdentity:
+    """A certificate, its key, and the authority whose certificates it trusts."""
+
+    authority: bytes
+    certificate: bytes
+    private_key: bytes = field(repr=False)
+
+    def common_name(self) -> str:
+        """Whom the certificate names.  Raises ConfigError when it cannot be read."""
+        return common_name(parse_certificate(self.certificate, "certificate"))
+
+
+def check_identity(identity: TlsIdentity) -> None:
+    """Raises ConfigError, one sentence, when the three parts do not belong together."""
+    authority = parse_certificate(identity.authority, "authority's certificate")
+    certificate = parse_certificate(identity.certificate, "certificate")
+    try:
+        key = serialization.load_pem_private_key(identity.private_key, password=None)
+    except (ValueError, TypeError) as error:
+        raise ConfigError("the private key is damaged; enrol again") from error
+    if key.public_key() != certificate.public_key():
+        raise ConfigError("the private key belongs to another certificate; enrol again")
+    try:
+        certificate.verify_directly_issued_by(authority)
+    except (ValueError, TypeError, InvalidSignature) as error:
+        raise ConfigError(
+            f"the certificate of {common_name(certificate)} was not issued by the authority "
+            f"beside it ({common_name(authority)}); enrol again"
+        ) from error
+
+
+def validity_problem(identity: TlsIdentity, now: datetime) -> str | None:
+    """A sentence when the certificate is not valid at ``now`` (aware); None when it is."""
+    certificate = parse_certificate(identity.certificate, "certificate")
+    clock = f"the clock here says {now:%Y-%m-%d %H:%M} UTC"
+    if now < certificate.not_valid_before_utc:
+        return (
+            f"the certificate of {common_name(certificate)} is not valid before "
+            f"{certificate.not_valid_before_utc:%Y-%m-%d %H:%M} UTC and {clock}: set the clock"
+        )
+    if now > certificate.not_valid_after_utc:
+        return (
+            f"the certificate of {common_name(certificate)} expired on "
+            f"{certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC and {clock}: "
+            "renew it at the station with `muster pki renew`"
+        )
+    return None
+
+
+def parse_certificate(pem: bytes, what: str) -> x509.Certificate:
+    """Raises ConfigError that names ``what`` when the bytes are no certificate."""
+    try:
+        return x509.load_pem_x509_certificate(pem)
+    except ValueError as error:
+        raise ConfigError(f"the {what} is damaged; enrol again") from error
+
+
+def common_name(certificate: x509.Certificate) -> str:
+    names = certificate.subject.get_attributes_for_oid(NameOID.COMMON_NAME)
+    return str(names[0].value) if names else "an unnamed holder"
