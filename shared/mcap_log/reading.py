@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import BinaryIO
 
@@ -19,9 +19,10 @@ import zstandard
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
+from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.schemas import DERIVED
-from shared.mcap_log.writing import SegmentInfo, SegmentState, segment_paths
+from shared.mcap_log.writing import SegmentInfo, SegmentState, segment_began_s, segment_paths
 
 LogRecord = tuple[int, str, bytes]  # log time, key, payload
 
@@ -307,14 +308,29 @@ def read_log(
 ) -> Iterator[LogRecord]:
     """The records of a folder of segments in the order of writing: ``(t_ns, key, payload)``.
 
-    From ``start_ns`` until before ``end_ns``.  ``on_damage`` hears in words of each part that
-    could not be read.  Raises LogError when a segment cannot be opened.
+    From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
+    next.  ``on_damage`` hears in words of each part that could not be read.  Raises LogError
+    when a segment cannot be opened.
     """
-    for path in segment_paths(folder):
+    for path in _within(segment_paths(folder), start_ns, end_ns):
         with SegmentReader(path) as segment:
             yield from segment.records(start_ns, end_ns, keys)
             for note in segment.damage:
                 on_damage(note)
+
+
+def _within(paths: list[Path], start_ns: int | None, end_ns: int | None) -> list[Path]:
+    """The segments that can have records of the window, by the times in their names."""
+    return [
+        path
+        for path, following in zip_longest(paths, paths[1:])
+        if (end_ns is None or segment_began_s(path) * NS_PER_S < end_ns)
+        and (  # the second in which the following one began is the last of this one
+            start_ns is None
+            or following is None
+            or (segment_began_s(following) + 1) * NS_PER_S > start_ns
+        )
+    ]
 
 
 def _unpacked(chunk: bytes) -> bytes:

@@ -19,7 +19,8 @@ from shared.mcap_log.schemas import descriptor_set, sender_time_and_sequence, wi
 
 _PROFILE = "muster"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
-_NUMBER = re.compile(r"(\d{6,})-.*\.mcap(?:\.torn)?")
+_TIME = "%Y%m%dT%H%M%SZ"
+_NAME = re.compile(r"(\d{6,})-(\d{8}T\d{6}Z)\.mcap(?:\.torn\d*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +238,7 @@ class SegmentWriter:
 
     def _begin_segment(self, t_ns: int) -> None:
         self._end_segment()
-        began = datetime.fromtimestamp(t_ns // NS_PER_S, UTC).strftime("%Y%m%dT%H%M%SZ")
+        began = datetime.fromtimestamp(t_ns // NS_PER_S, UTC).strftime(_TIME)
         path = self._folder / f"{self._next_number:06d}-{began}.mcap"
         self._segment = Segment(path, self._policy.chunk_bytes)
         self._next_number += 1
@@ -259,6 +260,14 @@ def segment_paths(folder: Path) -> list[Path]:
     )
 
 
+def segment_began_s(path: Path) -> int:
+    """The time of a segment's first record in whole seconds since 1970, from its name."""
+    match = _NAME.fullmatch(path.name)
+    assert match is not None
+    return int(datetime.strptime(match.group(2), _TIME).replace(tzinfo=UTC).timestamp())
+
+
 def _number_of(path: Path) -> int:
-    match = _NUMBER.fullmatch(path.name)
+    """0 where the name is not that of a segment."""
+    match = _NAME.fullmatch(path.name)
     return int(match.group(1)) if match else 0

@@ -193,3 +193,32 @@ def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
 def test_a_folder_that_is_not_there_has_no_records(tmp_path: Path) -> None:
     assert list(read_log(tmp_path / "nowhere")) == []
     assert recover_log(tmp_path / "nowhere") == []
+
+
+def test_a_window_opens_only_the_segments_that_it_needs(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path, SegmentPolicy(segment_s=10.0))
+    for tenth in range(400):
+        writer.write(T0_NS + tenth * NS_PER_S // 10, KEY, bytes([tenth // 256, tenth % 256]))
+    writer.close()
+    paths = segment_paths(tmp_path)
+    for unneeded in (paths[0], paths[3]):
+        unneeded.write_bytes(b"not to be read")
+    damage: list[str] = []
+    window = read_log(
+        tmp_path, T0_NS + 11 * NS_PER_S, T0_NS + 29 * NS_PER_S, on_damage=damage.append
+    )
+    assert [t_ns for t_ns, _, _ in window] == [
+        T0_NS + tenth * NS_PER_S // 10 for tenth in range(110, 290)
+    ]
+    assert damage == []
+
+
+def test_files_that_are_no_segments_are_left_alone(tmp_path: Path) -> None:
+    for name in ("notes.txt", "recording.mcap", "000001-sometime.mcap"):
+        (tmp_path / name).write_bytes(b"mine")
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1")
+    writer.close()
+    assert recover_log(tmp_path) == []
+    assert on_disk(tmp_path) == [b"1"]
+    assert (tmp_path / "recording.mcap").read_bytes() == b"mine"

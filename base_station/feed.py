@@ -1,0 +1,159 @@
+"""Where the station's records come from: the bus, or a log.
+
+A record is ``(t_ns, key, payload)`` with station time; ``base_station.events.event_of`` makes
+the event of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path
+from threading import Condition, Lock
+
+from shared.channels import Qos, parse_key
+from shared.clock import Clock
+from shared.errors import UnknownChannelError
+from shared.mcap_log import LogRecord, read_log
+
+_RECORDS_MAX = 100_000
+_BYTES_MAX = 64 * 1024 * 1024
+
+
+class SteadyClock:
+    """A clock whose UTC never goes back and never stands still.
+
+    It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
+    monotonic time until the other has caught up.  From any thread.
+    """
+
+    def __init__(self, clock: Clock, not_before_ns: int = 0) -> None:
+        """``not_before_ns``: UTC that was given out before this program started."""
+        self._clock = clock
+        self._lock = Lock()
+        self._offset_ns = not_before_ns - clock.monotonic_ns()
+
+    def monotonic_ns(self) -> int:
+        return self._clock.monotonic_ns()
+
+    def utc_ns(self) -> int:
+        with self._lock:
+            monotonic_ns = self._clock.monotonic_ns()
+            self._offset_ns = max(self._offset_ns, self._clock.utc_ns() - monotonic_ns)
+            return monotonic_ns + self._offset_ns
+
+
+class LiveFeed:
+    """A queue from the bus to the one thread that steps the pipeline.
+
+    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  Records
+    come out in the order in which they got in, and station time never goes back in that order.
+    The queue is bounded: beyond it live data is dropped, and counted in ``overflowed``; alerts
+    are dropped only at twice the bound.
+    """
+
+    def __init__(
+        self, clock: Clock, records_max: int = _RECORDS_MAX, bytes_max: int = _BYTES_MAX
+    ) -> None:
+        """``clock`` gives station time: its UTC must not go back (``SteadyClock``)."""
+        self._clock = clock
+        self._records_max = records_max
+        self._bytes_max = bytes_max
+        self._changed = Condition()
+        self._queue: list[LogRecord] = []
+        self._bytes = 0
+        self._woken = False
+        self._closed = False
+        self._overflowed = 0
+
+    @property
+    def overflowed(self) -> int:
+        """Messages that were dropped because they came faster than they were taken."""
+        return self._overflowed
+
+    def offer(self, key: str, payload: bytes) -> None:
+        """What a bus calls: stamps the message with station time and returns at once."""
+        with self._changed:
+            if self._has_room(1.0) or (_is_alert(key) and self._has_room(2.0)):
+                self._append(key, payload)
+            else:
+                self._overflowed += 1
+
+    def deliver(self, key: str, payload: bytes) -> None:
+        """As ``offer``, for data that can wait: returns when half the queue is free again."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._has_room(0.5) or self._closed)
+            self._append(key, payload)
+
+    def take(self, timeout_s: float) -> list[LogRecord]:
+        """Everything that came, in order; waits until something comes, ``wake`` or the timeout."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._queue or self._woken, timeout_s)
+            self._woken = False
+            records, self._queue = self._queue, []
+            self._bytes = 0
+            self._changed.notify_all()
+            return records
+
+    def wake(self) -> None:
+        """End the wait of ``take``, from any thread."""
+        with self._changed:
+            self._woken = True
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Nobody takes any more: let go of everyone in ``deliver``."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    def _has_room(self, share: float) -> bool:
+        return (
+            len(self._queue) < share * self._records_max and self._bytes < share * self._bytes_max
+        )
+
+    def _append(self, key: str, payload: bytes) -> None:
+        self._queue.append((self._clock.utc_ns(), key, payload))
+        self._bytes += len(payload)
+        if len(self._queue) == 1:
+            self._changed.notify_all()
+
+
+class LogFeed:
+    """The records of a log, from every segment in turn, the one being written included.
+
+    Any thread may ask; each iterator is for one thread.  What comes is what was recorded, in
+    the order in which it was recorded, which is the order in which it was stepped.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        flush: Callable[[], object] = lambda: None,
+        on_damage: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """``flush`` brings what is still in memory to the disk (``Recorder.flush``); ``on_damage``
+        hears in words of each part that cannot be read.
+        """
+        self._folder = folder
+        self._flush = flush
+        self._on_damage = on_damage
+
+    def records(
+        self,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        keys: Collection[str] | None = None,
+    ) -> Iterator[LogRecord]:
+        """From station time ``start_ns`` until before ``end_ns``, as it stands at the first step.
+
+        Raises LogError when a segment cannot be opened.
+        """
+        self._flush()
+        return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
+
+
+def _is_alert(key: str) -> bool:
+    try:
+        return parse_key(key)[1].qos is Qos.ALERT
+    except UnknownChannelError:
+        return False

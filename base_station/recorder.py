@@ -1,0 +1,225 @@
+"""The always-on recorder: everything that the station hears and decides goes through here first.
+
+A thread of its own writes, so that a slow disk does not hold up the live picture.  What must
+not be lost (alarms, actions, alerts) is waited for.
+"""
+
+from __future__ import annotations
+
+import logging
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from threading import Condition, Thread
+
+from shared.clock import NS_PER_S, Clock
+from shared.folder_lock import FolderLock
+from shared.mcap_log import (
+    LogRecord,
+    Recovery,
+    SegmentInfo,
+    SegmentPolicy,
+    SegmentReader,
+    SegmentWriter,
+    recover_log,
+    segment_paths,
+)
+
+logger = logging.getLogger(__name__)
+
+LOG_FOLDER = "log"
+_TURN_S = 0.05
+_LONGEST_WAIT_S = 2.0  # for the disk, by whoever writes something urgent
+_QUEUED_BYTES_MAX = 64 * 1024 * 1024
+_LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
+_LITTLE_FREE_BYTES = 1_000_000_000
+
+SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
+
+
+def _ignore(_: SegmentInfo, __: str) -> None:
+    """Nobody keeps a list of segments."""
+
+
+class Recorder:
+    """Holds the data folder from making until ``close``; one station a folder.
+
+    ``write`` and ``flush`` may be called from any thread; records are kept in the order of the
+    calls.  Neither raises for the disk: ``problem`` tells what is wrong, records wait in
+    memory meanwhile, and what memory cannot hold is counted in ``lost``.
+    """
+
+    def __init__(
+        self,
+        data: Path,
+        clock: Clock,
+        policy: SegmentPolicy | None = None,
+        on_segment: SegmentHandler = _ignore,
+    ) -> None:
+        """Takes the folder, mends what a crash left torn, and begins to record.
+
+        ``on_segment`` is called with every segment of the log before this returns, and with
+        each further one when it is complete, then in the recorder's thread.  Raises
+        DataFolderInUseError, or LogError when the folder cannot be used.
+        """
+        self._clock = clock
+        self._on_segment = on_segment
+        policy = policy or SegmentPolicy()
+        self.folder = data / LOG_FOLDER
+        self._lock = FolderLock(data)
+        try:
+            self.recoveries: tuple[Recovery, ...] = tuple(recover_log(self.folder, policy))
+            self._segments = self._look_up_segments()
+            self._writer = SegmentWriter(self.folder, policy, self._segment_closed)
+        except BaseException:
+            self._lock.close()
+            raise
+        self._news = Condition()
+        self._queue: list[LogRecord] = []
+        self._queued_bytes = 0
+        self._accepted = 0  # records since the start
+        self._written = 0  # how many of them the writer has
+        self._flushed = 0  # how many of them a flush that was asked for has dealt with
+        self._flush_asked = False
+        self._closing = False
+        self._refused = 0
+        self._failure = ""
+        self._disk_free_bytes = shutil.disk_usage(self.folder).free
+        self._thread = Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    # ---- from any thread
+
+    def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
+        """Keep a record with station time ``t_ns``; False: it is lost.
+
+        Returns at once, or, where it is urgent, when it is on the disk; a disk that hangs is not
+        waited for longer than two seconds.
+        """
+        with self._news:
+            if self._failure or self._queued_bytes > _QUEUED_BYTES_MAX:
+                self._refused += 1
+                return False
+            self._queue.append((t_ns, key, payload))
+            self._queued_bytes += len(payload)
+            self._accepted += 1
+        if urgent:
+            self.flush()
+        return True
+
+    def flush(self) -> bool:
+        """Bring to the disk what was written so far; whether it is there now."""
+        with self._news:
+            goal = self._accepted
+            self._flush_asked = True
+            self._news.notify_all()
+            done = self._news.wait_for(
+                lambda: self._flushed >= goal or bool(self._failure), _LONGEST_WAIT_S
+            )
+        return done and not self._failure and not self._writer.problem
+
+    @property
+    def problem(self) -> str:
+        """What is wrong with the log, as a sentence for a person; empty: nothing."""
+        if self._failure:
+            return self._failure
+        if self._refused:
+            return f"the disk does not keep up: {self._refused} log records are lost"
+        if self._writer.problem:
+            return self._writer.problem
+        if self._disk_free_bytes < _LITTLE_FREE_BYTES:
+            free_mb = self._disk_free_bytes / 1e6
+            return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
+        return ""
+
+    @property
+    def lost(self) -> int:
+        return self._refused + self._writer.lost
+
+    @property
+    def disk_free_bytes(self) -> int:
+        """As it was some seconds ago at most."""
+        return self._disk_free_bytes
+
+    @property
+    def log_bytes(self) -> int:
+        return sum(segment.size_bytes for segment in self.segments())
+
+    def segments(self) -> tuple[SegmentInfo, ...]:
+        """What the log consists of, in order; the last one may be open."""
+        current = self._writer.current()
+        return (*self._segments, *([] if current is None else [current]))
+
+    def close(self) -> None:
+        """Write what is left, end the segment in order, and let go of the folder."""
+        with self._news:
+            self._closing = True
+            self._news.notify_all()
+        self._thread.join()
+        self._lock.close()
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        try:
+            self._record()
+        except Exception as error:
+            logger.exception("the recorder stopped")
+            self._failure = f"the recorder stopped and nothing is logged ({error!r}): restart it"
+            with self._news:
+                self._news.notify_all()
+
+    def _record(self) -> None:
+        last_t_ns = 0
+        seen_ns = looked_ns = self._clock.monotonic_ns()
+        closing = False
+        while not closing:
+            records, flush, closing = self._take()
+            now_ns = self._clock.monotonic_ns()
+            for t_ns, key, payload in records:
+                self._writer.write(t_ns, key, payload)
+                last_t_ns, seen_ns = t_ns, now_ns
+            if flush:
+                self._writer.flush()
+            else:  # log time goes on although nothing comes
+                self._writer.advance(last_t_ns + now_ns - seen_ns)
+            self._settle(len(records), flush)
+            if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
+                looked_ns = now_ns
+                self._disk_free_bytes = shutil.disk_usage(self.folder).free
+        self._writer.close()
+
+    def _take(self) -> tuple[list[LogRecord], bool, bool]:
+        """What came, whether it is to be flushed, and whether it is the last."""
+        with self._news:
+            self._news.wait_for(lambda: self._flush_asked or self._closing, _TURN_S)
+            records, self._queue = self._queue, []
+            self._queued_bytes = 0
+            flush, self._flush_asked = self._flush_asked, False
+            return records, flush, self._closing
+
+    def _settle(self, count: int, flushed: bool) -> None:
+        with self._news:
+            self._written += count
+            if flushed:
+                self._flushed = self._written
+                self._news.notify_all()
+
+    def _segment_closed(self, info: SegmentInfo) -> None:
+        self._segments = (*self._segments, info)
+        self._tell(info, "")
+
+    def _tell(self, info: SegmentInfo, note: str) -> None:
+        try:
+            self._on_segment(info, note)
+        except Exception:
+            logger.exception("segment %s is not in the list of segments", info.path.name)
+
+    def _look_up_segments(self) -> tuple[SegmentInfo, ...]:
+        notes = {recovery.path: str(recovery) for recovery in self.recoveries}
+        segments = []
+        for path in segment_paths(self.folder):
+            with SegmentReader(path) as reader:
+                segments.append(reader.info())
+            self._tell(segments[-1], notes.get(path, ""))
+        return tuple(segments)

@@ -1,0 +1,41 @@
+"""One program at a time for a folder; the system lets go when the program dies."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+from shared.errors import DataFolderInUseError, LogError
+
+_NAME = "lock"
+
+
+class FolderLock:
+    """Held from making until ``close``."""
+
+    def __init__(self, folder: Path) -> None:
+        """Makes the folder where it is missing.
+
+        Raises DataFolderInUseError, which names the process that holds it, or LogError when the
+        folder cannot be used at all.
+        """
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._descriptor = os.open(folder / _NAME, os.O_RDWR | os.O_CREAT, 0o640)
+        except OSError as error:
+            raise LogError(f"the data folder {folder} cannot be used: {error.strerror}") from error
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            holder = os.pread(self._descriptor, 20, 0).decode("ascii", "replace").strip()
+            os.close(self._descriptor)
+            raise DataFolderInUseError(
+                f"the data folder {folder} is in use by process {holder or 'unknown'}: stop that "
+                "one, or give this one another folder"
+            ) from error
+        os.ftruncate(self._descriptor, 0)
+        os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
+
+    def close(self) -> None:
+        os.close(self._descriptor)

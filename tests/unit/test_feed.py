@@ -1,0 +1,129 @@
+"""Feeds: station time, order, bounds, and the log as it was recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Thread
+
+from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from shared.channels import EVENT, POSITION
+from shared.clock import NS_PER_S, ManualClock
+from shared.mcap_log import SegmentWriter
+
+KEY = POSITION.key("anna")
+ALERT = EVENT.key("anna")
+DAY_NS = 86_400 * NS_PER_S
+
+
+class JumpingClock(ManualClock):
+    """A clock whose UTC a person sets."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.set_by_ns = 0
+
+    def utc_ns(self) -> int:
+        return super().utc_ns() + self.set_by_ns
+
+
+def test_station_time_goes_on_at_the_same_rate_when_utc_is_set_back() -> None:
+    machine = JumpingClock()
+    clock = SteadyClock(machine)
+    before_ns = clock.utc_ns()
+    machine.set_by_ns = -DAY_NS
+    machine.advance(2.0)
+    assert clock.utc_ns() == before_ns + 2 * NS_PER_S
+
+
+def test_station_time_follows_utc_forwards() -> None:
+    machine = JumpingClock()
+    clock = SteadyClock(machine)
+    machine.set_by_ns = DAY_NS
+    assert clock.utc_ns() == machine.utc_ns()
+
+
+def test_station_time_goes_on_behind_what_an_earlier_run_gave_out() -> None:
+    machine = JumpingClock()
+    earlier_ns = machine.utc_ns() + DAY_NS
+    clock = SteadyClock(machine, not_before_ns=earlier_ns)
+    machine.advance(1.0)
+    assert clock.utc_ns() == earlier_ns + NS_PER_S
+
+
+def test_records_come_out_in_order_with_station_time() -> None:
+    machine = JumpingClock()
+    feed = LiveFeed(SteadyClock(machine))
+    t0_ns = machine.utc_ns()
+    feed.offer(KEY, b"1")
+    machine.advance(1.0)
+    machine.set_by_ns = -DAY_NS
+    feed.offer(KEY, b"2")
+    assert feed.take(0.0) == [(t0_ns, KEY, b"1"), (t0_ns + NS_PER_S, KEY, b"2")]
+    assert feed.take(0.0) == []
+
+
+def test_take_waits_for_a_message_from_another_thread() -> None:
+    feed = LiveFeed(ManualClock())
+    sender = Thread(target=feed.offer, args=(KEY, b"1"))
+    sender.start()
+    assert [payload for _, _, payload in feed.take(60.0)] == [b"1"]
+    sender.join()
+
+
+def test_wake_ends_the_wait_even_if_it_came_first() -> None:
+    feed = LiveFeed(ManualClock())
+    feed.wake()
+    assert feed.take(60.0) == []
+
+
+def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() -> None:
+    feed = LiveFeed(ManualClock(), records_max=3)
+    for number in range(5):
+        feed.offer(KEY, bytes([number]))
+    for number in range(5):
+        feed.offer(ALERT, bytes([number]))
+    taken = feed.take(0.0)
+    assert [key for _, key, _ in taken] == [KEY] * 3 + [ALERT] * 3
+    assert feed.overflowed == 4
+    feed.offer(KEY, b"")
+    assert len(feed.take(0.0)) == 1
+
+
+def test_the_bound_holds_for_bytes_too() -> None:
+    feed = LiveFeed(ManualClock(), bytes_max=100)
+    for _ in range(10):
+        feed.offer("elsewhere", bytes(60))
+    assert len(feed.take(0.0)) == 2
+    assert feed.overflowed == 8
+
+
+def test_what_can_wait_leaves_half_the_queue_to_what_is_live() -> None:
+    feed = LiveFeed(ManualClock(), records_max=4)
+    feed.deliver(KEY, b"old 1")
+    feed.deliver(KEY, b"old 2")
+    waiting = Thread(target=feed.deliver, args=(KEY, b"old 3"))
+    waiting.start()
+    feed.offer(KEY, b"live")
+    assert [payload for _, _, payload in feed.take(0.0)] == [b"old 1", b"old 2", b"live"]
+    waiting.join()
+    assert [payload for _, _, payload in feed.take(60.0)] == [b"old 3"]
+    assert feed.overflowed == 0
+
+
+def test_a_closed_feed_lets_go_of_who_waits() -> None:
+    feed = LiveFeed(ManualClock(), records_max=2)
+    feed.deliver(KEY, b"")
+    waiting = Thread(target=feed.deliver, args=(KEY, b""))
+    waiting.start()
+    feed.close()
+    waiting.join()
+
+
+def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for second in range(10):
+        writer.write(second * NS_PER_S, KEY if second % 2 else ALERT, bytes([second]))
+    feed = LogFeed(tmp_path, writer.flush)
+    assert [payload[0] for _, _, payload in feed.records()] == list(range(10))
+    window = feed.records(3 * NS_PER_S, 8 * NS_PER_S, {KEY})
+    assert [payload[0] for _, _, payload in window] == [3, 5, 7]

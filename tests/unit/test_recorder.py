@@ -1,0 +1,125 @@
+"""The recorder: always on, one a folder, nothing lost without being told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from base_station.feed import LogFeed
+from base_station.recorder import LOG_FOLDER, Recorder
+from shared.channels import POSITION
+from shared.clock import NS_PER_S, SystemClock
+from shared.errors import DataFolderInUseError
+from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentState, SegmentWriter, read_log
+
+KEY = POSITION.key("anna")
+T0_NS = 1_700_000_000 * NS_PER_S
+
+
+@contextmanager
+def recording(data: Path, segment_s: float = 900.0) -> Iterator[Recorder]:
+    recorder = Recorder(data, SystemClock(), SegmentPolicy(segment_s=segment_s))
+    yield recorder
+    recorder.close()
+
+
+def payloads(data: Path) -> list[bytes]:
+    return [payload for _, _, payload in read_log(data / LOG_FOLDER)]
+
+
+def test_an_urgent_record_is_on_the_disk_when_write_returns(tmp_path: Path) -> None:
+    with recording(tmp_path) as recorder:
+        assert recorder.write(T0_NS, KEY, b"1")
+        assert recorder.write(T0_NS, KEY, b"alarm", urgent=True)
+        assert payloads(tmp_path) == [b"1", b"alarm"]
+
+
+def test_what_is_in_memory_can_be_read_back_at_once(tmp_path: Path) -> None:
+    with recording(tmp_path) as recorder:
+        feed = LogFeed(recorder.folder, recorder.flush)
+        for number in range(1000):
+            recorder.write(T0_NS + number, KEY, number.to_bytes(2, "big"))
+        assert len(list(feed.records())) == 1000
+
+
+def test_closing_writes_what_is_left(tmp_path: Path) -> None:
+    with recording(tmp_path) as recorder:
+        recorder.write(T0_NS, KEY, b"1")
+    assert payloads(tmp_path) == [b"1"]
+
+
+def test_a_second_station_on_the_folder_is_refused(tmp_path: Path) -> None:
+    with recording(tmp_path), pytest.raises(DataFolderInUseError, match="in use by process"):
+        Recorder(tmp_path, SystemClock())
+    with recording(tmp_path):
+        pass
+
+
+def test_segments_are_told_of_when_they_are_complete(tmp_path: Path) -> None:
+    told: list[tuple[SegmentInfo, str]] = []
+    recorder = Recorder(
+        tmp_path,
+        SystemClock(),
+        SegmentPolicy(segment_s=10.0),
+        on_segment=lambda info, note: told.append((info, note)),
+    )
+    for second in range(15):
+        recorder.write(T0_NS + second * NS_PER_S, KEY, b"")
+    recorder.flush()
+    assert [info.messages for info, _ in told] == [10]
+    assert [info.state for info in recorder.segments()] == [SegmentState.CLOSED, SegmentState.OPEN]
+    recorder.close()
+    assert [info.messages for info, _ in told] == [10, 5]
+
+    told.clear()
+    Recorder(tmp_path, SystemClock(), on_segment=lambda *one: told.append(one)).close()
+    assert [(info.messages, note) for info, note in told] == [(10, ""), (5, "")]
+
+
+def test_a_torn_segment_is_mended_at_the_start_and_told_of(tmp_path: Path) -> None:
+    torn = SegmentWriter(tmp_path / LOG_FOLDER)
+    torn.write(T0_NS, KEY, b"1", urgent=True)
+    notes: list[str] = []
+    recorder = Recorder(tmp_path, SystemClock(), on_segment=lambda _, note: notes.append(note))
+    assert [recovery.messages for recovery in recorder.recoveries] == [1]
+    assert "1 records kept" in notes[0]
+    recorder.write(T0_NS + 1, KEY, b"2")
+    recorder.close()
+    assert payloads(tmp_path) == [b"1", b"2"]
+
+
+def test_a_list_of_segments_that_fails_stops_nothing(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    def failing(info: SegmentInfo, note: str) -> None:
+        raise ValueError("no list")
+
+    recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(segment_s=1.0), failing)
+    for second in range(5):
+        recorder.write(T0_NS + second * NS_PER_S, KEY, bytes([second]))
+    recorder.close()
+    assert len(payloads(tmp_path)) == 5
+    assert "not in the list" in caplog.text
+
+
+def test_a_recorder_that_fails_says_so_and_counts_what_it_refuses(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path, SystemClock())
+    recorder.write("no time", KEY, b"")  # type: ignore[arg-type]  # a bug
+    assert not recorder.flush()
+    assert "the recorder stopped" in recorder.problem
+    assert not recorder.write(T0_NS, KEY, b"")
+    assert recorder.lost >= 1
+    recorder.close()
+
+
+def test_little_room_on_the_disk_is_a_problem(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with recording(tmp_path) as recorder:
+        assert recorder.problem == ""
+    monkeypatch.setattr("base_station.recorder._LITTLE_FREE_BYTES", 1 << 62)
+    with recording(tmp_path) as recorder:
+        assert "MB are free for the log" in recorder.problem
