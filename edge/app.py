@@ -47,17 +47,20 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
         held.callback(source.close)
         folder = DataFolder(config.data / config.unit)
         held.callback(folder.close)
-        agent = _compose(config, folder, source, open_bus, speed=config.speed if paced else None)
+        agent = compose_agent(
+            config, folder, source, open_bus, speed=config.speed if paced else None
+        )
         agent.run(stop, for_s=for_s)
 
 
-def _compose(
+def compose_agent(
     config: EdgeConfig,
     folder: DataFolder,
     source: Source,
     open_bus: Callable[[], Bus],
     speed: float | None,
 ) -> Agent:
+    """The agent and its threads; ``speed`` None plays a recording without waiting."""
     clock = SystemClock()
     spool, damaged = open_spool(
         folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)

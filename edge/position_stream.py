@@ -30,6 +30,8 @@ class PositionStream:
         self._pressures: list[tuple[int, float]] = []
         self._turned_at_m = (0.0, 0.0)
         self._heading_rad = 0.0
+        self._quality = Quality.UNKNOWN
+        self._reasons = Reason.NONE
         self.rows_dropped = 0  # rows that were no numbers
         self.floors_climbed = 0
 
@@ -55,13 +57,37 @@ class PositionStream:
         self.rows_dropped += int(len(track) - usable.sum())
         rows = np.flatnonzero(usable)
         picked = rows[self._times.picks(track.t_ns[rows])].tolist()
-        positions = [self._position(track, row, timeline) for row in picked]
+        doubts = self._doubts(track, picked)
+        positions = [
+            self._position(track, row, timeline, doubt)
+            for row, doubt in zip(picked, doubts, strict=True)
+        ]
         if self._pressures:
             oldest_ns = self._pressures[-1][0] - _PRESSURE_KEPT_NS
             self._pressures = [pair for pair in self._pressures if pair[0] >= oldest_ns]
         return positions
 
-    def _position(self, track: TrackBatch, row: int, timeline: Timeline) -> Position:
+    def _doubts(self, track: TrackBatch, picked: list[int]) -> list[tuple[Quality, Reason]]:
+        """For each picked row the worst of the rows since the one picked before it.
+
+        What lasts for a few samples would otherwise fall between two positions.
+        """
+        doubts = []
+        start = 0
+        for stop in [*(row + 1 for row in picked), len(track)]:
+            rows = slice(start, stop)
+            worst = int(track.quality[rows].max(initial=int(Quality.UNKNOWN)))
+            quality = max(self._quality, Quality(worst))
+            reasons = self._reasons | Reason(int(np.bitwise_or.reduce(track.reasons[rows])))
+            doubts.append((quality, reasons))
+            self._quality, self._reasons = Quality.UNKNOWN, Reason.NONE
+            start = stop
+        self._quality, self._reasons = doubts.pop()  # goes with the next position
+        return doubts
+
+    def _position(
+        self, track: TrackBatch, row: int, timeline: Timeline, doubt: tuple[Quality, Reason]
+    ) -> Position:
         t_ns = int(track.t_ns[row])
         north_m, east_m, down_m = track.position_n_m[row].tolist()
         velocity_mps = track.velocity_n_mps[row].tolist()
@@ -87,8 +113,8 @@ class PositionStream:
             distance_m=float(track.distance_m[row]),
             pressure_pa=self._pressure_at(t_ns),
             stationary=bool(track.stationary[row]),
-            quality=Quality(int(track.quality[row])),
-            reasons=Reason(int(track.reasons[row])),
+            quality=doubt[0],
+            reasons=doubt[1],
         )
 
     def _turn(self, north_m: float, east_m: float) -> None:

@@ -18,7 +18,10 @@ class Timeline:
     speed: float = 1.0
 
     def to_mono_ns(self, t_ns: int) -> int:
-        return self.mono_origin_ns + int((t_ns - self.source_origin_ns) / self.speed)
+        elapsed_ns = t_ns - self.source_origin_ns
+        if self.speed != 1.0:
+            elapsed_ns = round(elapsed_ns / self.speed)
+        return self.mono_origin_ns + elapsed_ns
 
 
 class Pacer:

@@ -27,6 +27,7 @@ from shared.messages import (
     Activity,
     EventKind,
     GpsFix,
+    Message,
     Position,
     Status,
     Temperature,
@@ -72,7 +73,7 @@ def walk(n: int, start_s: float = 0.0, shake_mps2: float = 3.0) -> ImuBatch:
     accel = np.tile([0.0, 0.0, 9.81], (n, 1))
     accel[:, 0] = shake_mps2 * np.sin(40.0 * t_ns / NS_PER_S)
     accel[:, 1] = 1e-4 * np.arange(n)  # never the same twice
-    return ImuBatch(t_ns, accel, np.zeros((n, 3)), pressure_pa=100_000.0 + np.arange(n))
+    return ImuBatch(t_ns, accel, np.zeros((n, 3)), pressure_pa=np.linspace(0, n - 1, n) + 100_000.0)
 
 
 def pipeline(tracker=None, rate_hz: float = 5.0) -> TrackerPipeline:
@@ -90,7 +91,7 @@ def steps(pipe, imu: ImuBatch, sizes: list[int], others=()):
             imu.t_ns[start:stop],
             imu.accel_mps2[start:stop],
             imu.gyro_radps[start:stop],
-            pressure_pa=imu.pressure_pa[start:stop],
+            pressure_pa=None if imu.pressure_pa is None else imu.pressure_pa[start:stop],
         )
         messages += pipe.step(SensorBatch(part))
     return messages
@@ -172,7 +173,7 @@ def others_only(*others):
 
 def test_gps_and_temperature_come_once_a_second_at_most():
     pipe = pipeline()
-    messages = []
+    messages: list[Message] = []
     for tenth in range(100):
         t_ns = tenth * NS_PER_S // 10
         fix = GpsSample(t_ns, 50.0, 8.0, math.nan, 3.0, math.nan, 3, 9, math.nan, math.nan)

@@ -1,0 +1,200 @@
+"""An agent as a process of its own, on a real Zenoh router."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from shared.bus_zenoh import StationEndpoint, ZenohBus
+from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
+from shared.clock import SystemClock
+from shared.codec import decode, encode
+from shared.envelope import Stamper
+from shared.messages import (
+    Command,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    EventKind,
+    JournalChunk,
+    JournalIndex,
+    Message,
+    Position,
+    UnitEvent,
+)
+
+RUN = "from edge.cli import app; app(prog_name='edge')"
+WALK = "simulated:search-ground-floor"
+
+
+def wait_until(condition: Callable[[], object], timeout_s: float = 40.0) -> None:
+    end_s = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end_s, "it never came true"
+        time.sleep(0.02)
+
+
+class Station:
+    """The other end: notes every message, and asks for journals."""
+
+    def __init__(self, port: int) -> None:
+        self.bus = ZenohBus(StationEndpoint((f"tcp/127.0.0.1:{port}",)))
+        self.raw: dict[tuple[int, int], bytes] = {}
+        self.messages: list[Message] = []
+        self.alive: list[bool] = []
+        self.bus.subscribe(f"{ROOT}/u1/**", self._take)
+        self.bus.watch_alive(alive_key("*"), lambda _, alive: self.alive.append(alive))
+
+    def __repr__(self) -> str:
+        return f"Station(alive={self.alive}, {len(self.messages)} messages)"
+
+    def of(self, kind: type[Message]) -> list[Message]:
+        return [message for message in list(self.messages) if isinstance(message, kind)]
+
+    def ask(self, what: str) -> list[bytes]:
+        return list(self.bus.query(f"{ROOT}/u1/journal/{what}", b"", 10.0))
+
+    def journal(self, boot_id: int, last_seq: int) -> dict[int, bytes]:
+        question = f"range?epoch={boot_id};from=1;to={last_seq};bytes=2000"
+        chunks = [JournalChunk.from_bytes(reply) for reply in self.ask(question)]
+        assert all(chunk.boot_id == boot_id for chunk in chunks)
+        return {entry.seq: entry.payload for chunk in chunks for entry in chunk.entries}
+
+    def _take(self, key: str, payload: bytes) -> None:
+        channel = parse_key(key)[1]
+        if channel is not COMMAND:
+            message = decode(channel, payload)
+            self.raw[message.header.boot_id, message.header.seq] = payload
+            self.messages.append(message)
+
+
+@pytest.fixture
+def port() -> int:
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])
+
+
+@pytest.fixture
+def station(port: int) -> Iterator[Station]:
+    station = Station(port)
+    yield station
+    station.bus.close()
+
+
+@pytest.fixture
+def start(port: int, tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
+    agents: list[subprocess.Popen[str]] = []
+
+    def start_agent(source: str = WALK, *flags: str) -> subprocess.Popen[str]:
+        arguments = ("--unit", "u1", "--source", source, "--data", str(tmp_path / "data"))
+        command = [sys.executable, "-c", RUN, "run", *arguments, *flags]
+        command += ["--connect", f"tcp/127.0.0.1:{port}"]
+        agents.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+        return agents[-1]
+
+    yield start_agent
+    for agent in agents:
+        if agent.poll() is None:
+            agent.kill()
+        print(agent.communicate()[1])  # shown beside a failure
+
+
+def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
+    first = start()
+    wait_until(lambda: len(station.of(Position)) >= 10)
+    first.kill()
+    first.wait()
+    wait_until(lambda: station.alive == [True, False])
+    old_boot = station.messages[0].header.boot_id
+    received = {seq: raw for (_, seq), raw in station.raw.items()}
+
+    second = start()
+    wait_until(lambda: station.alive == [True, False, True])
+    wait_until(lambda: station.messages[-1].header.boot_id != old_boot)
+    (index,) = station.ask("index")
+    boots = JournalIndex.from_bytes(index).boots
+    assert [boot.boot_id for boot in boots] == [old_boot, station.messages[-1].header.boot_id]
+    assert boots[0].last_seq >= max(received)
+    kept = station.journal(old_boot, boots[0].last_seq)
+    assert list(kept) == list(range(1, boots[0].last_seq + 1))
+    assert all(kept[seq] == raw for seq, raw in received.items())
+    second.terminate()
+    assert second.wait(20) == 0
+
+
+def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, start):
+    agent = start()
+    assert agent.stderr is not None
+    assert "no link to" in agent.stderr.readline()
+    station = Station(port)
+    try:
+        wait_until(lambda: station.of(Position))
+        first_heard = min(seq for _, seq in station.raw)
+        assert first_heard > 1
+        boot_id = station.messages[0].header.boot_id
+        assert list(station.journal(boot_id, first_heard)) == list(range(1, first_heard + 1))
+        agent.send_signal(signal.SIGINT)
+        assert agent.wait(20) == 0
+        wait_until(lambda: station.of(UnitEvent))
+        last = station.of(UnitEvent)[-1]
+        assert isinstance(last, UnitEvent)
+        assert (last.kind, last.detail) == (EventKind.STOPPED, "told to stop")
+    finally:
+        station.bus.close()
+
+
+def test_a_command_is_answered_and_done(station, start):
+    start()
+    wait_until(lambda: station.of(Position))
+    header = Stamper("station", 1, SystemClock()).header()
+    command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=20.0)
+    station.bus.publish(COMMAND.key("u1"), b"\x00 no command", Qos.ALERT)
+    station.bus.publish(COMMAND.key("all"), encode(command), Qos.ALERT)
+    wait_until(lambda: station.of(CommandReply))
+    (reply,) = station.of(CommandReply)
+    assert isinstance(reply, CommandReply)
+    assert (reply.command_id, reply.state) == ("c1", CommandState.RECEIVED)
+    wait_until(lambda: closest_positions_ns(station) <= 60_000_000)
+
+
+def closest_positions_ns(station: Station) -> int:
+    times = [message.header.t_mono_ns for message in station.of(Position)]
+    return min((b - a for a, b in pairwise(times)), default=10**18)
+
+
+def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
+    start("simulated:loses-radio", "--speed", "10")
+    wait_until(lambda: station.alive == [True, False, True])
+    wait_until(lambda: len(station.of(Position)) > 150)
+    heard = sorted(seq for _, seq in station.raw)
+    missed = set(range(heard[0], heard[-1] + 1)) - set(heard)
+    assert len(missed) > 200  # 45 s of messages, at ten times their rate
+    boot_id = station.messages[0].header.boot_id
+    assert missed <= set(station.journal(boot_id, heard[-1]))
+
+
+def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
+    agent = start("simulated:straight", "--speed", "20")
+    assert agent.wait(60) == 0
+    wait_until(lambda: len(station.of(UnitEvent)) >= 2)
+    kinds = [event.kind for event in station.of(UnitEvent) if isinstance(event, UnitEvent)]
+    assert kinds[-2:] == [EventKind.SOURCE_ENDED, EventKind.STOPPED]
+
+
+def test_a_second_agent_with_the_same_folder_is_refused(start):
+    first = start()
+    assert first.stderr is not None
+    first.stderr.readline()  # it runs
+    second = start()
+    _, said = second.communicate(timeout=30)
+    assert second.returncode != 0
+    assert "another agent is using" in said

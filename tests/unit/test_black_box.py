@@ -1,0 +1,139 @@
+"""The black box gives back what the tracker saw, whole or torn, within its share of the disk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from edge.black_box import BlackBox
+from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.raw_stream import RawStream, batch_of, sensor_of
+from edge.samples import ButtonPress, SensorBatch
+from edge.sources import open_source
+from edge.sources.black_box import BlackBoxSource
+from edge.sources.port import Source
+from edge.tracker import make_tracker
+from shared.clock import ManualClock
+from shared.envelope import Stamper
+from shared.errors import RecordingError
+from shared.messages import Message, Position, Status, UnitEvent
+
+SCENARIO = "simulated:climbs-stairs?seed=3"
+BATCHES = 800
+
+
+def spoiled(source: Source) -> list[SensorBatch]:
+    """Batches with what real sensors do: missed samples, repeated times, a pressed button."""
+    batches = [batch for _, batch in zip(range(BATCHES), source.batches(), strict=False)]
+    for number in range(20, BATCHES, 50):
+        imu, others = batches[number].imu, batches[number].others
+        accel = imu.accel_mps2.copy()
+        accel[1] = np.nan
+        t_ns = imu.t_ns.copy()
+        t_ns[2] = t_ns[1]
+        press = ButtonPress(int(t_ns[0]), "mayday" if number % 100 == 20 else "cancel")
+        batches[number] = SensorBatch(replace(imu, accel_mps2=accel, t_ns=t_ns), (*others, press))
+    return batches
+
+
+def messages_of(source: Source, raw: RawStream, batches: list[SensorBatch]) -> list[Message]:
+    """What a unit says of these batches."""
+    description = raw.description(0, source.description, source="", tracker="eskf")
+    sensor = sensor_of(description)
+    pipeline = TrackerPipeline(
+        UnitIdentity("", "", "eskf", sensor),
+        make_tracker("eskf", sensor),
+        Stamper("u1", 1, ManualClock()),
+        5.0,
+    )
+    messages: list[Message] = []
+    for batch in batches:
+        messages += pipeline.step(batch)
+    return [*messages, *pipeline.finish()]
+
+
+def record(folder: Path, clock: ManualClock | None = None) -> tuple[list[Message], Path]:
+    """Record a walk; what the unit said of it, and the folder of its boot."""
+    source = open_source(SCENARIO)
+    raw = RawStream("u1", 7)
+    description = raw.description(0, source.description, source="", tracker="")
+    box = BlackBox(folder, description, 10**9, clock or ManualClock())
+    quantised = []
+    for batch in spoiled(source):
+        stream = raw.messages(batch)
+        box.write(stream)
+        quantised.append(batch_of(stream))
+    box.close()
+    assert box.fault == "the black box has stopped"
+    (boot,) = folder.iterdir()
+    return messages_of(source, raw, quantised), boot
+
+
+def test_a_replay_says_the_same_to_the_last_bit(tmp_path):
+    said, boot = record(tmp_path)
+    source = BlackBoxSource(boot)
+    replayed = messages_of(source, RawStream("u1", 7), list(source.batches()))
+    assert replayed == said
+    kinds = {type(message) for message in said}
+    assert {Position, Status, UnitEvent} <= kinds
+    positions = [message for message in said if isinstance(message, Position)]
+    assert positions[-1].distance_m > 3.0
+
+
+def test_a_replay_of_a_replay_is_the_same_recording(tmp_path):
+    _, boot = record(tmp_path)
+    source = BlackBoxSource(boot)
+    raw = RawStream("u1", 7)
+    for batch in source.batches():
+        again = batch_of(raw.messages(batch))
+        assert again.imu.accel_mps2.tobytes() == batch.imu.accel_mps2.tobytes()
+        assert again.imu.t_ns.tobytes() == batch.imu.t_ns.tobytes()
+        assert repr(again.others) == repr(batch.others)
+
+
+def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
+    class Ticking(ManualClock):
+        def monotonic_ns(self) -> int:
+            self.advance(0.01)  # so that it is flushed now and then
+            return super().monotonic_ns()
+
+    _, boot = record(tmp_path, Ticking())
+    (segment,) = boot.iterdir()
+    whole = sum(len(batch.imu) for batch in BlackBoxSource(segment).batches())
+    segment.write_bytes(segment.read_bytes()[: segment.stat().st_size // 2])
+    torn = sum(len(batch.imu) for batch in BlackBoxSource(segment).batches())
+    assert 0.2 * whole < torn < 0.8 * whole
+
+
+def test_the_oldest_recordings_make_room(tmp_path):
+    clock = ManualClock()
+    boots = []
+    for boot in range(3):
+        folder = tmp_path / "box"
+        source = open_source(SCENARIO)
+        raw = RawStream("u1", boot)
+        description = raw.description(0, source.description, source="", tracker="")
+        box = BlackBox(folder, description, 60_000, clock)
+        for batch in spoiled(source):
+            box.write(raw.messages(batch))
+        box.close()
+        boots.append(next(folder.glob(f"*{boot:016x}")))
+        clock.advance(100.0)
+    assert not boots[0].exists()
+    assert boots[2].exists()
+
+
+def test_what_is_no_black_box_is_explained(tmp_path):
+    with pytest.raises(RecordingError, match="there is no black box"):
+        BlackBoxSource(tmp_path / "nothing")
+    with pytest.raises(RecordingError, match="holds no segments"):
+        BlackBoxSource(tmp_path)
+    (tmp_path / "000001-x.mcap").write_bytes(b"no mcap at all")
+    with pytest.raises(RecordingError, match="is no black box"):
+        BlackBoxSource(tmp_path)
+    record(tmp_path / "box")
+    with pytest.raises(RecordingError, match="choose one of"):
+        BlackBoxSource(tmp_path / "box")

@@ -1,0 +1,131 @@
+"""The link comes and goes; the unit is declared on it each time, and waits for nothing."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+
+import pytest
+
+from edge.link import Link
+from shared.bus_memory import MemoryRouter
+from shared.channels import COMMAND, EVERY_UNIT, POSITION, Qos, alive_key
+from shared.errors import BusError
+
+
+def wait_until(condition, timeout_s: float = 10.0) -> None:
+    end_s = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end_s, "it never came true"
+        time.sleep(0.005)
+
+
+class Station:
+    """Another end of the bus that notes what it sees."""
+
+    def __init__(self) -> None:
+        self.router = MemoryRouter()
+        self.bus = self.router.attach_station()
+        self.alive: list[bool] = []
+        self.positions: list[bytes] = []
+        self.bus.watch_alive(alive_key("*"), lambda _, alive: self.alive.append(alive))
+        self.bus.subscribe(POSITION.key("*"), lambda _, payload: self.positions.append(payload))
+
+
+@pytest.fixture
+def station() -> Station:
+    return Station()
+
+
+def make_link(open_bus, commands) -> Link:
+    return Link(
+        "u1",
+        "nowhere",
+        open_bus,
+        lambda _, payload: commands.append(payload),
+        ("muster/v1/u1/journal/**", lambda key, parameters, payload: [b"journal"]),
+    )
+
+
+def test_a_unit_on_the_link_is_alive_is_commanded_and_serves_its_journal(station):
+    commands: list[bytes] = []
+    link = make_link(station.router.attach_unit, commands)
+    wait_until(lambda: station.alive == [True])
+    station.bus.publish(COMMAND.key("u1"), b"own", Qos.ALERT)
+    station.bus.publish(COMMAND.key(EVERY_UNIT), b"all", Qos.ALERT)
+    station.bus.publish(COMMAND.key("u2"), b"another's", Qos.ALERT)
+    assert commands == [b"own", b"all"]
+    assert list(station.bus.query("muster/v1/u1/journal/index", b"", 1.0)) == [b"journal"]
+    link.close()
+    assert station.alive == [True, False]
+
+
+def test_an_outage_cuts_the_link_and_its_end_restores_it(station):
+    link = make_link(station.router.attach_unit, [])
+    wait_until(lambda: station.alive == [True])
+    link.publish(POSITION.key("u1"), b"1", Qos.LIVE)
+    link.set_up(up=False)
+    wait_until(lambda: station.alive == [True, False])
+    link.publish(POSITION.key("u1"), b"2", Qos.LIVE)
+    link.set_up(up=True)
+    wait_until(lambda: station.alive == [True, False, True])
+    link.publish(POSITION.key("u1"), b"3", Qos.LIVE)
+    assert station.positions == [b"1", b"3"]
+    link.close()
+
+
+def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplog, monkeypatch):
+    monkeypatch.setattr("edge.link._RETRY_S", 0.01)
+    tries: list[int] = []
+
+    def open_bus():
+        tries.append(1)
+        if len(tries) < 5:
+            raise BusError("the bus cannot be opened")
+        return station.router.attach_unit()
+
+    with caplog.at_level(logging.WARNING):
+        link = make_link(open_bus, [])
+        link.publish(POSITION.key("u1"), b"lost", Qos.LIVE)  # no bus: no error
+        wait_until(lambda: station.alive == [True])
+        link.close()
+    assert [record.message for record in caplog.records] == [
+        "the bus cannot be opened; trying again every second"
+    ]
+
+
+def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
+    monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.01)
+    bus = station.router.attach_unit()
+    bus.link_down()
+    with caplog.at_level(logging.INFO):
+        link = make_link(lambda: bus, [])
+        wait_until(lambda: "no link to nowhere" in caplog.text)
+        bus.link_up()
+        wait_until(lambda: "linked to the station" in caplog.text)
+        link.close()
+    assert caplog.text.count("no link") == 1
+
+
+def test_publishing_while_the_link_closes_is_no_error(station):
+    failures: list[BaseException] = []
+    stop = threading.Event()
+    link = make_link(station.router.attach_unit, [])
+
+    def publish() -> None:
+        try:
+            while not stop.is_set():
+                link.publish(POSITION.key("u1"), b"x", Qos.LIVE)
+        except BusError as error:
+            failures.append(error)
+
+    thread = threading.Thread(target=publish)
+    thread.start()
+    for _ in range(30):
+        link.set_up(up=False)
+        link.set_up(up=True)
+    stop.set()
+    thread.join()
+    link.close()
+    assert not failures

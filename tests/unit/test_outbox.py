@@ -1,0 +1,81 @@
+"""What is sent is on disk before; what the disk refuses is sent all the same."""
+
+from __future__ import annotations
+
+import itertools
+import time
+
+import pytest
+
+from edge.outbox import Outbox
+from edge.spool import Spool
+from shared.channels import Qos
+from shared.errors import StoreError
+from shared.messages import EventKind, Temperature, UnitEvent
+
+
+@pytest.fixture
+def spool(tmp_path):
+    spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
+    yield spool
+    spool.close()
+
+
+def wait_until(condition, timeout_s: float = 10.0) -> None:
+    end_s = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end_s, "it never came true"
+        time.sleep(0.005)
+
+
+def test_everything_is_sent_in_order_and_was_on_disk_before(spool, stamper):
+    sent = []
+
+    def publish(key: str, payload: bytes, qos: Qos) -> None:
+        on_disk = [entry.payload for entry in spool.read(spool.boot_id, 1, 10**6)]
+        assert payload in on_disk
+        sent.append((key, payload, qos))
+
+    outbox = Outbox("FF-01", spool, publish)
+    for degc in range(40):
+        outbox.put((Temperature(stamper.header(), degc), Temperature(stamper.header(), degc)))
+    outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+    outbox.close()
+    assert len(sent) == 81
+    assert [payload for _, payload, _ in sent] == [
+        entry.payload for entry in spool.read(spool.boot_id, 1, 81)
+    ]
+    assert sent[0][0] == "muster/v1/FF-01/up/temperature"
+    assert sent[-1][0::2] == ("muster/v1/FF-01/alert/event", Qos.ALERT)
+
+
+def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monkeypatch):
+    sent = []
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    append = spool.append
+
+    def refuse(messages):
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr(spool, "append", refuse)
+    outbox.put((Temperature(stamper.header(), 20.0), Temperature(stamper.header(), 21.0)))
+    wait_until(lambda: len(sent) == 2)
+    assert "the disk is full" in str(outbox.storage_fault)
+    assert outbox.is_working
+    monkeypatch.setattr(spool, "append", append)
+    outbox.put((Temperature(stamper.header(), 22.0),))
+    outbox.close()
+    assert [entry.payload for entry in spool.read(spool.boot_id, 1, 9)] == sent
+    assert outbox.never_saved == 0
+    assert not outbox.storage_fault
+
+
+def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):
+    monkeypatch.setattr("edge.outbox._GROUP_S", 60.0)
+    sent = []
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(key))
+    for _ in range(5):
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        count = len(sent)
+        wait_until(lambda count=count: len(sent) > count)
+    outbox.close()
