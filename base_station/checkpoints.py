@@ -53,16 +53,23 @@ class Checkpoints:
 
     def latest(self, until_ns: int | None = None) -> SavedState | None:
         """The newest usable one, at or before ``until_ns`` where that is given."""
-        for path in reversed(self._paths()):
-            if until_ns is not None and int(path.stem) > until_ns:
-                continue
+        for path in reversed(self._paths(until_ns)):
             saved = _read(path)
             if saved is not None:
                 return saved
         return None
 
-    def _paths(self) -> list[Path]:
-        return sorted(self._folder.glob(f"*{SUFFIX}"))
+    def latest_ns(self, until_ns: int) -> int | None:
+        """The time of the newest one until then, usable or not."""
+        return max((int(path.stem) for path in self._paths(until_ns)), default=None)
+
+    def _paths(self, until_ns: int | None = None) -> list[Path]:
+        """By time."""
+        return sorted(
+            path
+            for path in self._folder.glob(f"*{SUFFIX}")
+            if until_ns is None or int(path.stem) <= until_ns
+        )
 
     def _thin_out(self) -> None:
         old = self._paths()[:-KEPT_CLOSE]

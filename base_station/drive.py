@@ -20,9 +20,10 @@ import msgspec
 from base_station.api.wire import Snapshot
 from base_station.backfill import Held, Report
 from base_station.checkpoints import Checkpoints
-from base_station.events import Output, Received, Refused, StationEvent, event_of
+from base_station.events import Output, Refused, StationEvent, event_of
 from base_station.picture import Picture
 from base_station.pipeline import StationPipeline
+from base_station.playback import is_decision
 from base_station.projector import Projector
 from base_station.sinks import ActionDone, LiveSink, PhotoUrls, ProjectionSink
 from base_station.views import StationFacts
@@ -38,7 +39,7 @@ TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 20
 CHECKPOINT_NS = 60 * NS_PER_S
 STOP_TIMEOUT_S = 10.0
-OWN_PARTS = ("log", "store", "bus", "checkpoint", "pipeline", "picture")  # reported by the drive
+OWN_PARTS = ("log", "store", "bus", "checkpoint", "pipeline", "drive")  # reported by the drive
 
 Record = tuple[int, str, bytes]  # station time, key, payload
 log = logging.getLogger(__name__)
@@ -64,8 +65,12 @@ class Log(Protocol):
         """Why records are not kept, as a sentence for a person; empty: they are."""
         ...
 
-    def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
-        """Keep a record, at once on the disk where it is urgent; False: it is lost."""
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        """Keep a record, soon on the disk; False: it is lost."""
+        ...
+
+    def flush(self) -> bool:
+        """Bring to the disk what was written so far; whether that was done in time."""
         ...
 
 
@@ -85,6 +90,15 @@ class Surroundings:
     boot_id: int
 
 
+@dataclass
+class _Due:
+    """Monotonic times at which something is to be done next."""
+
+    tick_ns: int
+    delta_ns: int
+    checkpoint_ns: int
+
+
 class StationDrive:
     """``OperatorGate`` and ``LiveSource`` of the live station."""
 
@@ -98,8 +112,12 @@ class StationDrive:
         self._asked: deque[Callable[[Snapshot], None]] = deque()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="station-drive")
+        now_ns = surroundings.clock.monotonic_ns()
+        self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._events_at_t = 0  # stepped at the pipeline's present time
         self._messages_before = 0
+        self._health_due = False  # consoles hear of the station's health with the next delta
+        self._urgent = False  # something was written that must be on the disk before it is told
         self._failed: dict[str, str] = {}  # parts that failed since the last tick, and how
 
     # ---- from any thread
@@ -139,9 +157,7 @@ class StationDrive:
         told = False  # whether the log has a decision that followed the last event
         stepped = 0
         for t_ns, key, payload in records:
-            event = event_of(t_ns, key, payload)
-            message = event.message if isinstance(event, Received) else None
-            if isinstance(message, FusedPosition | AlarmChange):
+            if is_decision(key):
                 del unlogged[:1]
                 told = True
                 continue
@@ -152,38 +168,40 @@ class StationDrive:
             if told:
                 unlogged.clear()
                 told = False
-            outputs = self._step(event)
+            outputs = self._step(event_of(t_ns, key, payload))
             unlogged += [o for o in outputs if isinstance(o, FusedPosition | AlarmChange)]
         for output in unlogged:
             self._keep_output(output)
-        self._project()
+        self._settle()
         return stepped
 
     # ---- in the thread
 
     def _run(self) -> None:
-        clock = self._around.clock
-        next_tick_ns = next_delta_ns = clock.monotonic_ns()
-        next_checkpoint_ns = next_tick_ns + CHECKPOINT_NS
         while not self._stopping.is_set():
-            now_ns = clock.monotonic_ns()
-            wait_ns = min(next_tick_ns, next_delta_ns) - now_ns
-            for t_ns, key, payload in self._around.feed.take(max(wait_ns, 0) / NS_PER_S):
-                self._hear(t_ns, key, payload)
-            self._take_actions()
-            now_ns = clock.monotonic_ns()
-            if now_ns >= next_tick_ns:
-                self._tick()
-                next_tick_ns = max(next_tick_ns + TICK_NS, now_ns)
-            if now_ns >= next_checkpoint_ns:
-                self._save_checkpoint()
-                next_checkpoint_ns = now_ns + CHECKPOINT_NS
-            if now_ns >= next_delta_ns:
-                self._guarded("picture", self._picture.flush)
-                next_delta_ns = now_ns + DELTA_NS
-            self._project()
-            self._deliver_snapshots()
+            self._guarded("drive", self._turn)
         self._finish()
+
+    def _turn(self) -> None:
+        """Take what came, then do whatever is due."""
+        clock, due = self._around.clock, self._due
+        wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
+        for t_ns, key, payload in self._around.feed.take(max(wait_ns, 0) / NS_PER_S):
+            self._hear(t_ns, key, payload)
+        self._take_actions()
+        now_ns = clock.monotonic_ns()
+        if now_ns >= due.tick_ns:
+            due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
+            self._tick()
+        if now_ns >= due.checkpoint_ns:
+            due.checkpoint_ns = now_ns + CHECKPOINT_NS
+            self._save_checkpoint()
+        self._settle()
+        if now_ns >= due.delta_ns:
+            due.delta_ns = now_ns + DELTA_NS
+            self._tell()
+        while self._asked:
+            self._asked.popleft()(self._picture.snapshot())
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
@@ -196,15 +214,14 @@ class StationDrive:
         if channel is not None and channel.direction is Direction.STATION:
             self._failed["bus"] = f"Somebody on the bus speaks as the station ({key}): not believed"
             return
-        self._keep_and_step(
-            t_ns, key, payload, urgent=channel is not None and channel.qos is Qos.ALERT
-        )
+        self._urgent = self._urgent or (channel is not None and channel.qos is Qos.ALERT)
+        self._keep_and_step(t_ns, key, payload)
 
     def _take_actions(self) -> None:
         while self._inbox:
             by, action, future = self._inbox.popleft()
             done = self._do(by, action)
-            self._project()
+            self._settle()
             if future.set_running_or_notify_cancel():
                 future.set_result(done)
 
@@ -212,9 +229,8 @@ class StationDrive:
         header = self._stamper.header()
         action_id = f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, by, action)
-        outputs = self._keep_and_step(
-            header.t_utc_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
-        )
+        self._urgent = True
+        outputs = self._keep_and_step(header.t_utc_ns, OPERATOR.key(STATION_ID), encode(message))
         refused = next((output for output in outputs if isinstance(output, Refused)), None)
         return ActionDone(action_id, self._pipeline.state.t_ns, refused)
 
@@ -229,14 +245,12 @@ class StationDrive:
             self._around.facts(), messages_per_s=float(messages - self._messages_before)
         )
         self._messages_before = messages
-        self._guarded("picture", lambda: self._picture.flush(health=True))
+        self._health_due = True
 
-    def _keep_and_step(
-        self, t_ns: int, key: str, payload: bytes, urgent: bool = False
-    ) -> list[Output]:
+    def _keep_and_step(self, t_ns: int, key: str, payload: bytes) -> list[Output]:
         """Station time never goes back, whatever the machine's clock does."""
         t_ns = max(t_ns, self._pipeline.state.t_ns)
-        self._around.log.write(t_ns, key, payload, urgent=urgent)
+        self._around.log.write(t_ns, key, payload)
         outputs = self._step(event_of(t_ns, key, payload))
         for output in outputs:
             if isinstance(output, FusedPosition | AlarmChange):
@@ -253,19 +267,26 @@ class StationDrive:
         return outputs
 
     def _keep_output(self, output: FusedPosition | AlarmChange) -> None:
-        key = channel_of(output).key(STATION_ID)
+        self._urgent = self._urgent or isinstance(output, AlarmChange)
         self._around.log.write(
-            output.header.t_utc_ns, key, encode(output), urgent=isinstance(output, AlarmChange)
+            output.header.t_utc_ns, channel_of(output).key(STATION_ID), encode(output)
         )
+
+    def _settle(self) -> None:
+        """What is urgent reaches the disk before anybody hears of it."""
+        if self._urgent:
+            self._urgent = False
+            self._around.log.flush()
+        self._project()
 
     def _project(self) -> None:
         projection = self._projector.take(self._pipeline.state.t_ns)
         if projection is not None:
             self._around.projection.project(projection)
 
-    def _deliver_snapshots(self) -> None:
-        while self._asked:
-            self._asked.popleft()(self._picture.snapshot())
+    def _tell(self) -> None:
+        health, self._health_due = self._health_due, False
+        self._picture.flush(health)
 
     def _save_checkpoint(self) -> None:
         try:
@@ -303,11 +324,7 @@ class StationDrive:
             self._failed[part] = f"The station's {part} failed: {error!r}; please report it"
 
     def _finish(self) -> None:
-        for t_ns, key, payload in self._around.feed.take(0.0):
-            self._hear(t_ns, key, payload)
-        self._take_actions()
-        self._guarded("picture", self._picture.flush)
-        self._project()
+        self._guarded("drive", self._turn)
         self._save_checkpoint()
         self._refuse_waiting()
 

@@ -1,0 +1,138 @@
+"""A live station in a test: the real feed, recorder, drive and pipeline on a memory bus."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Self
+
+from base_station.alarms import ALARMS
+from base_station.api.wire import Delta, Snapshot
+from base_station.checkpoints import Checkpoints
+from base_station.drive import StationDrive, Surroundings
+from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.fusion import FUSERS
+from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.playback import Archive
+from base_station.recorder import Recorder
+from base_station.sinks import ActionDone, Projection
+from base_station.views import StationFacts
+from shared.bus_memory import MemoryRouter
+from shared.channels import channel_of
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.messages import Message
+from shared.messages.station import Action
+
+PATIENCE_S = 20.0
+
+
+def make_pipeline(checkpoint: Checkpoint | None = None) -> StationPipeline:
+    return StationPipeline(ALARMS, FUSERS[0], checkpoint)
+
+
+class Screen:
+    """A ``LiveSink`` that remembers everything."""
+
+    def __init__(self) -> None:
+        self.deltas: list[Delta] = []
+        self.resets: list[Snapshot] = []
+
+    def delta(self, delta: Delta) -> None:
+        self.deltas.append(delta)
+
+    def reset(self, snapshot: Snapshot) -> None:
+        self.resets.append(snapshot)
+
+
+class Store:
+    """A ``ProjectionSink`` that remembers everything, and fails on demand."""
+
+    def __init__(self) -> None:
+        self.projections: list[Projection] = []
+        self.trouble = ""
+
+    def project(self, projection: Projection) -> None:
+        self.projections.append(projection)
+
+    def problem(self) -> str:
+        return self.trouble
+
+
+class LiveStation:
+    """Runs from ``with`` to its end; made again on the same folder it goes on."""
+
+    def __init__(self, folder: Path) -> None:
+        clock = SteadyClock(SystemClock())
+        self.screen, self.store = Screen(), Store()
+        self.checkpoints = Checkpoints(folder / "checkpoints")
+        self.recorder = Recorder(folder, clock)
+        self.feed = LiveFeed(clock)
+        self.log = LogFeed(self.recorder.folder, self.recorder.flush)
+        router = MemoryRouter()
+        self.bus = router.attach_station()
+        self._subscription = self.bus.subscribe("muster/v1/**", self.feed.offer)
+        saved = self.checkpoints.latest()
+        self.pipeline = make_pipeline(saved.pipeline if saved else None)
+        self.drive = StationDrive(
+            self.pipeline,
+            Surroundings(
+                feed=self.feed,
+                log=self.recorder,
+                live=self.screen,
+                projection=self.store,
+                checkpoints=self.checkpoints,
+                photo_urls=lambda person_id: f"/photos/{person_id}",
+                facts=StationFacts,
+                report=lambda _: None,
+                clock=clock,
+                boot_id=clock.utc_ns(),
+            ),
+        )
+        after = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+        self.rebuilt = self.drive.rebuild(self.log.records(after[0]), after)
+
+    def __enter__(self) -> Self:
+        self.drive.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.drive.stop()
+        self.close()
+
+    def close(self) -> None:
+        self._subscription.close()
+        self.recorder.close()
+
+    def act(self, action: Action, by: str = "chief") -> ActionDone:
+        return self.drive.submit(by, action).result(PATIENCE_S)
+
+    def say(self, message: Message) -> None:
+        channel = channel_of(message)
+        self.bus.publish(channel.key(message.header.unit_id), encode(message), channel.qos)
+
+    def snapshot(self) -> Snapshot:
+        found: list[Snapshot] = []
+        came = threading.Event()
+
+        def take(snapshot: Snapshot) -> None:
+            found.append(snapshot)
+            came.set()
+
+        self.drive.request_snapshot(take)
+        assert came.wait(PATIENCE_S), "no snapshot came"
+        return found[0]
+
+    def archive(self) -> Archive:
+        return Archive(self.log.records, self.checkpoints, make_pipeline)
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait until it holds."""
+    pause = threading.Event()
+    for _ in range(round(PATIENCE_S / 0.01)):
+        if condition():
+            return
+        pause.wait(0.01)
+    raise AssertionError("it did not come to pass")
