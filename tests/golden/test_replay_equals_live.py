@@ -1,0 +1,175 @@
+"""A replay decides what the live station decided: every alarm and every position, one by one."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from base_station.alarms import ALARMS
+from base_station.fusion import FUSERS
+from base_station.pipeline import StationPipeline, read_checkpoint
+from base_station.playback import Playback, compare, is_decision
+from shared.channels import OPERATOR, Qos, channel_of
+from shared.codec import decode, encode
+from shared.messages import STATION_ID, AlarmChange, EventKind, FusedPosition, OperatorAction
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    CloseIncident,
+    OpenIncident,
+    ResolveAlarm,
+    SetAnchor,
+    SetPlan,
+    SetStart,
+)
+from shared.quality import Quality
+from tests.live_station import LiveStation, make_pipeline, until
+from tests.station_script import Record, Script
+
+PLAN = (
+    b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
+    b'{"floor":1,"down_m":-3.2}]},"features":[{"type":"Feature","properties":{"kind":"outline",'
+    b'"floor":0},"geometry":{"type":"Polygon","coordinates":[[[0,0],[40,0],[40,30],[0,30],'
+    b"[0,0]]]}}]}"
+)
+
+
+def incident() -> Script:
+    """Five minutes in which about everything happens."""
+    script = Script()
+    script.register("FF-01", "FF-02", "FF-03")
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.3))
+    script.act(SetPlan(PLAN))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for number in (1, 2, 3):
+        script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "red", "firefighter"))
+    script.act(SetStart("FF-01", 5.0, 5.0, 0.0, 0.4, 0.5, 0.2))
+    for second in range(300):
+        script.now_s += 1.0
+        _second(script, second)
+        script.tick()
+    script.act(CloseIncident("i1"))
+    return script
+
+
+def _second(script: Script, second: int) -> None:
+    angle = second / 20.0
+    for number in (1, 2):
+        unit_id = f"FF-0{number}"
+        if number == 2 and 60 <= second < 120:
+            continue  # no radio
+        script.position(
+            unit_id,
+            20.0 * math.cos(angle) - 20.0,
+            20.0 * math.sin(angle),
+            down_m=-3.2 * min(1.0, second / 100.0),
+            distance_m=1.0 * second,
+            heading_rad=(angle + math.pi / 2.0) % (2.0 * math.pi),
+            quality=Quality.DEGRADED if 150 < second < 180 else Quality.GOOD,
+        )
+        script.status(unit_id, motionless_s=float(max(0, second - 200)) if number == 1 else 0.0)
+        script.temperature(unit_id, 20.0 + (second if number == 2 else 0.0))
+        if number == 2 and second < 60:
+            script.gps(unit_id, 52.0 + 18e-5 * math.cos(angle), 4.0 + 29e-5 * math.sin(angle))
+    if second == 30:
+        script.event("FF-03", EventKind.MAYDAY)
+    if second == 40:
+        script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
+    if second == 50:
+        script.act(ResolveAlarm(script.alarms[0].alarm_id, "spoken to"))
+    if second % 50 == 0:
+        script.record("muster/v1/FF-01/up/position", b"\xff rubbish")
+        script.position("stranger", 0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def told() -> Script:
+    return incident()
+
+
+def logged(script: Script) -> list[Record]:
+    """The script's records as a live station would have logged them, decisions included."""
+    pipeline = make_pipeline()
+    again = Script(pipeline)
+    records: list[Record] = []
+    for t_ns, key, payload in script.records:
+        again.now_s = (t_ns - script.records[0][0]) / 1e9
+        records.append((t_ns, key, payload))
+        for output in again.record(key, payload):
+            if isinstance(output, AlarmChange | FusedPosition):
+                decided = channel_of(output).key(STATION_ID)
+                records.append((output.header.t_utc_ns, decided, encode(output)))
+    return records
+
+
+def test_the_incident_is_worth_replaying(told: Script) -> None:
+    rules = {alarm.rule for alarm in told.alarms}
+    assert rules >= {
+        "mayday", "no-motion", "heat", "link-lost", "tracker-degraded", "unknown-unit"
+    }  # fmt: skip
+    assert len(told.fused) > 500
+    assert {fused.floor for fused in told.fused} == {0, 1}
+    assert any(fused.since_gps_s is not None for fused in told.fused)
+
+
+def test_a_replay_of_the_log_decides_the_same(told: Script) -> None:
+    records = logged(told)
+    assert any(is_decision(key) for _, key, _ in records)
+    assert list(compare(records, make_pipeline())) == []
+
+
+def test_a_changed_rule_is_noticed(told: Script) -> None:
+    fewer = StationPipeline(ALARMS[1:], FUSERS[0])
+    differences = list(compare(logged(told), fewer))
+    assert differences
+    assert any(isinstance(d.logged, AlarmChange) and d.logged.rule == "mayday" for d in differences)
+
+
+@pytest.mark.parametrize("part", [0.1, 0.37, 0.8])
+def test_a_checkpoint_goes_on_with_the_very_same_decisions(told: Script, part: float) -> None:
+    cut = round(len(told.records) * part)
+    straight, first = Script(make_pipeline()), Script(make_pipeline())
+    for t_ns, key, payload in told.records[:cut]:
+        for script in (straight, first):
+            script.now_s = (t_ns - told.records[0][0]) / 1e9
+            script.record(key, payload)
+    saved = read_checkpoint(first.pipeline.checkpoint())
+    assert saved is not None
+    second = Script(make_pipeline(saved))
+    straight.outputs.clear()
+    for t_ns, key, payload in told.records[cut:]:
+        for script in (straight, second):
+            script.now_s = (t_ns - told.records[0][0]) / 1e9
+            script.record(key, payload)
+    assert len(second.outputs) > 100
+    assert second.outputs == straight.outputs
+    assert second.pipeline.checkpoint() == straight.pipeline.checkpoint()
+
+
+def test_what_ran_live_replays_the_same_through_bus_threads_and_log(
+    tmp_path: Path, told: Script
+) -> None:
+    """The real drive on the real clock: whatever time it was, the log tells it again."""
+    actions = [r for r in told.records if r[1].endswith("/operator")]
+    messages = [r for r in told.records if "/up/" in r[1] or "/alert/" in r[1]][:1500]
+    with LiveStation(tmp_path) as station:
+        for _, _, payload in actions[:8]:
+            action = decode(OPERATOR, payload)
+            assert isinstance(action, OperatorAction)
+            station.act(action.action, action.by)
+        for _, key, payload in messages:
+            station.bus.publish(key, payload, Qos.LIVE)
+        until(lambda: station.pipeline.state.counts.messages > 900)
+        live = station.snapshot()
+        at_ns = station.pipeline.state.t_ns
+    records = list(station.log.records())
+    assert sum(is_decision(key) for _, key, _ in records) > 300
+    assert list(compare(records, make_pipeline())) == []
+
+    archive = station.archive()
+    playback = Playback(archive)
+    for _ in playback.seek(at_ns):
+        pass
+    assert playback.pipeline.state.units.keys() == {unit.unit_id for unit in live.units}
