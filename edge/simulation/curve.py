@@ -74,8 +74,8 @@ class Curve:
 
     def smoothed(self, t_s: Floats, span_s: float) -> Jet:
         """The curve's mean over ``span_s`` around ``t_s``, weighted by a raised cosine."""
-        offsets = np.arange(-4, 5) / 10.0
-        weights = 0.2 * np.cos(np.pi * offsets) ** 2
+        offsets = np.arange(-7, 8) / 16.0
+        weights = np.cos(np.pi * offsets) ** 2 / 8.0
         value, rate, accel = np.zeros((3, len(t_s)))
         for offset, weight in zip(offsets * span_s, weights, strict=True):
             jet = self.jet(np.maximum(t_s + offset, 0.0))

@@ -27,7 +27,7 @@ _ANKLE_TO_SHANK_M = (0.04, 0.0, -0.22)
 _PELVIS_TO_HIP_M = (-0.02, 0.17, 0.0)
 _PELVIS_TO_CHEST_M = (0.10, 0.0, -0.40)
 
-_FOLLOW_S = 1.1  # about a stride: over this long the pelvis follows the foot
+_FOLLOW_S = 2.2  # two strides of mean, in which the foot's go and stop cancels out
 _TWIST_RAD_PER_M = 3.0  # the pelvis turns as the trunk sways, a quarter of a stride earlier
 _TWIST_LEAD_S = 0.26
 _LEAN_RAD_PER_M = 1.5

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +14,7 @@ from edge.samples import Floats
 from edge.simulation import SCENARIOS, Scenario, Simulation
 from edge.simulation.curve import Curve
 from edge.simulation.jet import Jet, cosine, oscillation, sine
+from edge.simulation.legs import Segment
 
 STEP_S = 1e-4
 TIMES_S = st.floats(1.0, 120.0)
@@ -24,8 +27,9 @@ def scenario_named(name: str) -> Scenario:
 
 
 SIMULATIONS = [
-    Simulation(scenario_named(name), seed=11)
+    Simulation(replace(scenario_named(name), worn_on=segment), seed=11)
     for name in ("climbs-stairs", "gets-hot", "goes-down", "gaits", "track-400m")
+    for segment in get_args(Segment)
 ]
 SIMULATED = st.sampled_from(SIMULATIONS)
 

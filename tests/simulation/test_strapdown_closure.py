@@ -14,6 +14,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.simulation import SCENARIOS, Simulation
 from edge.simulation.imu import GRAVITY_MPS2
+from edge.simulation.legs import Segment
 from edge.simulation.simulation import IDEAL_SENSORS
 
 RATE_HZ = 4000.0  # fine enough that the integrator's own error stays below a millimetre
@@ -63,11 +64,21 @@ def _quaternion(rotation_nb: Floats) -> Floats:
 
 
 @pytest.mark.parametrize(
-    ("name", "duration_s"), [("climbs-stairs", 600.0), ("gets-hot", 60.0), ("gaits", 90.0)]
+    ("name", "worn_on", "duration_s"),
+    [
+        ("climbs-stairs", "foot", 600.0),
+        ("gets-hot", "foot", 60.0),
+        ("gaits", "foot", 90.0),
+        ("gaits", "shank", 90.0),
+        ("gaits", "hip", 90.0),
+        ("climbs-stairs", "chest", 60.0),
+    ],
 )
-def test_ideal_sensors_integrate_to_the_truth(name: str, duration_s: float) -> None:
+def test_ideal_sensors_integrate_to_the_truth(
+    name: str, worn_on: Segment, duration_s: float
+) -> None:
     scenario = next(scenario for scenario in SCENARIOS if scenario.name == name)
-    scenario = replace(scenario, rate_hz=RATE_HZ, duration_s=duration_s)
+    scenario = replace(scenario, rate_hz=RATE_HZ, duration_s=duration_s, worn_on=worn_on)
     simulation = Simulation(scenario, seed=3, sensors=IDEAL_SENSORS)
     samples = []
     for batch in simulation.batches(batch_s=2.0):

@@ -16,6 +16,7 @@ from edge.simulation.legs import Point, Stand, Turn, Walk
 from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
 from shared.messages.status import Activity
+from tests.conftest import PROJECT_ROOT
 
 HOUSE = load_building()
 NAMES = [scenario.name for scenario in SCENARIOS]
@@ -216,3 +217,13 @@ def test_a_bad_scenario_file_is_explained(
 def test_a_scenario_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="cannot be read"):
         open_simulation(str(tmp_path / "none.toml"))
+
+
+def test_the_example_of_the_how_to_page_plays(tmp_path: Path) -> None:
+    page = (PROJECT_ROOT / "docs" / "howto" / "write-a-scenario.md").read_text(encoding="utf-8")
+    path = tmp_path / "page.toml"
+    path.write_text(page.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+    simulation = open_simulation(str(path))
+    assert simulation.activity(30.0) is Activity.LYING
+    end = simulation.truth(np.array([simulation.duration_s]))
+    assert end.position_n_m[0, :2] == pytest.approx([-8.0, 12.0], abs=0.2)
