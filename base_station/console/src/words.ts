@@ -16,10 +16,10 @@ export function age(ms: number): string {
   return ms < 60_000 ? duration(ms) : minutes(ms);
 }
 
-/** A long time without the seconds: "under 1 min", "12 min", "1 h 05 min". */
+/** A long time without the seconds: "< 1 min", "12 min", "1 h 05 min". */
 export function minutes(ms: number): string {
   const whole = Math.floor(Math.max(0, ms) / 60_000);
-  if (whole < 1) return "under 1 min";
+  if (whole < 1) return "< 1 min";
   return whole < 60 ? `${whole} min` : `${Math.floor(whole / 60)} h ${pad(whole % 60)} min`;
 }
 
@@ -37,7 +37,7 @@ export function dateAndTime(ms: number): string {
 
 /** "± 2.1 m" while that means something, whole metres above ten. */
 export function plusMinus(radiusM: number): string {
-  return `± ${radiusM < 10 ? radiusM.toFixed(1) : Math.round(radiusM)} m`;
+  return `±\u00a0${radiusM < 10 ? radiusM.toFixed(1) : Math.round(radiusM)}\u00a0m`;
 }
 
 export function floorName(floor: number | null): string {
@@ -100,6 +100,12 @@ export function heatWord(level: string): string {
   return HEAT[level] ?? level;
 }
 
+/** Where that is, for who does not see the plan: "12.0 m north, 3.4 m west". */
+export function place(at: { north_m: number; east_m: number }): string {
+  const along = `${Math.abs(at.north_m).toFixed(1)} m ${at.north_m < 0 ? "south" : "north"}`;
+  return `${along}, ${Math.abs(at.east_m).toFixed(1)} m ${at.east_m < 0 ? "west" : "east"}`;
+}
+
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
 export function alarmWord(alarm: AlarmView): string {
   const rule = alarm.rule.replaceAll("_", " ");
@@ -110,8 +116,8 @@ export function alarmWord(alarm: AlarmView): string {
 /** Why a position is not to be trusted fully; empty where it is good. */
 export function qualityNote(position: PositionView): string {
   if (position.quality === "good") return "";
-  const reason = position.quality_reason.replaceAll("_", " ");
-  return reason === "" ? `tracking ${position.quality}` : `tracking ${position.quality}: ${reason}`;
+  const reason = position.quality_reason;
+  return reason === "" ? `Tracking ${position.quality}` : `Tracking ${position.quality}: ${reason}`;
 }
 
 export function initials(name: string): string {

@@ -20,8 +20,12 @@ describe("words", () => {
   });
 
   it("say how sure a position is", () => {
-    expect(words.plusMinus(2.14)).toBe("± 2.1 m");
-    expect(words.plusMinus(31.6)).toBe("± 32 m");
+    expect(words.plusMinus(2.14)).toBe("±\u00a02.1\u00a0m");
+    expect(words.plusMinus(31.6)).toBe("±\u00a032\u00a0m");
+  });
+
+  it("say a place without the plan", () => {
+    expect(words.place({ north_m: 12, east_m: -3.44 })).toBe("12.0 m north, 3.4 m west");
   });
 
   it("say floors as people do", () => {
@@ -42,8 +46,8 @@ describe("words", () => {
 
   it("say why a position is poor", () => {
     expect(words.qualityNote(position())).toBe("");
-    expect(words.qualityNote(position({ quality: "lost", quality_reason: "sample_gap" }))).toBe(
-      "tracking lost: sample gap",
+    expect(words.qualityNote(position({ quality: "lost", quality_reason: "sample gap" }))).toBe(
+      "Tracking lost: sample gap",
     );
   });
 

@@ -44,6 +44,7 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
       </button>
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
       <Facts unit={unit} picture={picture} />
+      {unit.position && <Doubt text={words.qualityNote(unit.position)} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
     </li>
   );
@@ -113,12 +114,11 @@ function Where({ unit, now, silentMs }: WhereProps) {
     );
   }
   const old = isOld(position, now);
-  const note = words.qualityNote(position);
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
       {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, silentMs).major_m)}
+      <span class="spoken">, {words.place(position)}</span>
       {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
-      {note !== "" && <small>{note}</small>}
     </Fact>
   );
 }
@@ -170,6 +170,16 @@ function Fact({ icon, label, level = "", wide = false, children }: FactProps) {
       </dt>
       <dd>{children}</dd>
     </div>
+  );
+}
+
+function Doubt({ text }: { text: string }) {
+  if (text === "") return null;
+  return (
+    <p class="doubt">
+      <Icon name="target" />
+      {text}
+    </p>
   );
 }
 

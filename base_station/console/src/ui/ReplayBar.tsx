@@ -9,6 +9,11 @@ import { Icon } from "./Icon";
 
 const SPEEDS = [0.5, 1, 2, 4, 8, 16];
 
+/** The usual speeds, and the one it has. */
+function speeds(now: number): number[] {
+  return [...new Set([...SPEEDS, now])].sort((a, b) => a - b);
+}
+
 interface Props {
   replay: { id: string; session: Session; incident: api.Incident };
   live: Picture;
@@ -47,7 +52,7 @@ export function ReplayBar({ replay, live }: Props) {
               value={String(state.speed)}
               onChange={(event) => change({ speed: Number(event.currentTarget.value) })}
             >
-              {SPEEDS.map((speed) => (
+              {speeds(state.speed).map((speed) => (
                 <option key={speed} value={String(speed)}>
                   {speed}×
                 </option>

@@ -1,0 +1,66 @@
+"""A browser, a station and somebody who walks, for the tests of the console."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from deploy.build_hook import CONSOLE
+from tests.e2e.station_process import StationProcess
+from tests.e2e.wearable import Wearable
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
+UNIT = "FF-07"
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    """The system's Chromium; it is closed with the module, and its event loop with it."""
+    program = next(filter(None, map(shutil.which, CHROMIUM)), None)
+    if program is None:
+        pytest.skip("no Chromium on this machine: install the package chromium")
+    if not (ROOT / CONSOLE / "dist" / "index.html").is_file():
+        pytest.skip(f"the console is not built: run npm ci and npm run build in {CONSOLE}")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=program, args=["--no-sandbox", "--disable-gpu"]
+        )
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def station(
+    chromium: Browser, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[StationProcess]:
+    """Not started where there is no browser to look at it."""
+    station = StationProcess(tmp_path_factory.mktemp("e2e") / "station")
+    station.start()
+    yield station
+    station.stop()
+
+
+@pytest.fixture(scope="module")
+def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
+    """The console, logged in through its form."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    page.goto(station.address)
+    username, password = station.login()
+    page.get_by_label("User").fill(username)
+    page.get_by_label("Password").fill(password)
+    page.get_by_role("button", name="Log in").click()
+    page.get_by_role("region", name="People").wait_for()
+    yield page
+    context.close()
+
+
+@pytest.fixture(scope="module")
+def wearable(station: StationProcess) -> Iterator[Wearable]:
+    with Wearable(UNIT, station.bus) as wearable:
+        yield wearable

@@ -1,0 +1,205 @@
+"""The console in a real browser, on a real station, with a unit that speaks over the real bus.
+
+One story in several tests: they run in the order in which they stand here.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import ConsoleMessage, Locator, Page, expect
+
+from deploy.build_hook import CONSOLE
+from tests.e2e.conftest import ROOT, UNIT
+from tests.e2e.station_process import StationProcess
+from tests.e2e.wearable import Wearable
+
+AXE = ROOT / CONSOLE / "node_modules/axe-core/axe.min.js"
+INCIDENT = "Mill Road 7"
+NAME = "Ana Kovač"
+SOON_MS = 15_000
+
+# The tests end with the station's death; a page that waits longer than this is broken.
+pytestmark = pytest.mark.timeout(300)
+
+
+@pytest.fixture(scope="module")
+def complaints(page: Page) -> list[str]:
+    """What the browser complained of: broken scripts, and what the content policy refused."""
+    said: list[str] = []
+
+    def note(message: ConsoleMessage) -> None:
+        if message.type == "error" and "ERR_CONNECTION" not in message.text:
+            said.append(message.text)
+
+    page.on("console", note)
+    page.on("pageerror", lambda error: said.append(str(error)))
+    return said
+
+
+@pytest.fixture(scope="module")
+def hosts(page: Page) -> set[str]:
+    """Whom the page asked for anything."""
+    asked: set[str] = set()
+    page.on("request", lambda request: asked.add(urlsplit(request.url).netloc))
+    return asked
+
+
+@pytest.fixture(scope="module")
+def card(page: Page, complaints: list[str], hosts: set[str], wearable: Wearable) -> Locator:
+    """Of a responder who was enlisted through the page while the unit was sending already."""
+    card = page.locator(f"[data-unit='{UNIT}']")
+    card.wait_for()
+    register(page, card)
+    add_person(page)
+    assign(page)
+    open_incident(page)
+    return card
+
+
+def menu(page: Page, name: str) -> Locator:
+    page.get_by_role("navigation").get_by_role("button", name=name).click()
+    dialog = page.get_by_role("dialog")
+    dialog.wait_for()
+    return dialog
+
+
+def close(dialog: Locator) -> None:
+    dialog.get_by_role("button", name="Close", exact=True).click()
+
+
+def register(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name="Register").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Register unit").click()
+    expect(dialog.get_by_label(f"Who wears {UNIT}")).to_be_visible(timeout=SOON_MS)
+    close(dialog)
+
+
+def add_person(page: Page) -> None:
+    dialog = menu(page, "People")
+    dialog.get_by_label("Name", exact=True).fill(NAME)
+    dialog.get_by_label("Crew").fill("Ladder 1")
+    dialog.get_by_label("Role").fill("Officer")
+    dialog.get_by_role("button", name="Add person").click()
+    expect(dialog.get_by_role("row", name=NAME)).to_be_visible(timeout=SOON_MS)
+    close(dialog)
+
+
+def assign(page: Page) -> None:
+    dialog = menu(page, "Units")
+    dialog.get_by_label(f"Who wears {UNIT}").select_option(label=f"{NAME} (Ladder 1)")
+    close(dialog)
+
+
+def open_incident(page: Page) -> None:
+    dialog = menu(page, "Incidents")
+    dialog.get_by_label("Name of the new incident").fill(INCIDENT)
+    dialog.get_by_role("button", name="Open incident").click()
+    expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible(timeout=SOON_MS)
+    close(dialog)
+
+
+def metres_north(card: Locator) -> float:
+    found = re.search(r"([\d.]+) m north", card.inner_text())
+    assert found is not None, card.inner_text()
+    return float(found[1])
+
+
+def test_a_wrong_password_is_refused(page: Page, station: StationProcess) -> None:
+    other = page.context.browser
+    assert other is not None
+    stranger = other.new_page()
+    stranger.goto(station.address)
+    stranger.get_by_label("User").fill("admin")
+    stranger.get_by_label("Password").fill("guessed")
+    stranger.get_by_role("button", name="Log in").click()
+    expect(stranger.get_by_role("alert")).to_contain_text("wrong", timeout=SOON_MS)
+    expect(stranger.get_by_role("region", name="People")).to_have_count(0)
+    stranger.close()
+
+
+def test_the_card_says_who_how_hot_how_sure_and_how_old(page: Page, card: Locator) -> None:
+    expect(card).to_contain_text(NAME, timeout=SOON_MS)
+    for words in ("Ladder 1 · Officer", "Walking", "31 °C", "83 %", "Link good", "±"):
+        expect(card).to_contain_text(words, timeout=SOON_MS)
+    expect(page.get_by_role("heading", name=INCIDENT)).to_be_visible()
+
+
+def test_the_responder_moves_on_card_and_plan(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name=NAME).click()
+    page.wait_for_timeout(600)  # the plan has come to rest
+    plan = page.locator(".map")
+    before_m, seen = metres_north(card), plan.screenshot()
+    page.wait_for_timeout(2000)
+    assert metres_north(card) > before_m + 1.0
+    assert plan.screenshot() != seen
+
+
+def test_a_mayday_is_seen_acknowledged_and_resolved(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
+    wearable.press_mayday()
+    strip = page.get_by_role("region", name="Open alarms")
+    alarm = strip.get_by_role("listitem").filter(has_text=f"Mayday from {NAME}")
+    expect(alarm).to_contain_text("Immediate", ignore_case=True, timeout=SOON_MS)
+    expect(card).to_contain_text("Mayday")
+    alarm.get_by_role("button", name="Acknowledge").click()
+    expect(alarm).to_contain_text("acknowledged by admin", timeout=SOON_MS)
+    wearable.cancel_mayday()
+    alarm.get_by_role("button", name="Resolve").click()
+    expect(alarm).to_have_count(0, timeout=SOON_MS)
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_everybody_can_use_it(page: Page, card: Locator, scheme: str) -> None:
+    if not AXE.is_file():
+        pytest.skip(f"axe-core is not installed: run npm ci in {CONSOLE}")
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    page.wait_for_timeout(300)
+    page.evaluate(Path(AXE).read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run().then((result) => result.violations)")
+    assert [(one["id"], [node["html"] for node in one["nodes"]]) for one in found] == []
+
+
+def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
+    dialog = menu(page, "Incidents")
+    dialog.get_by_role("button", name="Close this incident").click()
+    expect(dialog.get_by_label("Name of the new incident")).to_be_visible(timeout=SOON_MS)
+    dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
+    banner = page.get_by_role("region", name="Replay")
+    expect(banner).to_contain_text("This is the past", timeout=SOON_MS)
+    expect(card).to_contain_text(NAME, timeout=SOON_MS)
+    banner.get_by_label("Time of the incident").press("End")
+    resolved = page.get_by_role("region", name="Open alarms").get_by_role("listitem")
+    expect(resolved).to_have_count(0, timeout=SOON_MS)
+    in_the_past_m = metres_north(card)
+    banner.get_by_role("button", name="Back to live").click()
+    expect(banner).to_have_count(0)
+    expect(card).to_contain_text("Link good", timeout=SOON_MS)
+    assert metres_north(card) > in_the_past_m
+
+
+def test_nothing_came_from_elsewhere_and_nothing_broke(
+    station: StationProcess, card: Locator, hosts: set[str], complaints: list[str]
+) -> None:
+    assert hosts == {station.http}
+    assert complaints == []
+
+
+def test_a_lost_station_is_unmistakable_and_comes_back(
+    page: Page, card: Locator, station: StationProcess
+) -> None:
+    expect(page.get_by_test_id("link")).to_have_text("Connected")
+    station.kill()
+    banner = page.get_by_role("alert").filter(has_text="Connection to the station lost")
+    expect(banner).to_contain_text("is not being updated", timeout=SOON_MS)
+    expect(page.get_by_test_id("link")).to_have_text("Connection lost")
+    expect(card).to_contain_text("Not updated", timeout=SOON_MS)
+    station.start()
+    expect(banner).to_have_count(0, timeout=60_000)
+    expect(card).to_contain_text(NAME)
+    expect(card).to_contain_text("Link good", timeout=SOON_MS)

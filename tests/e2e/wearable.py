@@ -1,0 +1,101 @@
+"""A unit of which a test decides what it says; it speaks over the real bus."""
+
+from __future__ import annotations
+
+import secrets
+import threading
+from typing import Self
+
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import channel_of
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.messages import (
+    Activity,
+    EventKind,
+    Message,
+    Position,
+    Status,
+    Temperature,
+    UnitEvent,
+)
+from shared.quality import Quality, Reason
+
+STEP_S = 0.2
+SPEED_MPS = 1.0
+
+
+class Wearable:
+    """Walks north from its start at a metre a second, from ``with`` to its end."""
+
+    def __init__(self, unit_id: str, station: str) -> None:
+        self._bus = ZenohBus(UnitEndpoint((station,)))
+        self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._walk, name=unit_id)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        self._thread.join()
+        self._bus.close()
+
+    def press_mayday(self) -> None:
+        self._say(UnitEvent(self._stamper.header(), EventKind.MAYDAY))
+
+    def cancel_mayday(self) -> None:
+        self._say(UnitEvent(self._stamper.header(), EventKind.MAYDAY_CANCELLED))
+
+    def _walk(self) -> None:
+        walked_m, steps = 0.0, 0
+        while not self._ended.wait(STEP_S):
+            walked_m += SPEED_MPS * STEP_S
+            self._say(self._position(walked_m))
+            if steps % 5 == 0:
+                self._say(self._status(steps))
+                self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
+            steps += 1
+
+    def _say(self, message: Message) -> None:
+        channel = channel_of(message)
+        self._bus.publish(channel.key(self._stamper.unit_id), encode(message), channel.qos)
+
+    def _position(self, walked_m: float) -> Position:
+        return Position(
+            header=self._stamper.header(),
+            north_m=walked_m,
+            east_m=0.0,
+            down_m=0.0,
+            velocity_north_mps=SPEED_MPS,
+            velocity_east_mps=0.0,
+            velocity_down_mps=0.0,
+            std_north_m=0.4,
+            std_east_m=0.2,
+            std_down_m=0.2,
+            correlation_ne=0.0,
+            heading_rad=0.0,
+            heading_std_rad=0.05,
+            distance_m=walked_m,
+            pressure_pa=None,
+            stationary=False,
+            quality=Quality.GOOD,
+            reasons=Reason.NONE,
+        )
+
+    def _status(self, steps: int) -> Status:
+        return Status(
+            header=self._stamper.header(),
+            activity=Activity.WALKING,
+            motionless_s=0.0,
+            battery=0.83,
+            mayday=False,
+            steps=steps,
+            cadence_hz=1.8,
+            floors_climbed=0,
+            tracker_rows_dropped=0,
+            journal_pending=0,
+        )
