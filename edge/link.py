@@ -20,6 +20,7 @@ logger = logging.getLogger(__name__)
 _RETRY_S = 1.0
 _LOOK_EVERY_S = 0.5
 _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
+_REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 
 
 class Link:
@@ -44,6 +45,7 @@ class Link:
         self._changed = Condition()
         self._using = Lock()
         self._failure_told = False
+        self._linked_told: bool | None = None
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
 
@@ -96,23 +98,26 @@ class Link:
         return True
 
     def _watch(self, bus: Bus) -> None:
-        """Until the link is no longer wanted; tells when the station comes and goes."""
-        told: bool | None = None
+        """Until the link is no longer wanted, or has been gone for so long that it may be stuck."""
         looks_without = 0
-        over = False
-        while not over:
-            linked = bus.is_linked()
-            looks_without = 0 if linked else looks_without + 1
-            if linked and told is not True:
-                told = True
-                logger.info("linked to the station")
-            elif looks_without == _LOOKS_UNTIL_TOLD and told is not False:
-                told = False
-                logger.warning("no link to %s; messages are kept and sent later", self._where)
+        while looks_without * _LOOK_EVERY_S < _REOPEN_AFTER_S:
+            looks_without = 0 if bus.is_linked() else looks_without + 1
+            self._tell(looks_without)
             with self._changed:
-                over = self._changed.wait_for(
+                if self._changed.wait_for(
                     lambda: self._ended or not self._wanted_up, timeout=_LOOK_EVERY_S
-                )
+                ):
+                    return
+        logger.debug("opening the bus anew")
+
+    def _tell(self, looks_without: int) -> None:
+        """Say once when the station comes, and once when it goes."""
+        if looks_without == 0 and self._linked_told is not True:
+            self._linked_told = True
+            logger.info("linked to the station")
+        elif looks_without == _LOOKS_UNTIL_TOLD and self._linked_told is not False:
+            self._linked_told = False
+            logger.warning("no link to %s; messages are kept and sent later", self._where)
 
     def _declare(self, bus: Bus, declared: ExitStack) -> None:
         for unit_id in (self._unit_id, EVERY_UNIT):

@@ -108,6 +108,27 @@ def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
+def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
+    monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.005)
+    monkeypatch.setattr("edge.link._REOPEN_AFTER_S", 0.05)
+    opened = []
+
+    def open_bus():
+        bus = station.router.attach_unit()
+        opened.append(bus)
+        if len(opened) < 4:
+            bus.link_down()  # and never comes back
+        return bus
+
+    with caplog.at_level(logging.INFO):
+        link = make_link(open_bus, [])
+        wait_until(lambda: station.alive == [True])
+        wait_until(lambda: "linked to the station" in caplog.text)
+        link.close()
+    assert len(opened) == 4
+    assert caplog.text.count("no link") == 1
+
+
 def test_publishing_while_the_link_closes_is_no_error(station):
     failures: list[BaseException] = []
     stop = threading.Event()

@@ -1,0 +1,99 @@
+"""What a person types wrongly is answered with one sentence and exit code 2."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from edge.app import run_agent
+from edge.config import EdgeConfig
+from shared.config import load_config
+from shared.errors import ConfigError
+
+MAIN = """
+import sys
+from shared.errors import MusterError
+from edge.cli import app
+try:
+    app(prog_name="muster edge")
+except MusterError as error:
+    print(f"muster: {error}", file=sys.stderr)
+    sys.exit(2)
+"""
+WALK = "simulated:straight"
+
+
+def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", MAIN, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        timeout=60,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--source", WALK), "unit"),
+        (("--unit", "all", "--source", WALK), "unit id 'all' cannot be used"),
+        (("--unit", "a/b", "--source", WALK), "unit id 'a/b' cannot be used"),
+        (("--unit", "u1", "--source", "recording:nothing/here"), "nothing/here"),
+        (("--unit", "u1", "--source", "simulatd:x"), "did you mean simulated:"),
+        (("--unit", "u1", "--source", WALK, "--connect", "tcp/host"), "tcp/HOST:PORT"),
+        (("--unit", "u1", "--source", WALK, "--connect", "tcp/host:70000"), "tcp/HOST:PORT"),
+        (("--unit", "u1", "--source", WALK, "--tracker", "esfk"), "eskf"),
+        (("--unit", "u1", "--source", WALK, "--data", "/dev/null"), "/dev/null"),
+        (("--config", "nothing.toml"), "nothing.toml"),
+    ],
+)
+def test_one_sentence_and_exit_code_2(arguments, said, tmp_path):
+    ended = muster_edge("run", *arguments, cwd=tmp_path)
+    assert ended.returncode == 2
+    assert said in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert len(ended.stderr.strip().splitlines()) == 1
+
+
+def test_lists_sources_and_trackers(tmp_path):
+    assert "mcap:PATH" in muster_edge("sources", cwd=tmp_path).stdout
+    assert "eskf" in muster_edge("trackers", cwd=tmp_path).stdout
+
+
+def test_a_file_gives_settings_and_flags_overrule_it(tmp_path):
+    file = tmp_path / "unit.toml"
+    file.write_text(
+        'unit = "u1"\nsource = "simulated:straight"\ndata = "kept"\n[storage]\njournal_mb = 20\n'
+    )
+    config = load_config(file, EdgeConfig, {"unit": "u2", "tracker": None})
+    assert (config.unit, config.tracker) == ("u2", "eskf")
+    assert config.data == tmp_path / "kept"
+    assert config.storage.journal_mb == 20.0
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('conect = ["tcp/a:1"]', "connect"),
+        ("position_rate_mhz = 5000", "position_rate_hz"),
+        ("position_rate_hz = 500", "position_rate_hz"),
+        ("[storage]\njournal_gb = 1", "journal_mb"),
+    ],
+)
+def test_a_wrong_key_is_named_with_the_right_one(line, said, tmp_path):
+    file = tmp_path / "unit.toml"
+    file.write_text(f'unit = "u1"\nsource = "x"\n{line}\n')
+    with pytest.raises(ConfigError, match=said):
+        load_config(file, EdgeConfig)
+
+
+def test_settings_that_cannot_work_leave_nothing_behind(tmp_path):
+    config = EdgeConfig(unit="u1", source="simulated:nowhere", data=tmp_path / "data")
+    with pytest.raises(ConfigError):
+        run_agent(config, None, for_s=0.0, paced=True)  # type: ignore[arg-type]
+    assert not (tmp_path / "data").exists()
