@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 from pathlib import Path
 
-from shared.errors import ConfigError, DataFolderInUseError
+from shared.folder_lock import FolderLock
 
 
 class DataFolder:
@@ -14,20 +12,7 @@ class DataFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            self._lock = os.open(path / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-        except OSError as error:
-            raise ConfigError(
-                f"data folder {path} cannot be used: {error.strerror}; name another with --data"
-            ) from error
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            os.close(self._lock)
-            raise DataFolderInUseError(
-                f"another agent is using {path}; stop it, or give this unit another id or folder"
-            ) from error
+        self._lock = FolderLock(path, "agent", "stop it, or give this unit another id or folder")
 
     @property
     def journal(self) -> Path:
@@ -38,4 +23,4 @@ class DataFolder:
         return self.path / "black_box"
 
     def close(self) -> None:
-        os.close(self._lock)
+        self._lock.close()

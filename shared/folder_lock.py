@@ -14,9 +14,15 @@ _NAME = "lock"
 class FolderLock:
     """Held from making until ``close``."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        holder: str = "station",
+        remedy: str = "stop it, or give this one another folder with --data",
+    ) -> None:
         """Makes the folder where it is missing.
 
+        ``holder`` says who may hold it ("station"), ``remedy`` what to do when another one does.
         Raises DataFolderInUseError, which names the process that holds it, or LogError when the
         folder cannot be used at all.
         """
@@ -28,11 +34,10 @@ class FolderLock:
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            holder = os.pread(self._descriptor, 20, 0).decode("ascii", "replace").strip()
+            process = os.pread(self._descriptor, 20, 0).decode("ascii", "replace").strip()
             os.close(self._descriptor)
             raise DataFolderInUseError(
-                f"the data folder {folder} is in use by process {holder or 'unknown'}: stop that "
-                "one, or give this one another folder"
+                f"another {holder} is using {folder} (process {process or 'unknown'}): {remedy}"
             ) from error
         os.ftruncate(self._descriptor, 0)
         os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)

@@ -52,7 +52,7 @@ def test_closing_writes_what_is_left(tmp_path: Path) -> None:
 
 
 def test_a_second_station_on_the_folder_is_refused(tmp_path: Path) -> None:
-    with recording(tmp_path), pytest.raises(DataFolderInUseError, match="in use by process"):
+    with recording(tmp_path), pytest.raises(DataFolderInUseError, match="another station is using"):
         Recorder(tmp_path, SystemClock())
     with recording(tmp_path):
         pass
