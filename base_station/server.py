@@ -27,23 +27,22 @@ class _Server(uvicorn.Server):
 
 
 class ConsoleServer:
-    """Holds the port from when it is made; raises ConfigError where another program has it."""
+    """Serves an application on a socket from ``bind``, over TLS where it has a certificate."""
 
     def __init__(
         self,
         app: ASGIApp,
-        host: str,
-        port: int,
+        listening: socket.socket,
         certificate: Path | None = None,
         private_key: Path | None = None,
     ) -> None:
-        self._socket = _bind(host, port)
-        self.port: int = self._socket.getsockname()[1]
+        self._socket = listening
         config = uvicorn.Config(
             app,
             ssl_certfile=certificate,
             ssl_keyfile=private_key,
             log_config=None,
+            log_level="warning",
             access_log=False,
             server_header=False,
             proxy_headers=False,  # who asks is who connected: logins are counted by it
@@ -68,12 +67,9 @@ class ConsoleServer:
         """From the loop's thread."""
         self._server.should_exit = True
 
-    def close(self) -> None:
-        """Give the port back without having served."""
-        self._socket.close()
 
-
-def _bind(host: str, port: int) -> socket.socket:
+def bind(host: str, port: int) -> socket.socket:
+    """Take the port; raises ConfigError where another program has it."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE

@@ -63,17 +63,15 @@ class Replays:
         incident: Incident,
         speed: float,
         loop: asyncio.AbstractEventLoop,
-        replay_id: str | None = None,
+        lasting: Hub | None = None,
     ) -> OpenReplay:
-        """Start a replay; one that is given its id lasts until it is closed."""
+        """Start a replay; one that is given its hub lasts until it is closed."""
         with self._lock:
             if len(self._open) >= MOST_REPLAYS:
                 raise UserError(f"{MOST_REPLAYS} replays are open already; close one of them")
-            hub = Hub()
+            hub = lasting or Hub()
             player = self._start(incident, speed, hub)
-            opened = OpenReplay(
-                replay_id or secrets.token_hex(8), hub, player, lasting=replay_id is not None
-            )
+            opened = OpenReplay(secrets.token_hex(8), hub, player, lasting is not None)
             self._open[opened.replay_id] = opened
         loop.call_soon_threadsafe(hub.connect, loop, player)
         return opened

@@ -18,7 +18,7 @@ from base_station.api.hub import QUEUE
 from base_station.api.routes import live
 from base_station.api.security import COOKIE
 from base_station.db.accounts import Role
-from base_station.server import ConsoleServer
+from base_station.server import ConsoleServer, bind
 from shared.clock import ManualClock
 from shared.messages.station import OpenIncident
 from tests.station import PASSWORD, DeskStation
@@ -34,10 +34,12 @@ def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
 @pytest_asyncio.fixture
 async def address(station: DeskStation) -> AsyncIterator[str]:
     """HOST:PORT of the running server."""
-    server = ConsoleServer(station.app, "127.0.0.1", 0)
+    listening = bind("127.0.0.1", 0)
+    port = listening.getsockname()[1]
+    server = ConsoleServer(station.app, listening)
     task = asyncio.create_task(server.serve())
     await asyncio.wait_for(server.wait_started(), 10.0)
-    yield f"127.0.0.1:{server.port}"
+    yield f"127.0.0.1:{port}"
     server.stop()
     await asyncio.wait_for(task, 10.0)
 
@@ -161,10 +163,12 @@ async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
 
 
 async def test_the_server_stops_with_consoles_connected(station: DeskStation) -> None:
-    server = ConsoleServer(station.app, "127.0.0.1", 0)
+    listening = bind("127.0.0.1", 0)
+    port = listening.getsockname()[1]
+    server = ConsoleServer(station.app, listening)
     task = asyncio.create_task(server.serve())
     await server.wait_started()
-    url = f"ws://127.0.0.1:{server.port}/api/v1/live"
+    url = f"ws://127.0.0.1:{port}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as socket:
         await heard(socket)
         server.stop()

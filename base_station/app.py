@@ -1,0 +1,326 @@
+"""The composition root: puts a station together from its parts, runs it, and takes it apart."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+import signal
+import socket
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fastapi import FastAPI
+
+from base_station.alarms import ALARMS
+from base_station.api.app import create_app
+from base_station.api.hub import Hub
+from base_station.api.replays import Replays, StartReplay
+from base_station.api.services import Services
+from base_station.backfill import Backfill
+from base_station.checkpoints import Checkpoints
+from base_station.config import HttpConfig, StationConfig, host_and_port
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Accounts
+from base_station.db.models import Incident, LogSegment
+from base_station.db.projecting import project_into
+from base_station.db.projection import SqlProjection
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.store import Store, copy_database
+from base_station.drive import StationDrive, Surroundings
+from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.first_login import USERNAME, ensure_administrator
+from base_station.fusion import FUSERS
+from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.playback import Archive
+from base_station.read_only import ReadOnlyGate
+from base_station.rebuild import project_log
+from base_station.recorder import Recorder
+from base_station.replay import ReplaySession, Window
+from base_station.server import ConsoleServer, bind
+from base_station.sinks import Projection
+from base_station.views import StationFacts
+from shared.bus_zenoh import StationEndpoint, ZenohBus
+from shared.channels import ROOT
+from shared.clock import Clock, SystemClock
+from shared.errors import StoreError, UserError
+from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentReader, segment_paths
+
+SEGMENT_INDEX_S = 5.0
+
+Announce = Callable[[str], None]
+_log = logging.getLogger(__name__)
+
+
+def run_station(config: StationConfig, announce: Announce) -> None:
+    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    config.refuse_plain()
+    clock = SystemClock()
+    with ExitStack() as closing:
+        folder = DataFolder(config.data)
+        recorder = Recorder(
+            folder.path, clock, SegmentPolicy(config.log.segment_s, config.log.flush_every_s)
+        )
+        closing.callback(recorder.close)
+        listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+        is_new = not folder.database.exists()
+        store = closing.enter_context(Store(folder.database))
+        accounts, records = Accounts(store, clock), Records(store, clock)
+        if is_new and recorder.segments():
+            announce("the database is new; it is made again from the log")
+            _project_log(store, folder.log, lambda _: None)
+        _announce_first_login(accounts, folder.first_login, announce)
+
+        roster, hub = Roster(store, clock), Hub()
+        projection = SqlProjection(store)
+        closing.callback(projection.close)
+        steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
+        feed = LiveFeed(steady)
+        bus = ZenohBus(StationEndpoint(listen=config.bus.listen))
+        closing.callback(bus.close)
+        hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
+        closing.callback(hearing.close)
+        backfill = Backfill(bus, feed.deliver, clock)
+
+        checkpoints = Checkpoints(folder.checkpoints)
+        insecure = bool(config.plain_endpoints())
+        drive = _start_drive(
+            LogFeed(folder.log, recorder.flush),
+            Surroundings(
+                feed=feed,
+                log=recorder,
+                live=hub,
+                projection=projection,
+                checkpoints=checkpoints,
+                photo_urls=roster.photo_url,
+                facts=lambda: _facts(recorder, feed, insecure),
+                clock=steady,
+                boot_id=secrets.randbits(63),
+                report=backfill.report,
+            ),
+        )
+        closing.callback(drive.stop)
+        backfill.start()
+        closing.callback(backfill.close)
+        closing.callback(feed.close)
+        archive = Archive(LogFeed(folder.log, recorder.flush).records, checkpoints, _pipeline)
+        services = Services(
+            accounts=accounts,
+            roster=roster,
+            records=records,
+            hub=hub,
+            gate=drive,
+            settle=projection.flush,
+            replays=Replays(_replay_starter(archive, roster, steady)),
+            clock=steady,
+            secure=config.http.certificate is not None,
+        )
+        app = create_app(services, started=lambda loop: hub.connect(loop, drive))
+        notes = {recovery.path: str(recovery) for recovery in recorder.recoveries}
+        asyncio.run(
+            _serve(
+                app,
+                listening,
+                config.http,
+                announce,
+                lambda: records.put_segments(_rows(recorder.segments(), notes)),
+            )
+        )
+
+
+def run_replay_station(
+    config: StationConfig, incident_id: str, speed: float, announce: Announce
+) -> None:
+    """A station that shows one past incident, and writes nothing to the folder.
+
+    A live station may be running on it: the database is copied first.
+    """
+    config.refuse_plain()
+    clock = SystemClock()
+    folder = DataFolder(config.data)
+    folder.require()
+    with ExitStack() as closing:
+        scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-replay-")))
+        listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+        copy_database(folder.database, scratch / "station.sqlite")
+        store = closing.enter_context(Store(scratch / "station.sqlite"))
+        accounts, records = Accounts(store, clock), Records(store, clock)
+        roster, hub = Roster(store, clock), Hub()
+        if not records.incidents():
+            announce("the folder has no database; it is made from the log for this replay")
+            _project_log(store, folder.log, lambda _: None)
+        incident = _incident_or_refuse(records, incident_id)
+        _announce_first_login(accounts, scratch / "first-login.txt", announce)
+
+        saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
+        archive = Archive(LogFeed(folder.log).records, Checkpoints(saved), _pipeline)
+        replays = Replays(_replay_starter(archive, roster, clock))
+        services = Services(
+            accounts=accounts,
+            roster=roster,
+            records=records,
+            hub=hub,
+            gate=ReadOnlyGate(),
+            settle=lambda: None,
+            replays=replays,
+            clock=clock,
+            secure=config.http.certificate is not None,
+        )
+        app = create_app(
+            services, started=lambda loop: _ignore(replays.open(incident, speed, loop, hub))
+        )
+        asyncio.run(_serve(app, listening, config.http, announce, lambda: None))
+
+
+def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
+    """Make the projections of a folder again; no station may be running on it.
+
+    ``on_progress`` hears the fraction done.  Gives the number of log records.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        with Store(folder.database) as store:
+            Records(store, SystemClock()).forget_projections()
+            return _project_log(store, folder.log, on_progress)
+    finally:
+        lock.close()
+
+
+def open_accounts(data: Path, closing: ExitStack) -> Accounts:
+    """The accounts of a folder's database, beside a running station or without one."""
+    data.mkdir(parents=True, exist_ok=True)
+    store = closing.enter_context(Store(DataFolder(data).database))
+    return Accounts(store, SystemClock())
+
+
+def _start_drive(log: LogFeed, surroundings: Surroundings) -> StationDrive:
+    """A drive whose live state is what the log says."""
+    saved = surroundings.checkpoints.latest()
+    drive = StationDrive(_pipeline(saved.pipeline if saved else None), surroundings)
+    place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+    stepped = drive.rebuild(log.records(place[0]), place)
+    _log.info("live state from the log: %d events after the checkpoint", stepped)
+    drive.start()
+    return drive
+
+
+def _pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
+    return StationPipeline(ALARMS, FUSERS[0], checkpoint)
+
+
+def _replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartReplay:
+    def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
+        end_ns = incident.closed_ns or clock.utc_ns()
+        window = Window(incident.incident_id, incident.opened_ns, end_ns)
+        return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
+
+    return start
+
+
+def _facts(recorder: Recorder, feed: LiveFeed, insecure: bool) -> StationFacts:
+    problems = []
+    if feed.overflowed:
+        problems.append(f"{feed.overflowed} messages came faster than this machine can take them")
+    return StationFacts(
+        problems=tuple(problems),
+        log_bytes=recorder.log_bytes,
+        disk_free_bytes=recorder.disk_free_bytes,
+        insecure=insecure,
+    )
+
+
+def _announce_first_login(accounts: Accounts, note: Path, announce: Announce) -> None:
+    password = ensure_administrator(accounts, note)
+    if password is not None:
+        announce(f"first login: {USERNAME}  password: {password}  (also in {note})")
+
+
+def _incident_or_refuse(records: Records, incident_id: str) -> Incident:
+    incident = records.incident(incident_id)
+    if incident is None:
+        known = ", ".join(f"{one.incident_id} ({one.name})" for one in records.incidents())
+        raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+    return incident
+
+
+def _project_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
+    segments = []
+    for path in segment_paths(log):
+        with SegmentReader(path) as reader:
+            segments.append(reader.info())
+    start_ns = min((one.start_ns for one in segments if one.messages), default=0)
+    span_ns = max(max((one.end_ns for one in segments), default=0) - start_ns, 1)
+
+    def write(projection: Projection) -> None:
+        with store.write() as session:
+            project_into(session, projection)
+
+    count = project_log(
+        LogFeed(log).records(),
+        _pipeline(None),
+        write,
+        lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
+    )
+    Records(store, SystemClock()).put_segments(_rows(segments, {}))
+    return count
+
+
+def _rows(segments: Iterable[SegmentInfo], notes: dict[Path, str]) -> list[LogSegment]:
+    return [
+        LogSegment(
+            name=one.path.name,
+            first_ns=one.start_ns,
+            last_ns=one.end_ns,
+            messages=one.messages,
+            size_bytes=one.size_bytes,
+            note=notes.get(one.path, ""),
+        )
+        for one in segments
+    ]
+
+
+async def _serve(
+    app: FastAPI,
+    listening: socket.socket,
+    http: HttpConfig,
+    announce: Announce,
+    index_segments: Callable[[], None],
+) -> None:
+    """Until a signal comes."""
+    server = ConsoleServer(app, listening, http.certificate, http.private_key)
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, server.stop)
+    serving = asyncio.create_task(server.serve())
+    await asyncio.wait(
+        {serving, starting := asyncio.create_task(server.wait_started())},
+        return_when=asyncio.FIRST_COMPLETED,
+    )
+    if starting.done():
+        host, port = listening.getsockname()[:2]
+        scheme = "http" if http.certificate is None else "https"
+        announce(f"ready {scheme}://{f'[{host}]' if ':' in host else host}:{port}")
+    starting.cancel()
+    indexing = asyncio.create_task(_every(SEGMENT_INDEX_S, index_segments))
+    try:
+        await serving
+    finally:
+        indexing.cancel()
+
+
+async def _every(period_s: float, action: Callable[[], None]) -> None:
+    while True:
+        try:
+            await asyncio.to_thread(action)
+        except StoreError:
+            _log.exception("the list of segments was not brought up to date")
+        await asyncio.sleep(period_s)
+
+
+def _ignore(_: object) -> None:
+    return None

@@ -1,0 +1,191 @@
+"""``muster base``: run a station, replay, and look after its data."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from base_station.config import StationConfig
+
+app = typer.Typer(help="The base station.", no_args_is_help=True, pretty_exceptions_enable=False)
+users = typer.Typer(help="Who may log in.", no_args_is_help=True)
+log = typer.Typer(help="The log's segments.", no_args_is_help=True)
+app.add_typer(users, name="users")
+app.add_typer(log, name="log")
+
+ConfigOption = Annotated[
+    Path | None, typer.Option(help="TOML file with settings; flags overrule it.")
+]
+DataOption = Annotated[
+    Path | None, typer.Option(help="Folder of log and database; one station a folder.")
+]
+HttpOption = Annotated[str | None, typer.Option(help="Where the console is served, HOST:PORT.")]
+InsecureOption = Annotated[
+    bool | None,
+    typer.Option("--insecure", help="Accept plain connections from other machines."),
+]
+
+
+@app.command()
+def serve(
+    config: ConfigOption = None,
+    data: DataOption = None,
+    listen: Annotated[
+        list[str] | None, typer.Option(help="Where units connect, tcp/HOST:PORT; repeatable.")
+    ] = None,
+    http: HttpOption = None,
+    insecure: InsecureOption = None,
+) -> None:
+    """Run the station until Ctrl-C.  Prints `ready http://...` when consoles can connect."""
+    # Only the commands that need these import them: they take their time.
+    from base_station.app import run_station  # noqa: PLC0415
+
+    flags = {
+        "data": data,
+        "bus.listen": listen or None,
+        "http.listen": http,
+        "insecure": insecure or None,
+    }
+    run_station(_settle(config, flags), _announce)
+
+
+@app.command()
+def replay(
+    incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
+    config: ConfigOption = None,
+    data: DataOption = None,
+    http: HttpOption = None,
+    speed: Annotated[float, typer.Option(help="Times real time.")] = 1.0,
+    insecure: InsecureOption = None,
+) -> None:
+    """Show a past incident in a console of its own; the folder is only read."""
+    from base_station.app import run_replay_station  # noqa: PLC0415
+
+    flags = {"data": data, "http.listen": http, "insecure": insecure or None}
+    run_replay_station(_settle(config, flags), incident, speed, _announce)
+
+
+@app.command()
+def rebuild(data: Path = Path("muster-data")) -> None:
+    """Make the queryable tables again from the log; people and users are kept."""
+    from rich.progress import Progress  # noqa: PLC0415
+
+    from base_station import app as station  # noqa: PLC0415
+
+    with Progress(transient=True) as progress:
+        task = progress.add_task("reading the log", total=1.0)
+        count = station.rebuild(data, lambda done: progress.update(task, completed=done))
+    typer.echo(f"{count} log records projected")
+
+
+@users.command("list")
+def list_users(data: Path = Path("muster-data")) -> None:
+    """Names and roles."""
+    from base_station.app import open_accounts  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        for user in open_accounts(data, closing).users():
+            typer.echo(f"{user.username}\t{user.role}")
+
+
+@users.command("add")
+def add_user(
+    name: str,
+    role: Annotated[str, typer.Option(help="viewer, commander or administrator.")] = "viewer",
+    data: Path = Path("muster-data"),
+) -> None:
+    """Add a user; the password is asked for, or read from standard input."""
+    from base_station.app import open_accounts  # noqa: PLC0415
+    from base_station.db.accounts import Role  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        open_accounts(data, closing).add_user(name, _ask_password(), Role.of(role))
+
+
+@users.command("password")
+def change_password(name: str, data: Path = Path("muster-data")) -> None:
+    """Give a user a new password; their sessions and tokens end."""
+    from base_station.app import open_accounts  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        open_accounts(data, closing).change_user(name, _ask_password(), None)
+
+
+@users.command("remove")
+def remove_user(name: str, data: Path = Path("muster-data")) -> None:
+    """Remove a user with all sessions and tokens."""
+    from base_station.app import open_accounts  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        open_accounts(data, closing).remove_user(name)
+
+
+@log.command("recover")
+def recover(data: Path = Path("muster-data")) -> None:
+    """End torn segments in order; a station does this by itself when it starts."""
+    from base_station.data_folder import DataFolder  # noqa: PLC0415
+    from shared.mcap_log import recover_log  # noqa: PLC0415
+
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        recoveries = recover_log(folder.log)
+    finally:
+        lock.close()
+    for recovery in recoveries:
+        typer.echo(str(recovery))
+    typer.echo(f"{len(recoveries)} segments were torn")
+
+
+@log.command("list")
+def list_segments(data: Path = Path("muster-data")) -> None:
+    """The segments with their times and sizes."""
+    from datetime import UTC, datetime  # noqa: PLC0415
+
+    from base_station.data_folder import DataFolder  # noqa: PLC0415
+    from shared.clock import NS_PER_S  # noqa: PLC0415
+    from shared.mcap_log import SegmentReader, segment_paths  # noqa: PLC0415
+
+    folder = DataFolder(data)
+    folder.require()
+    for path in segment_paths(folder.log):
+        with SegmentReader(path) as reader:
+            info = reader.info()
+        start = datetime.fromtimestamp(info.start_ns / NS_PER_S, UTC)
+        typer.echo(
+            f"{path.name}\t{start:%Y-%m-%d %H:%M:%S}\t{info.messages} messages\t"
+            f"{info.size_bytes} bytes\t{info.state.value}"
+        )
+
+
+def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
+    """The settings, and what else is set once for the whole process."""
+    from base_station.config import StationConfig  # noqa: PLC0415
+    from shared.config import load_config  # noqa: PLC0415
+    from shared.log import set_up_logging  # noqa: PLC0415
+
+    settings = load_config(config, StationConfig, flags)
+    set_up_logging(settings.log_level)
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+    os.umask(0o077)  # people's photos and tracks are nobody else's business
+    return settings
+
+
+def _announce(line: str) -> None:
+    typer.echo(line)
+    sys.stdout.flush()
+
+
+def _ask_password() -> str:
+    if sys.stdin.isatty():
+        return str(typer.prompt("Password", hide_input=True, confirmation_prompt=True))
+    return sys.stdin.readline().rstrip("\n")

@@ -1,0 +1,27 @@
+"""What stands where in a station's data folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from base_station.recorder import LOG_FOLDER
+from shared.errors import LogError
+from shared.folder_lock import FolderLock
+
+
+class DataFolder:
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.log = path / LOG_FOLDER
+        self.checkpoints = path / "checkpoints"
+        self.database = path / "station.sqlite"
+        self.first_login = path / "first-login.txt"
+
+    def require(self) -> None:
+        """LogError where there is nothing to read."""
+        if not self.log.is_dir():
+            raise LogError(f"there is no station's log in {self.path}; give the folder with --data")
+
+    def lock(self) -> FolderLock:
+        """To change what is in it; DataFolderInUseError while a station works on it."""
+        return FolderLock(self.path, "station", "stop it first")
