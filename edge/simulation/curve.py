@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-
 import numpy as np
 
 from edge.samples import Floats
@@ -35,23 +33,14 @@ class Curve:
 
     def move(self, start_s: float, end_s: float, value: float) -> None:
         """Hold until ``start_s``, then reach ``value`` at ``end_s``; moves come in order."""
+        if start_s < self.end_s - 1e-9 or end_s <= start_s:
+            raise ValueError(f"no move from {start_s} to {end_s} s after one until {self.end_s} s")
         if start_s > self.end_s + 1e-9:
             self._knot_s.append(start_s)
             self._value.append(self.last)
-        if not end_s > self.end_s:
-            raise ValueError(f"a move to {end_s} s cannot follow one that ends at {self.end_s} s")
         self._knot_s.append(end_s)
         self._value.append(value)
         self._pieces = None
-
-    def at(self, t_s: float) -> float:
-        """The value at one instant."""
-        k = bisect_right(self._knot_s, t_s) - 1
-        if k + 1 >= len(self._knot_s):
-            return self.last
-        x = (t_s - self._knot_s[k]) / (self._knot_s[k + 1] - self._knot_s[k])
-        blend = x**4 * (35.0 - x * (84.0 - x * (70.0 - 20.0 * x)))
-        return self._value[k] + blend * (self._value[k + 1] - self._value[k])
 
     def jet(self, t_s: Floats) -> Jet:
         """Value and derivatives at times ``t_s`` (n,), none of them negative."""

@@ -28,9 +28,6 @@ class Jet:
     def __sub__(self, other: Jet) -> Jet:
         return Jet(self.value - other.value, self.rate - other.rate, self.accel - other.accel)
 
-    def __neg__(self) -> Jet:
-        return Jet(-self.value, -self.rate, -self.accel)
-
     def __mul__(self, other: Jet) -> Jet:
         return Jet(
             self.value * other.value,
