@@ -18,6 +18,7 @@ from shared.errors import UserError
 
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
+PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ class ReplaySession:
             before_ns = now_ns
             while self._asked:
                 self._asked.popleft()(self._picture.snapshot(self.view()))
-            self._news.wait(DELTA_S if self._playing else None)
+            self._news.wait(DELTA_S if self._playing else PAUSED_S)
             if not self._playing:
                 before_ns = self._clock.monotonic_ns()
             self._news.clear()
