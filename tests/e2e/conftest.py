@@ -48,16 +48,19 @@ def station(
 @pytest.fixture(scope="module")
 def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
     """The console, logged in through its form."""
-    context = chromium.new_context(viewport={"width": 1280, "height": 800})
-    page = context.new_page()
+    page = chromium.new_page(viewport={"width": 1280, "height": 800})
+    log_in(page, station)
+    yield page
+    page.close()
+
+
+def log_in(page: Page, station: StationProcess) -> None:
     page.goto(station.address)
     username, password = station.login()
     page.get_by_label("User").fill(username)
     page.get_by_label("Password").fill(password)
     page.get_by_role("button", name="Log in").click()
     page.get_by_role("region", name="People").wait_for()
-    yield page
-    context.close()
 
 
 @pytest.fixture(scope="module")

@@ -20,11 +20,15 @@ def free_port() -> int:
 
 
 class StationProcess:
-    """``muster base serve`` on free ports, with its data in a folder."""
+    """``muster base serve`` on free ports, with its data in a folder.
 
-    def __init__(self, data: Path) -> None:
-        self._data = data
-        self._output = data.with_suffix(".txt")
+    With the id of an incident it is ``muster base replay`` on a folder of another station.
+    """
+
+    def __init__(self, data: Path, replayed: str | None = None) -> None:
+        self.data = data
+        self._replayed = replayed
+        self._output = data.with_suffix(".replay.txt" if replayed else ".txt")
         self._process: subprocess.Popen[bytes] | None = None
         self.bus = f"tcp/127.0.0.1:{free_port()}"
         self.http = f"127.0.0.1:{free_port()}"
@@ -32,10 +36,11 @@ class StationProcess:
 
     def start(self) -> None:
         """Returns when it is ready."""
-        serve = ("base", "serve", "--data", str(self._data), "--listen", self.bus)
+        what = ("replay", self._replayed) if self._replayed else ("serve", "--listen", self.bus)
+        flags = ("--data", str(self.data), "--http", self.http)
         with self._output.open("wb") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "shared.command_line", *serve, "--http", self.http],
+                [sys.executable, "-m", "shared.command_line", "base", *what, *flags],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -66,6 +71,6 @@ class StationProcess:
 
     def login(self) -> tuple[str, str]:
         """Name and password that the station made at its first start."""
-        text = (self._data / "first-login.txt").read_text()
+        text = (self.data / "first-login.txt").read_text()
         entries = dict(line.split(": ", 1) for line in text.splitlines())
         return entries["username"], entries["password"]

@@ -10,10 +10,10 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import ConsoleMessage, Locator, Page, expect
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
 from deploy.build_hook import CONSOLE
-from tests.e2e.conftest import ROOT, UNIT
+from tests.e2e.conftest import ROOT, UNIT, log_in
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
@@ -104,15 +104,14 @@ def open_incident(page: Page) -> None:
 
 
 def metres_north(card: Locator) -> float:
-    found = re.search(r"([\d.]+) m north", card.inner_text())
-    assert found is not None, card.inner_text()
+    text = card.text_content() or ""
+    found = re.search(r"([\d.]+) m north", text)
+    assert found is not None, text
     return float(found[1])
 
 
-def test_a_wrong_password_is_refused(page: Page, station: StationProcess) -> None:
-    other = page.context.browser
-    assert other is not None
-    stranger = other.new_page()
+def test_a_wrong_password_is_refused(chromium: Browser, station: StationProcess) -> None:
+    stranger = chromium.new_page()
     stranger.goto(station.address)
     stranger.get_by_label("User").fill("admin")
     stranger.get_by_label("Password").fill("guessed")
@@ -203,3 +202,22 @@ def test_a_lost_station_is_unmistakable_and_comes_back(
     expect(banner).to_have_count(0, timeout=60_000)
     expect(card).to_contain_text(NAME)
     expect(card).to_contain_text("Link good", timeout=SOON_MS)
+
+
+def test_a_station_that_only_replays_never_looks_live(
+    chromium: Browser, page: Page, station: StationProcess
+) -> None:
+    incidents = page.evaluate("fetch('/api/v1/incidents').then((answer) => answer.json())")
+    replaying = StationProcess(station.data, replayed=incidents[0]["incident_id"])
+    replaying.start()
+    try:
+        onlooker = chromium.new_page(viewport={"width": 1280, "height": 800})
+        log_in(onlooker, replaying)
+        banner = onlooker.get_by_role("region", name="Replay")
+        expect(banner).to_contain_text(INCIDENT, timeout=SOON_MS)
+        expect(banner.get_by_label("Time of the incident")).to_be_visible()
+        expect(banner.get_by_role("button", name="Back to live")).to_have_count(0)
+        expect(onlooker.get_by_role("button", name="Units")).to_have_count(0)
+        onlooker.close()
+    finally:
+        replaying.stop()

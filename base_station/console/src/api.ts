@@ -28,6 +28,11 @@ export interface PastAlarm {
   raised_ms: number;
 }
 
+export interface RunningReplay {
+  replay_id: string;
+  incident_id: string;
+}
+
 export type ReplayChange = { playing?: boolean; speed?: number; at_ms?: number };
 
 /** The station refused or could not be reached; the text is for a person. */
@@ -83,6 +88,8 @@ export const assign = (unitId: string, personId: string) =>
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);
 
 export const incidents = () => call<Incident[]>("GET", "/incidents");
+export const incident = (incidentId: string) =>
+  call<Incident>("GET", `/incidents/${id(incidentId)}`);
 export const openIncident = (name: string) => call<Incident>("POST", "/incidents", { name });
 export const closeIncident = (incidentId: string) =>
   call<void>("POST", `/incidents/${id(incidentId)}/close`);
@@ -94,8 +101,9 @@ export const acknowledge = (alarmId: string) =>
 export const resolve = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
 
+export const replays = () => call<RunningReplay[]>("GET", "/replays");
 export const startReplay = (incidentId: string) =>
-  call<{ replay_id: string }>("POST", "/replays", { incident_id: incidentId });
+  call<RunningReplay>("POST", "/replays", { incident_id: incidentId });
 export const changeReplay = (replayId: string, change: ReplayChange) =>
   call<void>("POST", `/replays/${id(replayId)}`, change);
 export const endReplay = (replayId: string) => call<void>("DELETE", `/replays/${id(replayId)}`);

@@ -6,7 +6,7 @@ import "./styles/alarms.css";
 import "./styles/people.css";
 import "./styles/plan.css";
 import "./styles/dialogs.css";
-import { resume } from "./app";
+import { resume } from "./sessions";
 import { App } from "./ui/App";
 
 await resume();

@@ -4,7 +4,7 @@ import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { FeatureLike } from "ol/Feature";
-import type { FloorChoice } from "../app";
+import type { FloorChoice } from "../view";
 import type { Plan } from "../wire";
 import type { Colours } from "./colours";
 import { SITE } from "./site";

@@ -6,7 +6,7 @@ import Polygon from "ol/geom/Polygon";
 import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { displayName, urgencyOf } from "../live/urgency";
-import type { FloorChoice } from "../app";
+import type { FloorChoice } from "../view";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
 import { initials } from "../words";
 import type { Colours } from "./colours";

@@ -1,6 +1,6 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
 import { effect } from "@preact/signals";
-import { floor, selectedUnit } from "../app";
+import { floor, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { firstFloor, floorsOf } from "./floors";
 import type { PlanMap } from "./map";

@@ -1,5 +1,5 @@
 /** The way walked in the last minutes, on one floor or on all.  Pure. */
-import type { FloorChoice } from "../app";
+import type { FloorChoice } from "../view";
 import type { TrailPoint } from "../wire";
 
 export const TRAIL_MS = 5 * 60_000;

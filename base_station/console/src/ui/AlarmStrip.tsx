@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
-import { attempt, mayCommand, select } from "../app";
+import { attempt, isPast, mayAct } from "../sessions";
+import { select } from "../view";
 import * as api from "../api";
 import { useBeeper } from "../sound";
 import type { Picture } from "../live/picture";
@@ -7,17 +8,12 @@ import type { AlarmView } from "../wire";
 import { duration } from "../words";
 import { Icon } from "./Icon";
 
-interface Props {
-  picture: Picture;
-  actions: boolean; // a replay is only looked at
-}
-
 const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
 
-export function AlarmStrip({ picture, actions }: Props) {
+export function AlarmStrip({ picture }: { picture: Picture }) {
   const sound = useSignal(false);
   const alarms = picture.openAlarms.value;
-  useBeeper(sound.value && actions, alarms);
+  useBeeper(sound.value && !isPast.value, alarms);
   return (
     <section class="alarms" aria-label="Open alarms">
       <div class="alarms-head">
@@ -33,16 +29,21 @@ export function AlarmStrip({ picture, actions }: Props) {
       </div>
       <ul aria-live="assertive" aria-relevant="additions">
         {alarms.map((alarm) => (
-          <AlarmRow key={alarm.alarm_id} alarm={alarm} picture={picture} actions={actions} />
+          <AlarmRow key={alarm.alarm_id} alarm={alarm} picture={picture} />
         ))}
       </ul>
     </section>
   );
 }
 
-function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
+interface RowProps {
+  alarm: AlarmView;
+  picture: Picture;
+}
+
+function AlarmRow({ alarm, picture }: RowProps) {
   const taken = alarm.state === "acknowledged";
-  const placeable = picture.unit(alarm.unit_id) !== undefined;
+  const unit = picture.unit(alarm.unit_id);
   return (
     <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
@@ -51,8 +52,8 @@ function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
         type="button"
         class="what"
         title="Show on the plan"
-        disabled={!placeable}
-        onClick={() => select(alarm.unit_id)}
+        disabled={unit === undefined}
+        onClick={() => select(alarm.unit_id, unit?.peek().position?.floor ?? null)}
       >
         {alarm.text}
       </button>
@@ -60,7 +61,7 @@ function AlarmRow({ alarm, picture, actions }: { alarm: AlarmView } & Props) {
         for {duration(picture.nowMs.value - alarm.raised_ms)}
       </span>
       <span class="state">{taken ? `acknowledged by ${alarm.by}` : "not acknowledged"}</span>
-      {actions && mayCommand.value && <AlarmAction alarm={alarm} />}
+      {mayAct.value && <AlarmAction alarm={alarm} />}
     </li>
   );
 }

@@ -1,4 +1,5 @@
-import { live, notice, picture, replay, user } from "../app";
+import { isPast, live, picture, replay, user } from "../sessions";
+import { notice } from "../view";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
 import { Header } from "./Header";
@@ -12,14 +13,14 @@ export function App() {
   if (user.value === null) return <Login />;
   const shown = picture.value;
   if (shown === null) return null;
-  const kind = replay.value === null ? "live" : "replay";
+  const kind = isPast.value ? "replay" : "live";
   const stopped = shown.link.value.kind === "down";
   return (
     <div class={`console ${kind} ${stopped ? "stopped" : ""}`}>
       <LinkBanner picture={shown} />
       {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}
       <Header picture={shown} />
-      <AlarmStrip picture={shown} actions={replay.value === null} />
+      <AlarmStrip picture={shown} />
       <main class="columns">
         <People picture={shown} key={kind} />
         <PlanPanel picture={shown} />

@@ -1,6 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { memo } from "preact/compat";
-import { mayCommand, openDialog, replay, select, selectedUnit } from "../app";
+import { mayAct } from "../sessions";
+import { openDialog, select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { isOld, regionAt } from "../plan/ellipse";
@@ -33,7 +34,7 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         class="card-head"
         aria-pressed={chosen}
         title="Show on the plan"
-        onClick={() => select(unitId)}
+        onClick={() => select(unitId, unit.position?.floor ?? null)}
       >
         <Photo name={name} url={unit.person?.photo_url ?? null} />
         <span class="names">
@@ -187,7 +188,7 @@ function UnknownUnit({ unitId }: { unitId: string }) {
   return (
     <p class="unknown">
       Not one of ours yet: kept in the log, not believed.
-      {mayCommand.value && replay.value === null && (
+      {mayAct.value && (
         <button type="button" onClick={() => openDialog("units", unitId)}>
           Register
         </button>

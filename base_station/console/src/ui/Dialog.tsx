@@ -1,6 +1,6 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { dialog } from "../app";
+import { dialog } from "../view";
 
 /** The browser's own dialog: keeps the focus, ends with Escape. */
 export function Dialog({ title, children }: { title: string; children: ComponentChildren }) {

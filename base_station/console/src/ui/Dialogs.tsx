@@ -1,4 +1,4 @@
-import { dialog } from "../app";
+import { dialog } from "../view";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";

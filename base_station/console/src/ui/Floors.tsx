@@ -1,4 +1,4 @@
-import { floor, type FloorChoice } from "../app";
+import { floor, type FloorChoice } from "../view";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
 import { Icon } from "./Icon";

@@ -1,4 +1,5 @@
-import { leave, mayCommand, openDialog, replay, user } from "../app";
+import { leave, mayAct, user } from "../sessions";
+import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes } from "../words";
 import { Icon } from "./Icon";
@@ -14,7 +15,7 @@ export function Header({ picture }: { picture: Picture }) {
         <button type="button" onClick={() => openDialog("incidents")}>
           Incidents
         </button>
-        {mayCommand.value && replay.value === null && (
+        {mayAct.value && (
           <>
             <button type="button" onClick={() => openDialog("units")}>
               Units

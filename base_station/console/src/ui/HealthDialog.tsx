@@ -1,4 +1,4 @@
-import { picture } from "../app";
+import { picture } from "../sessions";
 import { bytes } from "../words";
 import { Dialog } from "./Dialog";
 

@@ -1,4 +1,4 @@
-import { attempt, live, mayCommand, replay, watchReplay } from "../app";
+import { attempt, live, mayAct, watchReplay } from "../sessions";
 import * as api from "../api";
 import { dateAndTime, minutes } from "../words";
 import { Dialog } from "./Dialog";
@@ -8,11 +8,10 @@ export function IncidentsDialog() {
   const [incidents, again] = useLoaded(api.incidents);
   const open = live.value?.picture.incident.value ?? null;
   const running = open !== null && open.closed_ms === null ? open : null;
-  const command = mayCommand.value && replay.value === null;
   return (
     <Dialog title="Incidents">
-      {command && running === null && <OpenForm done={again} />}
-      {command && running !== null && (
+      {mayAct.value && running === null && <OpenForm done={again} />}
+      {mayAct.value && running !== null && (
         <p class="row">
           <span>
             <strong>{running.name}</strong> is open.

@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { begin } from "../app";
+import { begin } from "../sessions";
 import * as api from "../api";
 
 export function Login() {

@@ -1,4 +1,4 @@
-import { attempt } from "../app";
+import { attempt } from "../sessions";
 import * as api from "../api";
 import { Dialog } from "./Dialog";
 import { Photo } from "./Photo";

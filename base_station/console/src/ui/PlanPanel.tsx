@@ -1,6 +1,6 @@
 import { useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { centring, select, selectedUnit } from "../app";
+import { centring, select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { follow } from "../plan/follow";
 import { PlanMap } from "../plan/map";
@@ -13,7 +13,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   useEffect(() => {
     if (target.current === null) return undefined;
-    const made = new PlanMap(target.current, select);
+    const made = new PlanMap(target.current, (unitId) => select(unitId, null));
     map.current = made;
     const stop = follow(made, picture);
     return () => {

@@ -1,8 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { attempt, stopReplay } from "../app";
+import { attempt, besideLive, stopReplay, type Replay } from "../sessions";
 import * as api from "../api";
-import type { Session } from "../live/session";
 import type { Picture } from "../live/picture";
 import { clockTime, dateAndTime, duration } from "../words";
 import { Icon } from "./Icon";
@@ -15,7 +14,7 @@ function speeds(now: number): number[] {
 }
 
 interface Props {
-  replay: { id: string; session: Session; incident: api.Incident };
+  replay: Replay;
   live: Picture;
 }
 
@@ -29,10 +28,14 @@ export function ReplayBar({ replay, live }: Props) {
       <span class="replay-what">
         {replay.incident.name}, {dateAndTime(replay.incident.opened_ms)}. This is the past.
       </span>
-      <LiveAlarms live={live} />
-      <button type="button" class="primary" onClick={stopReplay}>
-        Back to live
-      </button>
+      {besideLive.value && (
+        <>
+          <LiveAlarms live={live} />
+          <button type="button" class="primary" onClick={stopReplay}>
+            Back to live
+          </button>
+        </>
+      )}
       {state && (
         <div class="transport">
           <button

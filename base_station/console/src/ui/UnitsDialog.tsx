@@ -1,4 +1,5 @@
-import { attempt, dialogUnit, live } from "../app";
+import { attempt, live } from "../sessions";
+import { dialogUnit } from "../view";
 import * as api from "../api";
 import type { UnitView } from "../wire";
 import { linkWord } from "../words";

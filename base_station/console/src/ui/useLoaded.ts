@@ -1,6 +1,6 @@
 import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { attempt } from "../app";
+import { attempt } from "../sessions";
 
 /** What the station answers, and a way to ask again. */
 export function useLoaded<T>(load: () => Promise<T>): [Signal<T | null>, () => void] {

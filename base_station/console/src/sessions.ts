@@ -1,0 +1,104 @@
+/** Who is logged in, what is live, and which replay is watched. */
+import { computed, effect, signal } from "@preact/signals";
+import * as api from "./api";
+import { Session } from "./live/session";
+import { notice, reset } from "./view";
+
+export interface Replay {
+  id: string;
+  session: Session;
+  incident: api.Incident;
+}
+
+export const user = signal<api.Me | null>(null);
+export const live = signal<Session | null>(null);
+export const replay = signal<Replay | null>(null);
+
+/** The picture on the screen: the replay while there is one, else what is live. */
+export const picture = computed(() => (replay.value?.session ?? live.value)?.picture ?? null);
+export const isPast = computed(() => picture.value !== null && picture.value.replay.value !== null);
+/** Whether there is a live picture behind the replay. */
+export const besideLive = computed(() => replay.value?.session !== live.value);
+/** A viewer only looks, and the past is only looked at. */
+export const mayAct = computed(
+  () => user.value !== null && user.value.role !== "viewer" && !isPast.value,
+);
+
+/** Show the console of whoever is logged in; without anyone the login form stays. */
+export async function resume(): Promise<void> {
+  try {
+    begin(await api.me());
+  } catch {
+    user.value = null;
+  }
+}
+
+export function begin(me: api.Me): void {
+  user.value = me;
+  live.value ??= new Session(api.LIVE_PATH, forget);
+}
+
+export async function leave(): Promise<void> {
+  stopReplay();
+  await attempt(api.logout());
+  forget();
+}
+
+export async function watchReplay(incident: api.Incident): Promise<void> {
+  const started = await attempt(api.startReplay(incident.incident_id));
+  if (started === null) return;
+  stopReplay();
+  const session = new Session(api.replayPath(started.replay_id), replayEnded);
+  replay.value = { id: started.replay_id, session, incident };
+  reset();
+}
+
+export function stopReplay(): void {
+  const watched = replay.peek();
+  if (watched === null || watched.session === live.peek()) return;
+  watched.session.close();
+  replay.value = null;
+  reset();
+  void api.endReplay(watched.id).catch(() => undefined); // it ends by itself with its last viewer
+}
+
+/** The result, or null with the reason shown to the person. */
+export async function attempt<T>(work: Promise<T>): Promise<T | null> {
+  try {
+    return await work;
+  } catch (error) {
+    if (error instanceof api.ApiError && error.status === 401) forget();
+    notice.value = error instanceof Error ? error.message : String(error);
+    return null;
+  }
+}
+
+/** Back to the login form: the station knows nobody here any more. */
+function forget(): void {
+  stopReplay();
+  live.peek()?.close();
+  live.value = null;
+  replay.value = null;
+  user.value = null;
+  reset();
+}
+
+function replayEnded(): void {
+  replay.peek()?.session.close();
+  replay.value = null;
+  notice.value = "The station has ended this replay.";
+}
+
+/** `muster base replay` shows the past where other stations show what is live. */
+const liveIsPast = computed(() => live.value !== null && live.value.picture.replay.value !== null);
+
+effect(() => {
+  if (liveIsPast.value && live.value !== null) void adopt(live.value);
+});
+
+async function adopt(session: Session): Promise<void> {
+  const [running] = (await attempt(api.replays())) ?? [];
+  if (running === undefined) return;
+  const incident = await attempt(api.incident(running.incident_id));
+  if (incident !== null) replay.value = { id: running.replay_id, session, incident };
+}

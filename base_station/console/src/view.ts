@@ -1,0 +1,34 @@
+/** What the person looks at: the chosen unit and floor, the open dialog, what was last said. */
+import { signal } from "@preact/signals";
+
+export const selectedUnit = signal<string | null>(null);
+/** Counts up when somebody asks to see the selected unit on the plan. */
+export const centring = signal(0);
+
+export type FloorChoice = number | "all";
+export const floor = signal<FloorChoice>("all");
+
+export type DialogName = "incidents" | "people" | "units" | "health";
+export const dialog = signal<DialogName | null>(null);
+/** The unit that the units dialog begins with. */
+export const dialogUnit = signal<string | null>(null);
+
+export const notice = signal<string | null>(null);
+
+/** Show a unit on the plan; `on` is the floor where it is, as far as that is known. */
+export function select(unitId: string, on: number | null): void {
+  selectedUnit.value = unitId;
+  if (on !== null && floor.peek() !== "all") floor.value = on;
+  centring.value += 1;
+}
+
+export function openDialog(name: DialogName, unitId: string | null = null): void {
+  dialogUnit.value = unitId;
+  dialog.value = name;
+}
+
+/** As at the beginning, but for the floor. */
+export function reset(): void {
+  selectedUnit.value = null;
+  dialog.value = null;
+}
