@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import importlib.metadata
-import re
+import logging
 import secrets
-from collections.abc import Callable
 from contextlib import ExitStack
+from datetime import UTC, datetime
 from queue import SimpleQueue
 from threading import Event
 
@@ -15,7 +15,8 @@ from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
-from edge.link import Link
+from edge.link import Link, OtherEnd
+from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, sensor_of
@@ -26,13 +27,11 @@ from edge.sources.port import Source
 from edge.spool import open_spool
 from edge.tracker import make_tracker
 from shared.bus import Bus
-from shared.channels import validate_unit_id
 from shared.clock import SystemClock
 from shared.envelope import Stamper
-from shared.errors import ConfigError
 from shared.messages import EventKind, UnitEvent
 
-_ENDPOINT = re.compile(r"tcp/(\[[0-9A-Fa-f:.]+\]|[^\s/:]+):([0-9]{1,5})")
+logger = logging.getLogger(__name__)
 
 
 def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bool) -> None:
@@ -40,24 +39,27 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
 
     Raises MusterError where the settings cannot work; nothing has been sent then.
     """
-    validate_unit_id(config.unit)
-    open_bus = _bus_opener(config.connect)
+    member = membership(config)
     source = open_source(config.source)
     with ExitStack() as held:
         held.callback(source.close)
         folder = DataFolder(config.data / config.unit)
         held.callback(folder.close)
+        speed = config.speed if paced else None
         agent = compose_agent(
-            config, folder, source, open_bus, speed=config.speed if paced else None
+            config, member.unit_id, folder, source, ZenohStation(member), speed=speed
         )
+        if member.identity is None:
+            logger.warning("the link is not secured: anyone on this network can listen and forge")
         agent.run(stop, for_s=for_s)
 
 
 def compose_agent(
     config: EdgeConfig,
+    unit_id: str,
     folder: DataFolder,
     source: Source,
-    open_bus: Callable[[], Bus],
+    station: OtherEnd,
     speed: float | None,
 ) -> Agent:
     """The agent and its threads; ``speed`` None plays a recording without waiting."""
@@ -65,8 +67,8 @@ def compose_agent(
     spool, damaged = open_spool(
         folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
     )
-    raw = RawStream(config.unit, spool.boot_id)
-    stamper = Stamper(config.unit, spool.boot_id, clock)
+    raw = RawStream(unit_id, spool.boot_id)
+    stamper = Stamper(unit_id, spool.boot_id, clock)
     description = raw.description(
         clock.monotonic_ns(), source.description, source=config.source, tracker=config.tracker
     )
@@ -78,15 +80,14 @@ def compose_agent(
         config.position_rate_hz,
     )
     commands: SimpleQueue[bytes] = SimpleQueue()
-    server = JournalServer(config.unit, spool)
+    server = JournalServer(unit_id, spool)
     link = Link(
-        config.unit,
-        ", ".join(config.connect),
-        open_bus,
+        unit_id,
+        station,
         lambda _key, payload: commands.put(payload),
         (server.key_expression, server.replies),
     )
-    outbox = Outbox(config.unit, spool, link.publish)
+    outbox = Outbox(unit_id, spool, link.publish)
     if damaged is not None:
         detail = f"the journal was damaged and is set aside as {damaged.name}"
         outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
@@ -110,24 +111,21 @@ def compose_agent(
     )
 
 
-def _bus_opener(endpoints: tuple[str, ...]) -> Callable[[], Bus]:
-    """Checks the endpoints now; what it returns imports Zenoh when the link is opened."""
-    if not endpoints:
-        raise ConfigError("connect names no station; write for example tcp/127.0.0.1:7447")
-    for endpoint in endpoints:
-        parts = _ENDPOINT.fullmatch(endpoint)
-        if parts is None or not 0 < int(parts[2]) < 65536:
-            raise ConfigError(
-                f"{endpoint!r} is no place to connect to; write tcp/HOST:PORT, for example "
-                "tcp/127.0.0.1:7447"
-            )
+class ZenohStation:
+    """The station as a unit reaches it over Zenoh, which is loaded when it is needed."""
 
-    def open_bus() -> Bus:
+    def __init__(self, member: Membership) -> None:
+        self._member = member
+
+    def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
-        return ZenohBus(UnitEndpoint(endpoints))
+        return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
 
-    return open_bus
+    def why_no_link(self) -> str:
+        from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load
+
+        return why_no_link(self._member.connect, self._member.identity, datetime.now(UTC))
 
 
 def _new_boot_id() -> int:

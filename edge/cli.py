@@ -24,8 +24,12 @@ def run(
         str | None,
         typer.Option(help="Where samples come from; `muster edge sources` lists the kinds."),
     ] = None,
+    enrolment: Annotated[
+        Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
+    ] = None,
     connect: Annotated[
-        list[str] | None, typer.Option(help="The station, tcp/HOST:PORT; may be repeated.")
+        list[str] | None,
+        typer.Option(help="The station, tls/HOST:PORT or tcp/HOST:PORT; may be repeated."),
     ] = None,
     data: Annotated[
         Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
@@ -50,6 +54,7 @@ def run(
 
     flags = {
         "unit": unit,
+        "enrolment": enrolment,
         "source": source,
         "connect": connect,
         "data": data,

@@ -23,9 +23,10 @@ class StorageConfig:
 class EdgeConfig:
     """One agent, one wearable."""
 
-    unit: str  # unique among the units of a station
     source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH
-    connect: tuple[str, ...] = ("tcp/127.0.0.1:7447",)  # the station
+    unit: str = ""  # unique among the units of a station; empty: as enrolled
+    enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
+    connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447
     data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
     tracker: str = "eskf"
     position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0

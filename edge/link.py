@@ -7,12 +7,12 @@ thread does it; publishing without a link drops the bytes, which the journal kee
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 from contextlib import ExitStack
 from threading import Condition, Lock, Thread
+from typing import Protocol
 
 from shared.bus import Bus, QueryHandler, SampleHandler
-from shared.channels import COMMAND, EVERY_UNIT, Qos, alive_key
+from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, Qos, alive_key
 from shared.errors import BusError
 
 logger = logging.getLogger(__name__)
@@ -23,20 +23,30 @@ _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
 _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 
 
+class OtherEnd(Protocol):
+    """The station as seen from a unit."""
+
+    def open_bus(self) -> Bus:
+        """Raises BusError when it cannot be opened."""
+        ...
+
+    def why_no_link(self) -> str:
+        """For a person, when a bus stays without a link; may take some seconds."""
+        ...
+
+
 class Link:
     """Opens and closes a bus as told, and declares the unit on it each time."""
 
     def __init__(
         self,
         unit_id: str,
-        where: str,
-        open_bus: Callable[[], Bus],
+        station: OtherEnd,
         on_command: SampleHandler,
         journal: tuple[str, QueryHandler],
     ) -> None:
         self._unit_id = unit_id
-        self._where = where
-        self._open_bus = open_bus
+        self._station = station
         self._on_command = on_command
         self._journal = journal
         self._bus: Bus | None = None
@@ -45,7 +55,8 @@ class Link:
         self._changed = Condition()
         self._using = Lock()
         self._failure_told = False
-        self._linked_told: bool | None = None
+        self._heard_told: bool | None = None
+        self._looks_unheard = 0
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
 
@@ -83,7 +94,7 @@ class Link:
         """Keep the link up for as long as it is wanted; False when it cannot be opened."""
         with ExitStack() as declared:
             try:
-                bus = self._open_bus()
+                bus = self._station.open_bus()
                 declared.callback(bus.close)
                 self._declare(bus, declared)
             except BusError as error:
@@ -102,7 +113,7 @@ class Link:
         looks_without = 0
         while looks_without * _LOOK_EVERY_S < _REOPEN_AFTER_S:
             looks_without = 0 if bus.is_linked() else looks_without + 1
-            self._tell(looks_without)
+            self._tell(bus, looks_without)
             with self._changed:
                 if self._changed.wait_for(
                     lambda: self._ended or not self._wanted_up, timeout=_LOOK_EVERY_S
@@ -110,14 +121,17 @@ class Link:
                     return
         logger.debug("opening the bus anew")
 
-    def _tell(self, looks_without: int) -> None:
+    def _tell(self, bus: Bus, looks_without: int) -> None:
         """Say once when the station comes, and once when it goes."""
-        if looks_without == 0 and self._linked_told is not True:
-            self._linked_told = True
+        heard = looks_without == 0 and bus.is_heard(HEARTBEAT.key(self._unit_id))
+        self._looks_unheard = 0 if heard else self._looks_unheard + 1
+        if heard and self._heard_told is not True:
+            self._heard_told = True
             logger.info("linked to the station")
-        elif looks_without == _LOOKS_UNTIL_TOLD and self._linked_told is not False:
-            self._linked_told = False
-            logger.warning("no link to %s; messages are kept and sent later", self._where)
+        elif self._looks_unheard >= _LOOKS_UNTIL_TOLD and self._heard_told is not False:
+            self._heard_told = False
+            why = self._station.why_no_link() if looks_without else "no station listens there"
+            logger.warning("no link: %s; messages are kept and sent later", why)
 
     def _declare(self, bus: Bus, declared: ExitStack) -> None:
         for unit_id in (self._unit_id, EVERY_UNIT):

@@ -13,6 +13,7 @@ from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.sources import open_source
 from edge.tracker.port import Quality, Reason
+from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, POSITION, STATUS, parse_key
 from shared.codec import decode
@@ -34,6 +35,14 @@ def walk() -> np.ndarray:
     )
 
 
+class Nobody:
+    def open_bus(self) -> Bus:
+        return MemoryRouter().attach_unit()
+
+    def why_no_link(self) -> str:
+        return "nobody is there"
+
+
 def run_agent_on(rows: np.ndarray, folder: Path):
     """What an agent sends when it plays these rows: positions, statuses, events."""
     recording = folder / "walk"
@@ -45,7 +54,7 @@ def run_agent_on(rows: np.ndarray, folder: Path):
     config = EdgeConfig(unit="u1", source=f"recording:{recording}", data=folder)
     data = DataFolder(folder / "u1")
     source = open_source(config.source)
-    agent = compose_agent(config, data, source, MemoryRouter().attach_unit, speed=None)
+    agent = compose_agent(config, "u1", data, source, Nobody(), speed=None)
     spool = agent._parts.spool
     read = spool.close
     sent: list[tuple[str, bytes]] = []

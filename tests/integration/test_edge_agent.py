@@ -134,7 +134,8 @@ def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
 def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, start):
     agent = start()
     assert agent.stderr is not None
-    assert "no link to" in agent.stderr.readline()
+    assert "not secured" in agent.stderr.readline()
+    assert "no link: 127.0.0.1 is there but nothing listens" in agent.stderr.readline()
     station = Station(port)
     try:
         wait_until(lambda: station.of(Position))

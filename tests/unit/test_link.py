@@ -10,7 +10,7 @@ import pytest
 
 from edge.link import Link
 from shared.bus_memory import MemoryRouter
-from shared.channels import COMMAND, EVERY_UNIT, POSITION, Qos, alive_key
+from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
 from shared.errors import BusError
 
 
@@ -29,6 +29,7 @@ class Station:
         self.bus = self.router.attach_station()
         self.alive: list[bool] = []
         self.positions: list[bytes] = []
+        self.bus.subscribe(HEARTBEAT.key("*"), lambda _, payload: None)
         self.bus.watch_alive(alive_key("*"), lambda _, alive: self.alive.append(alive))
         self.bus.subscribe(POSITION.key("*"), lambda _, payload: self.positions.append(payload))
 
@@ -38,11 +39,18 @@ def station() -> Station:
     return Station()
 
 
+class OtherEnd:
+    def __init__(self, open_bus) -> None:
+        self.open_bus = open_bus
+
+    def why_no_link(self) -> str:
+        return "nobody is there"
+
+
 def make_link(open_bus, commands) -> Link:
     return Link(
         "u1",
-        "nowhere",
-        open_bus,
+        OtherEnd(open_bus),
         lambda _, payload: commands.append(payload),
         ("muster/v1/u1/journal/**", lambda key, parameters, payload: [b"journal"]),
     )
@@ -101,7 +109,7 @@ def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
     bus.link_down()
     with caplog.at_level(logging.INFO):
         link = make_link(lambda: bus, [])
-        wait_until(lambda: "no link to nowhere" in caplog.text)
+        wait_until(lambda: "no link: nobody is there" in caplog.text)
         bus.link_up()
         wait_until(lambda: "linked to the station" in caplog.text)
         link.close()
