@@ -1,0 +1,155 @@
+"""Consoles without a screen: log in over HTTP, then listen on the WebSocket as a browser does."""
+
+from __future__ import annotations
+
+import json
+import time
+import urllib.request
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from threading import Event, Thread
+from typing import Any
+
+import msgspec
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from shared.clock import NS_PER_S
+
+_NS_PER_MS = 1_000_000
+
+
+class _PositionSeen(msgspec.Struct):
+    t_ms: int
+
+
+class _UnitSeen(msgspec.Struct):
+    unit_id: str
+    position: _PositionSeen | None = None
+
+
+class _HealthSeen(msgspec.Struct):
+    messages: int
+    problems: tuple[str, ...] = ()
+
+
+class _MessageSeen(msgspec.Struct):
+    """The parts of a snapshot or delta that the figures need."""
+
+    type: str
+    seq: int
+    units: tuple[_UnitSeen, ...] = ()
+    health: _HealthSeen | None = None
+
+
+class Api:
+    """The station's API as a logged-in commander."""
+
+    def __init__(self, url: str, username: str, password: str) -> None:
+        self._url = url
+        reply = self._open("POST", "/login", {"username": username, "password": password}, "")
+        self.cookie = reply.headers["set-cookie"].partition(";")[0]
+
+    @property
+    def live_url(self) -> str:
+        return self._url.replace("http", "ws", 1) + "/api/v1/live"
+
+    @property
+    def origin(self) -> str:
+        return self._url
+
+    def get(self, path: str) -> Any:
+        return json.load(self._open("GET", path, None, self.cookie))
+
+    def post(self, path: str, body: dict[str, Any]) -> Any:
+        return json.load(self._open("POST", path, body, self.cookie))
+
+    def _open(self, method: str, path: str, body: dict[str, Any] | None, cookie: str) -> Any:
+        request = urllib.request.Request(  # noqa: S310  # our own station's address
+            f"{self._url}/api/v1{path}",
+            method=method,
+            data=None if body is None else json.dumps(body).encode(),
+            headers={"Content-Type": "application/json", "Origin": self._url, "Cookie": cookie},
+        )
+        return urllib.request.urlopen(request, timeout=30.0)  # noqa: S310
+
+
+class Console:
+    """Listens in a thread of its own and notes when each unit's position was shown."""
+
+    def __init__(self, api: Api) -> None:
+        self.shown: dict[str, dict[int, int]] = {}  # unit -> t_ms of a position -> first seen, ns
+        self.messages_stepped = 0
+        self.problems: tuple[str, ...] = ()
+        self.bytes_received = 0
+        self.snapshots = 0
+        self.gaps = 0
+        self._seq: int | None = None
+        self._ready = Event()
+        self._socket: ClientConnection = connect(
+            api.live_url,
+            additional_headers={"Cookie": api.cookie, "Origin": api.origin},
+            max_size=None,
+            compression=None,
+        )
+        self._thread = Thread(target=self._listen, name="bench-console", daemon=True)
+        self._thread.start()
+
+    def wait_ready(self, timeout_s: float) -> bool:
+        """The first snapshot is there."""
+        return self._ready.wait(timeout_s)
+
+    def close(self) -> None:
+        self._socket.close()
+        self._thread.join()
+
+    def _listen(self) -> None:
+        decoder = msgspec.json.Decoder(_MessageSeen)
+        try:
+            for text in self._socket:
+                seen_ns = time.time_ns()
+                self.bytes_received += len(text)
+                self._note(decoder.decode(text), seen_ns)
+        except ConnectionClosed:
+            return
+
+    def _note(self, message: _MessageSeen, seen_ns: int) -> None:
+        if message.type == "snapshot":
+            self.snapshots += 1
+            self._ready.set()
+        elif self._seq is not None and message.seq != self._seq + 1:
+            self.gaps += 1
+        self._seq = message.seq
+        for unit in message.units:
+            if unit.position is not None:
+                self.shown.setdefault(unit.unit_id, {}).setdefault(unit.position.t_ms, seen_ns)
+        if message.health is not None:
+            self.messages_stepped = message.health.messages
+            self.problems = message.health.problems
+
+
+def latencies_ms(
+    sent_ns: Mapping[str, Sequence[int]], shown: Mapping[str, Mapping[int, int]]
+) -> list[float]:
+    """Sensor time to WebSocket of each position that was shown, one for each that was sent.
+
+    The station states a position's time by its own idea of the unit's clock, some milliseconds
+    off, so a shown position is that of the nearest sensor time.
+    """
+    latencies: list[float] = []
+    for unit_id, times_ns in sent_ns.items():
+        first_seen: dict[int, int] = {}
+        for t_ms, seen_ns in shown.get(unit_id, {}).items():
+            nearest_ns = _nearest(times_ns, t_ms * _NS_PER_MS)
+            if nearest_ns is not None and seen_ns >= nearest_ns:
+                first_seen[nearest_ns] = min(seen_ns, first_seen.get(nearest_ns, seen_ns))
+        latencies += [(seen_ns - t_ns) / _NS_PER_MS for t_ns, seen_ns in first_seen.items()]
+    return latencies
+
+
+def _nearest(times_ns: Sequence[int], t_ns: int) -> int | None:
+    """The nearest of rising times, at most a second away."""
+    index = bisect_left(times_ns, t_ns)
+    around = times_ns[max(index - 1, 0) : index + 1]
+    nearest = min(around, key=lambda candidate: abs(candidate - t_ns), default=None)
+    return nearest if nearest is not None and abs(nearest - t_ns) < NS_PER_S else None

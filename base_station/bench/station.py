@@ -1,0 +1,135 @@
+"""A real station as a process of its own, on free ports and a folder of its own."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import sqlite3
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import psutil
+
+from base_station.bench.console import Api
+from base_station.data_folder import DataFolder
+from shared.channels import parse_key
+from shared.clock import NS_PER_S
+from shared.codec import decode
+from shared.errors import StoreError, WireError
+from shared.mcap_log import read_log
+from shared.messages import STATION_ID, FusedPosition
+
+_SAID = "station.err"
+_START_TIMEOUT_S = 60.0
+_STOP_TIMEOUT_S = 30.0
+
+
+class Recorded(NamedTuple):
+    """What the log and the database hold after the run."""
+
+    from_units: int  # messages, each counted once
+    repeated: int
+    damage: int
+    track_points_due: int  # of the log's fused positions, one a second and unit
+    track_points: int  # in the database
+
+
+class StationProcess:
+    def __init__(self, data: Path, bus_address: str, process: subprocess.Popen[str]) -> None:
+        self.bus_address = bus_address
+        self._data = DataFolder(data)
+        self._process = process
+        self._usage = psutil.Process(process.pid)
+        self._cpu_s = 0.0
+        self._since = 0.0
+        self.api = Api(_ready_url(process, data / _SAID), *_first_login(self._data.first_login))
+
+    def begin_measuring(self) -> None:
+        self._cpu_s, self._since = self._cpu_now_s(), time.perf_counter()
+
+    def cpu_share(self) -> float:
+        """Of one core, since ``begin_measuring``, children included."""
+        return (self._cpu_now_s() - self._cpu_s) / (time.perf_counter() - self._since)
+
+    def memory_mb(self) -> float:
+        processes = (self._usage, *self._usage.children(recursive=True))
+        return sum(float(process.memory_info().rss) for process in processes) / 1e6
+
+    def stop(self) -> int:
+        """In order; its exit code."""
+        self._process.send_signal(signal.SIGINT)
+        return self._process.wait(_STOP_TIMEOUT_S)
+
+    def recorded(self) -> Recorded:
+        """Read after ``stop``."""
+        messages: Counter[tuple[str, int, int]] = Counter()
+        seconds: set[tuple[str, int]] = set()
+        damage: list[str] = []
+        for _, key, payload in read_log(self._data.log, on_damage=damage.append):
+            try:
+                unit_id, channel = parse_key(key)
+                message = decode(channel, payload)
+            except WireError as error:
+                damage.append(str(error))
+                continue
+            if isinstance(message, FusedPosition):
+                seconds.add((message.unit_id, message.t_meas_ns // NS_PER_S))
+            elif unit_id != STATION_ID:
+                messages[unit_id, message.header.boot_id, message.header.seq] += 1
+        with closing(sqlite3.connect(self._data.database)) as database:
+            [(points,)] = database.execute("SELECT count(*) FROM tracks").fetchall()
+        repeated = sum(messages.values()) - len(messages)
+        return Recorded(len(messages), repeated, len(damage), len(seconds), int(points))
+
+    def _cpu_now_s(self) -> float:
+        processes = (self._usage, *self._usage.children(recursive=True))
+        return sum(sum(process.cpu_times()[:2]) for process in processes)
+
+
+@contextmanager
+def station_process(data: Path) -> Iterator[StationProcess]:
+    """Runs ``muster base serve``; ended hard where ``stop`` was not called."""
+    bus_address = f"tcp/127.0.0.1:{free_port()}"
+    command = "from base_station.cli import app; app()"
+    arguments = ["serve", "--data", str(data), "--listen", bus_address]
+    arguments += ["--http", f"127.0.0.1:{free_port()}"]
+    with subprocess.Popen(
+        [sys.executable, "-c", command, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=(data / _SAID).open("w"),
+        text=True,
+    ) as process:
+        try:
+            yield StationProcess(data, bus_address, process)
+        finally:
+            if process.poll() is None:
+                process.kill()
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def _ready_url(process: subprocess.Popen[str], said: Path) -> str:
+    assert process.stdout is not None
+    deadline = time.monotonic() + _START_TIMEOUT_S
+    for line in process.stdout:
+        if "ready http" in line:
+            return line.split("ready ", 1)[1].strip()
+        if time.monotonic() > deadline:
+            break
+    raise StoreError(f"the station to be measured did not start: {said.read_text()[-2000:]}")
+
+
+def _first_login(note: Path) -> tuple[str, str]:
+    fields = dict(line.split(": ", 1) for line in note.read_text(encoding="utf-8").splitlines())
+    return fields["username"], fields["password"]

@@ -1,0 +1,234 @@
+"""``muster bench bus``: what a station takes in, and how soon a console shows it."""
+
+from __future__ import annotations
+
+import json
+import time
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+import numpy as np
+import psutil
+import typer
+from rich.console import Console as Terminal
+from rich.progress import Progress
+from rich.table import Table
+
+from base_station.bench.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
+from base_station.bench.console import Console, latencies_ms
+from base_station.bench.station import Recorded, StationProcess, free_port, station_process
+from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
+
+_LINK_TIMEOUT_S = 60.0
+_SETTLE_S = 2.0
+_FLOOD_S = 2.0
+_LATENCY_P99_MS = 200.0  # to reach
+_CPU_SHARE = 1.0  # to reach
+
+
+@dataclass(frozen=True, slots=True)
+class Latency:
+    """Milliseconds."""
+
+    count: int
+    p50_ms: float
+    p99_ms: float
+    max_ms: float
+
+
+@dataclass(frozen=True, slots=True)
+class BusReport:
+    """One run."""
+
+    units: int
+    consoles: int
+    rate_wanted_hz: float
+    rate_hz: float
+    seconds: float
+    sent: int
+    stepped: int
+    recorded: int
+    lost: int
+    repeated: int
+    positions_sent: int
+    positions_shown: int
+    latency: Latency
+    track_points_due: int
+    track_points: int
+    cpu_share: float  # of one core
+    memory_mb: float
+    console_gaps: int
+    console_kbit_s: float
+    problems: tuple[str, ...]
+    bare_latency: Latency
+    bare_lost: int
+    bare_flood_hz: float
+    cores: int
+
+
+def bench_bus(
+    units: Annotated[int, typer.Option(min=1, help="Simulated units.")] = 100,
+    rate: Annotated[
+        float, typer.Option(min=0.1, help="Messages a second of each unit, positions mostly.")
+    ] = 10.0,
+    seconds: Annotated[float, typer.Option(min=1.0, help="How long they speak.")] = 30.0,
+    consoles: Annotated[int, typer.Option(min=1, help="Consoles that watch.")] = 3,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="Also write the figures to this file.")
+    ] = None,
+) -> None:
+    """Messages a second and latency from sensor to WebSocket through a real station, beside a
+    bare Zenoh publisher and subscriber in the same run.
+    """
+    with Progress(transient=True) as progress:
+        report = measure(units, rate, seconds, consoles, progress)
+    Terminal().print(_table(report))
+    for problem in report.problems:
+        Terminal().print(f"the station says: {problem}")
+    if json_file is not None:
+        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+
+
+def measure(
+    units: int, rate_hz: float, seconds: float, consoles: int, progress: Progress
+) -> BusReport:
+    """Bare Zenoh first, then the station, both on this machine."""
+    total_hz = units * rate_hz
+    task = progress.add_task("bare Zenoh", total=seconds + 10.0)
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with bare_subscriber(address) as far_end:
+        steady = measure_steady(address, far_end, total_hz, 5.0)
+        progress.advance(task, 5.0)
+        flood = measure_flood(address, far_end, _FLOOD_S)
+        progress.advance(task, 5.0)
+    progress.update(task, description=f"{units} units")
+    with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
+        station = closing.enter_context(station_process(Path(folder)))
+        return _run_station(
+            station, units, total_hz, seconds, consoles, (steady, flood), progress, closing
+        )
+
+
+def _run_station(
+    station: StationProcess,
+    unit_count: int,
+    total_hz: float,
+    seconds: float,
+    console_count: int,
+    bare: tuple[BareFigures, BareFigures],
+    progress: Progress,
+    closing: ExitStack,
+) -> BusReport:
+    names = unit_names(unit_count)
+    for name in names:
+        station.api.post("/units", {"unit_id": name})
+    units = [BenchUnit(name, station.bus_address, closing) for name in names]
+    _wait_linked(units)
+    watching = [Console(station.api) for _ in range(console_count)]
+    for console in watching:
+        console.wait_ready(_LINK_TIMEOUT_S)
+    for unit in units:
+        unit.introduce()
+    time.sleep(_SETTLE_S)
+
+    station.begin_measuring()
+    [task] = progress.task_ids
+    rate_hz = speak_in_turn(units, total_hz, seconds, lambda: progress.advance(task))
+    cpu_share, memory_mb = station.cpu_share(), station.memory_mb()
+    time.sleep(_SETTLE_S)
+
+    stepped = station.api.get("/health")["messages"]
+    for console in watching:
+        console.close()
+    station.stop()
+    sent = sum(unit.sent.messages for unit in units)
+    return _report(
+        station.recorded(),
+        bare,
+        watching[0],
+        units,
+        units=unit_count,
+        consoles=console_count,
+        rate_wanted_hz=total_hz,
+        rate_hz=rate_hz,
+        seconds=seconds,
+        sent=sent,
+        stepped=stepped,
+        cpu_share=cpu_share,
+        memory_mb=memory_mb,
+    )
+
+
+def _report(
+    recorded: Recorded,
+    bare: tuple[BareFigures, BareFigures],
+    console: Console,
+    speakers: list[BenchUnit],
+    **measured: float,
+) -> BusReport:
+    steady, flood = bare
+    positions = {unit.unit_id: unit.sent.position_times_ns for unit in speakers}
+    shown = latencies_ms(positions, console.shown)
+    return BusReport(
+        **measured,  # type: ignore[arg-type]  # counts are ints
+        recorded=recorded.from_units,
+        lost=int(measured["sent"]) - recorded.from_units,
+        repeated=recorded.repeated,
+        positions_sent=sum(map(len, positions.values())),
+        positions_shown=len(shown),
+        latency=_latency(shown),
+        track_points_due=recorded.track_points_due,
+        track_points=recorded.track_points,
+        console_gaps=console.gaps,
+        console_kbit_s=console.bytes_received * 8e-3 / measured["seconds"],
+        problems=console.problems,
+        bare_latency=_latency(steady.latencies_ms),
+        bare_lost=steady.sent - steady.received,
+        bare_flood_hz=flood.rate_hz,
+        cores=psutil.cpu_count() or 1,
+    )
+
+
+def _wait_linked(units: list[BenchUnit]) -> None:
+    deadline = time.monotonic() + _LINK_TIMEOUT_S
+    while not all(unit.is_linked for unit in units) and time.monotonic() < deadline:
+        time.sleep(0.05)
+
+
+def _latency(values_ms: list[float] | tuple[float, ...]) -> Latency:
+    if not values_ms:
+        return Latency(0, float("nan"), float("nan"), float("nan"))
+    p50, p99, highest = np.percentile(values_ms, (50.0, 99.0, 100.0))
+    return Latency(len(values_ms), float(p50), float(p99), float(highest))
+
+
+def _table(report: BusReport) -> Table:
+    table = Table(title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores")
+    for title in ("", "measured", "to reach"):
+        table.add_column(title, justify="left" if title == "" else "right")
+    bare, live = report.bare_latency, report.latency
+    rows = [
+        ("messages a second", f"{report.rate_hz:,.0f}", f"{report.rate_wanted_hz:,.0f}"),
+        ("sent", f"{report.sent:,}", ""),
+        ("in the log", f"{report.recorded:,}", f"{report.sent:,}"),
+        ("lost", f"{report.lost:,}", "0"),
+        ("twice in the log", f"{report.repeated:,}", "0"),
+        ("stepped", f"{report.stepped:,}", f"{report.sent:,}"),
+        ("track points in SQL", f"{report.track_points:,}", f"{report.track_points_due:,}"),
+        ("positions at a console", f"{report.positions_shown:,}", f"{report.positions_sent:,}"),
+        ("sensor to WebSocket p50", f"{live.p50_ms:.1f} ms", ""),
+        ("sensor to WebSocket p99", f"{live.p99_ms:.1f} ms", f"{_LATENCY_P99_MS:.0f} ms"),
+        ("sensor to WebSocket max", f"{live.max_ms:.1f} ms", ""),
+        ("station, of one core", f"{report.cpu_share:.0%}", f"{_CPU_SHARE:.0%}"),
+        ("station, memory", f"{report.memory_mb:.0f} MB", ""),
+        ("to each console", f"{report.console_kbit_s:,.0f} kbit/s", ""),
+        ("bare Zenoh p50, p99", f"{bare.p50_ms:.2f}, {bare.p99_ms:.2f} ms", ""),
+        ("bare Zenoh lost", f"{report.bare_lost:,}", ""),
+        ("bare Zenoh flood of 200 B", f"{report.bare_flood_hz:,.0f} /s", ""),
+    ]
+    for row in rows:
+        table.add_row(*row)
+    return table
