@@ -25,6 +25,14 @@ Connect = Annotated[
     list[str] | None,
     typer.Option(help="tls/HOST:PORT to write into the enrolment, if not the station's own."),
 ]
+Host = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Name or address that units reach this station by, the first one the one they are "
+        "given; may be repeated; else those this machine has now."
+    ),
+]
+Port = Annotated[int, typer.Option(min=1, max=65535, help="Of the bus.")]
 Out = Annotated[Path | None, typer.Option(help="The enrolment file; else NAME.enrolment.toml.")]
 Qr = Annotated[bool, typer.Option("--qr", help="Show a QR code instead of writing a file.")]
 Png = Annotated[Path | None, typer.Option(help="Write the QR code as a picture.")]
@@ -35,23 +43,15 @@ _DATA = Path("muster-data")
 def init(
     data: Data = _DATA,
     organisation: Annotated[str, typer.Option(help="Whose station this is.")] = "Muster",
-    host: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name or address that units reach this station by, the first one the one they "
-            "are given; may be repeated; else those this machine has now."
-        ),
-    ] = None,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the bus.")] = 7447,
+    host: Host = None,
+    port: Port = 7447,
     days: Days = 365,
 ) -> None:
     """Make the authority and this station's certificate, once."""
     # Only this command needs what these import, and they take their time.
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
-    from base_station.pki.hosts import own_hosts, require_host, tls_endpoint  # noqa: PLC0415
 
-    hosts = [require_host(given) for given in host] if host else [*own_hosts()]
-    endpoint = tls_endpoint(hosts[0] if hosts else "127.0.0.1", port)
+    hosts, endpoint = _station_hosts(host, port)
     folder = PkiFolder(data)
     folder.create(organisation, hosts, [endpoint], timedelta(days=days))
     typer.echo(f"{folder.path}: authority and certificate of {organisation}'s station")
@@ -83,10 +83,9 @@ def enroll(
 
 @app.command()
 def renew(
-    name: Annotated[str | None, typer.Argument(help="Who; not with --station.")] = None,
+    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
     data: Data = _DATA,
     operator: Operator = False,
-    station: Annotated[bool, typer.Option("--station", help="This station's own.")] = False,
     days: Days = 365,
     connect: Connect = None,
     out: Out = None,
@@ -96,16 +95,29 @@ def renew(
     """Make a new certificate for somebody enrolled; the old one works until it ends."""
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
 
-    if station == (name is not None):
-        raise typer.BadParameter("give either a name or --station")
-    folder = PkiFolder(data)
-    if name is None:
-        folder.renew_station(timedelta(days=days))
-        typer.echo(f"the station has a new certificate for {days} days")
-        return
     target = _free_target(name, out, png, qr=qr)
-    enrolment = folder.renew(name, _holder(operator=operator), timedelta(days=days), connect or ())
+    enrolment = PkiFolder(data).renew(
+        name, _holder(operator=operator), timedelta(days=days), connect or ()
+    )
     _hand_over(enrolment, target, png, qr=qr)
+
+
+@app.command()
+def renew_station(
+    data: Data = _DATA,
+    host: Annotated[
+        list[str] | None, typer.Option(help="As for init, where they are others now.")
+    ] = None,
+    port: Port = 7447,
+    days: Days = 365,
+) -> None:
+    """Make a new certificate for this station; a running router takes it up by itself."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+    folder = PkiFolder(data)
+    hosts, endpoint = _station_hosts(host, port) if host else ([], "")
+    folder.renew_station(timedelta(days=days), hosts, [endpoint] if endpoint else [])
+    typer.echo(f"valid for {days} days and: {', '.join(folder.registry().hosts)}")
 
 
 @app.command()
@@ -136,6 +148,14 @@ def show(data: Data = _DATA) -> None:
     print_registry(registry, now)
     for sentence in about_to_expire(registry, now, EXPIRY_WARNING):
         typer.secho(sentence, fg=typer.colors.YELLOW)
+
+
+def _station_hosts(given: list[str] | None, port: int) -> tuple[list[str], str]:
+    """The hosts of its certificate, and the endpoint that enrolments name."""
+    from base_station.pki.hosts import own_hosts, require_host, tls_endpoint  # noqa: PLC0415
+
+    hosts = [require_host(host) for host in given] if given else [*own_hosts()]
+    return hosts, tls_endpoint(hosts[0] if hosts else "127.0.0.1", port)
 
 
 def _holder(*, operator: bool) -> Holder:

@@ -72,13 +72,13 @@ class PkiFolder:
                 "everyone enrolled; move it away if that is meant"
             )
         self._folder.mkdir(mode=0o700, parents=True)
-        all_hosts = tuple(dict.fromkeys((*hosts, "localhost", "127.0.0.1", "::1")))
+        registry = Registry(organisation, _with_loopback(hosts), tuple(connect))
         with locked(self._folder):
             authority = make_authority(organisation, self._now(), AUTHORITY_VALID)
             write_atomically(self._folder / "authority.key", authority.key_pem())
             write_atomically(self._folder / "authority.pem", authority.certificate_pem())
             # The registry is written last: what is interrupted is not taken for an authority.
-            self._issue_station(authority, Registry(organisation, all_hosts, tuple(connect)), valid)
+            self._issue_station(authority, registry, valid)
 
     def enroll(
         self,
@@ -116,10 +116,22 @@ class PkiFolder:
             current = self._current(registry, holder, name)
             return self._enrol(registry, holder, name, current.common_name, valid, connect)
 
-    def renew_station(self, valid: timedelta = CERTIFICATE_VALID) -> None:
-        """A new certificate for the same hosts; the router takes it up by itself."""
+    def renew_station(
+        self,
+        valid: timedelta = CERTIFICATE_VALID,
+        hosts: Sequence[str] = (),
+        connect: Sequence[str] = (),
+    ) -> None:
+        """A new certificate, for other hosts where they are given; the router takes it up by
+        itself.  ``connect`` is what enrolments say from now on.
+        """
         with locked(self._existing()):
-            self._issue_station(self._authority(), self.registry(), valid)
+            registry = self.registry()
+            if hosts:
+                registry = msgspec.structs.replace(registry, hosts=_with_loopback(hosts))
+            if connect:
+                registry = msgspec.structs.replace(registry, connect=tuple(connect))
+            self._issue_station(self._authority(), registry, valid)
 
     def revoke(self, name: str, holder: Holder = Holder.UNIT) -> None:
         """Take all rights from the holder's certificate; effective when the router reopens."""
@@ -134,21 +146,18 @@ class PkiFolder:
 
     def station_identity(self) -> TlsIdentity:
         """What the router and the station show on the bus."""
-        identity = TlsIdentity(
-            self._read("authority.pem"), self._read("station.pem"), self._read("station.key")
-        )
-        check_identity(identity)
-        return identity
-
-    def changed_at(self) -> tuple[int, int]:
-        """Changes whenever the router must read registry or station certificate again."""
-        try:
-            return (
-                self.registry_path.stat().st_mtime_ns,
-                (self._folder / "station.pem").stat().st_mtime_ns,
+        with locked(self._existing()):
+            identity = TlsIdentity(
+                self._read("authority.pem"), self._read("station.pem"), self._read("station.key")
             )
-        except OSError as error:
-            raise ConfigError(f"{self._folder} cannot be read: {error}") from error
+        try:
+            check_identity(identity)
+        except ConfigError as error:
+            raise ConfigError(
+                f"{self._folder}/station.pem and station.key are of no use ({error}); make new "
+                "ones with `muster pki renew-station`"
+            ) from error
+        return identity
 
     def _existing(self) -> Path:
         if not self.exists():
@@ -204,6 +213,10 @@ class PkiFolder:
             raise ConfigError(f"{path} is missing; put it back, or restore a backup") from None
         except OSError as error:
             raise ConfigError(f"{path} cannot be read: {error}") from error
+
+
+def _with_loopback(hosts: Sequence[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*hosts, "localhost", "127.0.0.1", "::1")))
 
 
 def _entry(holder: Holder, name: str, common_name: str, issued: Issued) -> Entry:

@@ -1,0 +1,137 @@
+"""Why there is no link, in one sentence each, against a real router."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from contextlib import closing
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from base_station.pki.access import access_control
+from base_station.pki.folder import PkiFolder
+from shared.bus_zenoh import StationEndpoint, ZenohBus
+from shared.enrolment import Enrolment
+from shared.link_diagnosis import why_no_link
+from shared.tls import TlsIdentity
+
+
+@pytest.fixture
+def now() -> datetime:
+    return datetime.now(UTC)
+
+
+@pytest.fixture
+def pki(tmp_path: Path) -> PkiFolder:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    folder = PkiFolder(tmp_path)
+    folder.create("Test", hosts=[], connect=[f"tls/127.0.0.1:{port}"])
+    return folder
+
+
+@pytest.fixture
+def anna(pki: PkiFolder) -> Enrolment:
+    return pki.enroll("anna")
+
+
+@pytest.fixture
+def foreign(tmp_path: Path, anna: Enrolment) -> Enrolment:
+    elsewhere = PkiFolder(tmp_path / "elsewhere")
+    elsewhere.create("Test", hosts=[], connect=anna.connect)
+    return elsewhere.enroll("anna")
+
+
+@pytest.fixture
+def router(pki: PkiFolder, anna: Enrolment) -> Iterator[None]:
+    unnamed = anna.connect[0].replace("127.0.0.1", "127.0.0.2")
+    endpoint = StationEndpoint(
+        (*anna.connect, unnamed), pki.station_identity(), access_control(pki.registry())
+    )
+    with closing(ZenohBus(endpoint)):
+        yield
+
+
+def test_nothing_listens(anna: Enrolment, now: datetime) -> None:
+    said = why_no_link(anna.connect, anna.identity, now)
+    assert "nothing listens on port" in said
+    assert "does the station run?" in said
+
+
+@pytest.mark.usefixtures("router")
+def test_all_is_well(anna: Enrolment, now: datetime) -> None:
+    assert "the link should come by itself" in why_no_link(anna.connect, anna.identity, now)
+
+
+@pytest.mark.usefixtures("router")
+def test_the_station_belongs_to_another_authority(foreign: Enrolment, now: datetime) -> None:
+    said = why_no_link(foreign.connect, foreign.identity, now)
+    assert "is not the one that enrolled this unit" in said
+
+
+@pytest.mark.usefixtures("router")
+def test_the_station_does_not_know_the_authority(
+    anna: Enrolment, foreign: Enrolment, now: datetime
+) -> None:
+    mixed = TlsIdentity(
+        anna.identity.authority, foreign.identity.certificate, foreign.identity.private_key
+    )
+    said = why_no_link(anna.connect, mixed, now)
+    assert "enrol at this station" in said
+    assert "the station" in said
+
+
+@pytest.mark.usefixtures("router")
+def test_the_certificate_does_not_stand_for_the_address(anna: Enrolment, now: datetime) -> None:
+    unnamed = anna.connect[0].replace("127.0.0.1", "127.0.0.2")
+    said = why_no_link([unnamed], anna.identity, now)
+    assert "does not stand for 127.0.0.2" in said
+    assert "renew-station --host 127.0.0.2" in said
+
+
+@pytest.mark.usefixtures("router")
+def test_the_stations_clock_says_expired(pki: PkiFolder, now: datetime) -> None:
+    then = now - timedelta(days=366)
+    old = PkiFolder(pki.path.parent, lambda: then).enroll("bert", valid=timedelta(days=300))
+    assert "expired on" in why_no_link(old.connect, old.identity, now)
+    behind = now - timedelta(days=100)  # this unit's clock
+    assert "the station says" in why_no_link(old.connect, old.identity, behind)
+
+
+def test_the_clock_here_is_behind(anna: Enrolment, now: datetime) -> None:
+    said = why_no_link(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
+    assert "is not valid before" in said
+    assert "1970-01-01" in said
+
+
+@pytest.mark.usefixtures("router")
+def test_no_enrolment_where_one_is_wanted(anna: Enrolment, now: datetime) -> None:
+    assert "wants an enrolment" in why_no_link(anna.connect, None, now)
+
+
+def test_a_name_that_nobody_knows(anna: Enrolment, now: datetime) -> None:
+    said = why_no_link(["tls/station.invalid:7447"], anna.identity, now)
+    assert "nobody knows the name station.invalid" in said
+
+
+def test_something_else_listens(anna: Enrolment, now: datetime) -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+
+        def answer() -> None:
+            connection, _ = other.accept()
+            with connection:
+                connection.recv(10)
+                connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+
+        thread = Thread(target=answer)
+        thread.start()
+        port = other.getsockname()[1]
+        said = why_no_link([f"tls/127.0.0.1:{port}"], anna.identity, now)
+        thread.join()
+    assert "does not speak TLS" in said

@@ -1,0 +1,191 @@
+"""The router's process: rules follow the registry, it is kept running, it dies with its parent."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+
+import psutil
+import pytest
+
+from base_station.pki.folder import PkiFolder
+from base_station.router import Router, own_endpoint
+from base_station.router_process import RouterProcess
+from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
+from shared.channels import POSITION, Qos
+from shared.enrolment import Enrolment
+from shared.errors import BusError, ConfigError
+
+KEY = POSITION.key("anna")
+
+
+def until(holds: Callable[[], bool], what: str) -> None:
+    deadline = time.monotonic() + 30.0
+    while not holds():
+        assert time.monotonic() < deadline, f"never came: {what}"
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def address() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"127.0.0.1:{probe.getsockname()[1]}"
+
+
+@pytest.fixture
+def listen(address: str) -> tuple[str, ...]:
+    return (f"tls/{address}",)
+
+
+@pytest.fixture
+def pki(tmp_path: Path, listen: tuple[str, ...]) -> PkiFolder:
+    folder = PkiFolder(tmp_path)
+    folder.create("Test", hosts=[], connect=listen)
+    return folder
+
+
+@pytest.fixture
+def process(tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]) -> Iterator[RouterProcess]:
+    with closing(RouterProcess(tmp_path, listen)) as running:
+        yield running
+
+
+def station(pki: PkiFolder, listen: tuple[str, ...]) -> ZenohBus:
+    return ZenohBus(ClientEndpoint(listen, pki.station_identity()))
+
+
+def unit(enrolment: Enrolment) -> ZenohBus:
+    return ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))
+
+
+def test_enrolling_and_revoking_take_effect_while_it_runs(
+    process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    heard: list[str] = []
+    with closing(station(pki, listen)) as base:
+        base.subscribe("muster/v1/**", lambda key, _: heard.append(key))
+        with closing(unit(pki.enroll("anna"))) as anna:
+            until(lambda: anna.is_heard(KEY), "the right to speak")
+            anna.publish(KEY, b"", Qos.LIVE)
+            until(lambda: heard == [KEY], "the message")
+            pki.revoke("anna")
+            until(lambda: not anna.is_heard(KEY), "the end of the right")
+            until(anna.is_linked, "the link, which a valid certificate still gets")
+            time.sleep(0.5)
+            assert not anna.is_heard(KEY)
+            anna.publish(KEY, b"", Qos.LIVE)
+            time.sleep(0.5)
+    assert heard == [KEY]
+
+
+def test_a_killed_router_is_started_again(
+    process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    with closing(station(pki, listen)) as base, closing(unit(pki.enroll("anna"))) as anna:
+        base.subscribe("muster/v1/**", lambda *_: None)
+        until(lambda: anna.is_heard(KEY), "the right to speak")
+        first = process.pid
+        os.kill(first, signal.SIGKILL)
+        until(lambda: process.pid != first and anna.is_heard(KEY), "everything again")
+
+
+def test_closing_ends_it(process: RouterProcess) -> None:
+    assert psutil.pid_exists(process.pid)
+    process.close()
+    assert not psutil.pid_exists(process.pid)
+
+
+def test_it_ends_when_its_parent_is_killed(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    script = (
+        "import sys, time; from pathlib import Path\n"
+        "from base_station.router_process import RouterProcess\n"
+        "print(RouterProcess(Path(sys.argv[1]), (sys.argv[2],)).pid, flush=True)\n"
+        "time.sleep(600)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script, str(tmp_path), *listen], stdout=subprocess.PIPE, text=True
+    ) as parent:
+        assert parent.stdout is not None
+        router_pid = int(parent.stdout.readline())
+        assert psutil.pid_exists(router_pid)
+        parent.kill()
+        until(lambda: not psutil.pid_exists(router_pid), "the router's end")
+
+
+def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, ...]) -> None:
+    with pytest.raises(BusError, match="no certificate authority; make one with `muster pki init`"):
+        RouterProcess(tmp_path, listen)
+
+
+def test_a_taken_port_is_said(
+    process: RouterProcess, tmp_path: Path, listen: tuple[str, ...]
+) -> None:
+    with pytest.raises(BusError, match="another program uses this port"):
+        RouterProcess(tmp_path, listen)
+
+
+def test_a_damaged_registry_leaves_the_rules_as_they_were(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...], caplog: pytest.LogCaptureFixture
+) -> None:
+    anna = pki.enroll("anna")
+    good = pki.registry_path.read_bytes()
+    with closing(Router(tmp_path, listen)) as router, closing(station(pki, listen)) as base:
+        base.subscribe("muster/v1/**", lambda *_: None)
+        pki.registry_path.write_bytes(good[:100])
+        router.refresh()
+        router.refresh()
+        assert [record.levelname for record in caplog.records] == ["ERROR"]
+        assert "access rules stay as they were" in caplog.text
+        with closing(unit(anna)) as bus:
+            until(lambda: bus.is_heard(KEY), "the right to speak")
+        pki.registry_path.write_bytes(good)
+        router.refresh()
+        assert len(caplog.records) == 1  # nothing changed: not opened again
+
+
+def test_a_renewed_station_certificate_is_taken_up(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    anna = pki.enroll("anna")
+    with (
+        closing(Router(tmp_path, listen)) as router,
+        closing(station(pki, listen)) as base,
+        closing(unit(anna)) as bus,
+    ):
+        base.subscribe("muster/v1/**", lambda *_: None)
+        until(lambda: bus.is_heard(KEY), "the right to speak")
+        pki.renew_station()
+        router.refresh()
+        until(lambda: bus.is_heard(KEY), "the right to speak, to the renewed station")
+
+
+def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) -> None:
+    plain = (f"tcp/{address}",)
+    with (
+        closing(RouterProcess(tmp_path, plain)),
+        closing(ZenohBus(ClientEndpoint(plain))) as base,
+        closing(ZenohBus(UnitEndpoint(plain))) as bus,
+    ):
+        base.subscribe("muster/v1/**", lambda *_: None)
+        until(lambda: bus.is_heard(KEY), "the station's interest")
+
+
+def test_plain_and_secure_do_not_mix(tmp_path: Path, listen: tuple[str, ...]) -> None:
+    with pytest.raises(ConfigError, match="either secure or not"):
+        Router(tmp_path, (*listen, "tcp/127.0.0.1:1"))
+
+
+def test_the_station_finds_its_router_on_the_loopback() -> None:
+    assert own_endpoint(("tls/0.0.0.0:7447",)) == "tls/127.0.0.1:7447"
+    assert own_endpoint(("tls/[::]:7447",)) == "tls/[::1]:7447"
+    assert own_endpoint(("tls/192.0.2.7:7447", "tls/0.0.0.0:1")) == "tls/192.0.2.7:7447"

@@ -1,0 +1,102 @@
+"""The access rules that are made from a registry; tests/integration holds them against Zenoh."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+
+from base_station.pki.access import access_control
+from base_station.pki.registry import Entry, Registry
+from shared.channels import CHANNELS, COMMAND, EVERY_UNIT, Direction, alive_key
+from shared.enrolment import Holder
+
+THEN = datetime(2026, 3, 1, tzinfo=UTC)
+
+
+def entry(holder: Holder, name: str, common_name: str, revoked: datetime | None = None) -> Entry:
+    return Entry(holder, name, common_name, "1", THEN, THEN, revoked)
+
+
+@pytest.fixture
+def rules() -> dict[str, Any]:
+    return access_control(
+        Registry(
+            "Test",
+            (),
+            (),
+            (
+                entry(Holder.STATION, "station", "station"),
+                entry(Holder.UNIT, "anna", "anna", revoked=THEN),
+                entry(Holder.UNIT, "anna", "anna#2"),
+                entry(Holder.UNIT, "bert", "bert"),
+                entry(Holder.OPERATOR, "chief", "operator:chief"),
+            ),
+        )
+    )
+
+
+def allowed(rules: dict[str, Any], common_name: str, flow: str, message: str) -> set[str]:
+    """The key expressions under which the holder of this common name may do this."""
+    subjects = {s["id"] for s in rules["subjects"] if common_name in s["cert_common_names"]}
+    ids = {r for p in rules["policies"] if subjects & set(p["subjects"]) for r in p["rules"]}
+    return {
+        key
+        for rule in rules["rules"]
+        if rule["id"] in ids and flow in rule["flows"] and message in rule["messages"]
+        for key in rule["key_exprs"]
+    }
+
+
+def test_what_no_rule_allows_is_denied(rules: dict[str, Any]) -> None:
+    assert rules["enabled"] is True
+    assert rules["default_permission"] == "deny"
+    assert {rule["permission"] for rule in rules["rules"]} == {"allow"}
+
+
+def test_every_rule_and_subject_that_is_named_exists_once(rules: dict[str, Any]) -> None:
+    rule_ids = [rule["id"] for rule in rules["rules"]]
+    subject_ids = [subject["id"] for subject in rules["subjects"]]
+    assert len(set(rule_ids)) == len(rule_ids)
+    assert len(set(subject_ids)) == len(subject_ids)
+    for policy in rules["policies"]:
+        assert set(policy["rules"]) <= set(rule_ids)
+        assert set(policy["subjects"]) <= set(subject_ids)
+
+
+def test_every_subject_is_one_exact_common_name(rules: dict[str, Any]) -> None:
+    # A subject that names nobody would be everybody.
+    assert all(len(subject["cert_common_names"]) == 1 for subject in rules["subjects"])
+
+
+def test_a_unit_speaks_on_the_channels_upwards_and_on_no_other(rules: dict[str, Any]) -> None:
+    upwards = {c.key("bert") for c in CHANNELS if c.direction is Direction.UP}
+    assert allowed(rules, "bert", "ingress", "put") == upwards
+    assert allowed(rules, "bert", "ingress", "liveliness_token") == {alive_key("bert")}
+    for message in ("query", "delete", "declare_liveliness_subscriber", "liveliness_query"):
+        assert allowed(rules, "bert", "ingress", message) == set()
+
+
+def test_a_unit_reads_its_own_and_what_is_said_to_all(rules: dict[str, Any]) -> None:
+    readable = {"muster/v1/bert/**", COMMAND.key(EVERY_UNIT)}
+    assert allowed(rules, "bert", "ingress", "declare_subscriber") == readable
+    assert allowed(rules, "bert", "egress", "put") == readable
+
+
+def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:
+    assert allowed(rules, "anna", "ingress", "put") == set()
+    assert "muster/v1/anna/up/position" in allowed(rules, "anna#2", "ingress", "put")
+
+
+def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
+    name = "operator:chief"
+    assert allowed(rules, name, "egress", "put") == {"muster/v1/**"}
+    for message in ("put", "delete", "query", "reply", "liveliness_token", "declare_queryable"):
+        assert allowed(rules, name, "ingress", message) == set()
+
+
+def test_the_station_may_do_everything_below_the_root(rules: dict[str, Any]) -> None:
+    for flow in ("ingress", "egress"):
+        for message in ("put", "query", "reply", "liveliness_token", "declare_subscriber"):
+            assert allowed(rules, "station", flow, message) == {"muster/v1/**"}

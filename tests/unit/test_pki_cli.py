@@ -1,0 +1,110 @@
+"""``muster pki``: from an authority to an enrolment, and refusals that leave nothing behind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from base_station.pki.cli import app
+from base_station.pki.folder import PkiFolder
+from shared.enrolment import Holder, parse_enrolment, read_enrolment
+from shared.errors import ConfigError
+
+
+def run(*arguments: str | Path) -> str:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    folder = tmp_path / "data"
+    run("init", "--data", folder, "--host", "station.local", "--host", "192.0.2.7")
+    return folder
+
+
+def test_init_tells_where_units_will_connect(tmp_path: Path) -> None:
+    said = run("init", "--data", tmp_path, "--host", "fd00::7", "--port", "7000")
+    assert "tls/[fd00::7]:7000" in said
+    assert PkiFolder(tmp_path).registry().connect == ("tls/[fd00::7]:7000",)
+
+
+def test_init_without_a_host_takes_what_the_machine_has(tmp_path: Path) -> None:
+    run("init", "--data", tmp_path)
+    registry = PkiFolder(tmp_path).registry()
+    assert {"localhost", "127.0.0.1", "::1"} <= set(registry.hosts)
+    assert len(registry.connect) == 1
+
+
+@pytest.mark.parametrize("host", ["192.0.2.7:7447", "tls/station", "a b", ""])
+def test_init_refuses_what_is_no_host(tmp_path: Path, host: str) -> None:
+    with pytest.raises(ConfigError, match="is no host"):
+        run("init", "--data", tmp_path, "--host", host)
+    assert not (tmp_path / "pki").exists()
+
+
+def test_enroll_writes_one_file(data: Path, tmp_path: Path) -> None:
+    out = tmp_path / "carried"
+    said = run("enroll", "FF-01", "--data", data, "--out", out)
+    assert "muster edge run --enrolment carried" in said
+    enrolment = read_enrolment(out)
+    assert (enrolment.holder, enrolment.name) == (Holder.UNIT, "FF-01")
+    assert enrolment.connect == ("tls/station.local:7447",)
+
+
+def test_enroll_names_the_file_after_the_unit(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    run("enroll", "FF-01", "--data", data)
+    assert read_enrolment(tmp_path / "FF-01.enrolment.toml").name == "FF-01"
+
+
+def test_enroll_shows_a_code_and_writes_no_file(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = run("enroll", "FF-01", "--data", data, "--qr", "--png", "code.png")
+    assert "█" in said
+    assert {path.name for path in tmp_path.iterdir()} == {"data", "code.png"}
+
+
+def test_a_file_in_the_way_is_seen_before_anybody_is_enrolled(data: Path, tmp_path: Path) -> None:
+    out = tmp_path / "carried"
+    out.write_text("precious")
+    for place, problem in ((out, "is there already"), (tmp_path / "no" / "x", "in no folder")):
+        with pytest.raises(ConfigError, match=problem):
+            run("enroll", "FF-01", "--data", data, "--out", place)
+    assert PkiFolder(data).registry().current(Holder.UNIT, "FF-01") is None
+    assert out.read_text() == "precious"
+
+
+def test_renew_and_revoke(data: Path, tmp_path: Path) -> None:
+    run("enroll", "FF-01", "--data", data, "--out", tmp_path / "1")
+    run("renew", "FF-01", "--data", data, "--out", tmp_path / "2", "--days", "3")
+    first, second = (parse_enrolment((tmp_path / name).read_text()) for name in "12")
+    assert first.identity.certificate != second.identity.certificate
+    assert "expires in 2 days: muster pki renew FF-01" in run("show", "--data", data)
+    assert "shut out" in run("revoke", "FF-01", "--data", data)
+    assert "revoked" in run("show", "--data", data)
+
+
+def test_an_operator_is_told_apart(data: Path, tmp_path: Path) -> None:
+    said = run("enroll", "chief", "--operator", "--data", data, "--out", tmp_path / "1")
+    assert "operator chief" in said
+    assert "muster edge" not in said
+    with pytest.raises(ConfigError, match="no unit chief"):
+        run("revoke", "chief", "--data", data)
+    run("revoke", "chief", "--operator", "--data", data)
+
+
+def test_the_station_is_renewed_for_the_hosts_it_had_or_for_others(data: Path) -> None:
+    assert "station.local" in run("renew-station", "--data", data)
+    said = run("renew-station", "--data", data, "--host", "192.0.2.9", "--port", "7000")
+    assert "station.local" not in said
+    assert PkiFolder(data).registry().connect == ("tls/192.0.2.9:7000",)

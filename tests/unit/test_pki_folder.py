@@ -1,0 +1,220 @@
+"""The authority's folder: what it issues, keeps, refuses, and in which mode."""
+
+from __future__ import annotations
+
+import stat
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from cryptography import x509
+from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
+
+from base_station.pki.folder import PkiFolder
+from base_station.pki.registry import about_to_expire
+from shared.enrolment import Enrolment, Holder
+from shared.errors import ConfigError
+from shared.tls import check_identity, validity_problem
+
+DAY = timedelta(days=1)
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = datetime(2026, 3, 1, 12, tzinfo=UTC)
+
+    def __call__(self) -> datetime:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def pki(tmp_path: Path, clock: Clock) -> PkiFolder:
+    folder = PkiFolder(tmp_path, clock)
+    folder.create("Test", ["station.local", "192.0.2.7"], ["tls/station.local:7447"])
+    return folder
+
+
+def certificate(enrolment: Enrolment) -> x509.Certificate:
+    return x509.load_pem_x509_certificate(enrolment.identity.certificate)
+
+
+def common_name(of: x509.Certificate) -> str:
+    return str(of.subject.get_attributes_for_oid(NameOID.COMMON_NAME)[0].value)
+
+
+def test_nobody_else_can_read_what_it_keeps(pki: PkiFolder) -> None:
+    assert stat.S_IMODE(pki.path.stat().st_mode) == 0o700
+    pki.enroll("anna")
+    pki.renew_station()
+    for file in pki.path.iterdir():
+        if file.name != "lock":
+            assert stat.S_IMODE(file.stat().st_mode) == 0o600, file.name
+    assert {file.name for file in pki.path.iterdir()} == {
+        "authority.key", "authority.pem", "lock", "registry.json", "station.key", "station.pem",
+    }  # fmt: skip
+
+
+def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
+    own = x509.load_pem_x509_certificate(pki.station_identity().certificate)
+    names = own.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    assert names.get_values_for_type(x509.DNSName) == ["station.local", "localhost"]
+    assert [str(one) for one in names.get_values_for_type(x509.IPAddress)] == [
+        "192.0.2.7", "127.0.0.1", "::1",
+    ]  # fmt: skip
+
+
+def test_a_unit_cannot_pose_as_a_station_or_an_authority(pki: PkiFolder) -> None:
+    extensions = certificate(pki.enroll("anna")).extensions
+    uses = extensions.get_extension_for_class(x509.ExtendedKeyUsage).value
+    assert list(uses) == [ExtendedKeyUsageOID.CLIENT_AUTH]
+    assert not extensions.get_extension_for_class(x509.BasicConstraints).value.ca
+    assert not extensions.get_extension_for_class(x509.KeyUsage).value.key_cert_sign
+
+
+def test_an_enrolment_holds_together_and_says_where_to_connect(
+    pki: PkiFolder, clock: Clock
+) -> None:
+    enrolment = pki.enroll("anna", valid=10 * DAY)
+    check_identity(enrolment.identity)
+    assert (enrolment.holder, enrolment.name) == (Holder.UNIT, "anna")
+    assert enrolment.connect == ("tls/station.local:7447",)
+    assert common_name(certificate(enrolment)) == "anna"
+    assert validity_problem(enrolment.identity, clock.now + 10 * DAY) is None
+    assert "expired on" in str(validity_problem(enrolment.identity, clock.now + 10.1 * DAY))
+    elsewhere = pki.enroll("bert", connect=["tls/192.0.2.9:1"])
+    assert elsewhere.connect == ("tls/192.0.2.9:1",)
+
+
+def test_a_units_key_is_not_kept(pki: PkiFolder) -> None:
+    secret = pki.enroll("anna").identity.private_key.splitlines()[1]
+    assert not any(secret in file.read_bytes() for file in pki.path.iterdir())
+
+
+def test_a_second_authority_is_refused(pki: PkiFolder, tmp_path: Path) -> None:
+    before = (pki.path / "authority.pem").read_bytes()
+    with pytest.raises(ConfigError, match="is there already"):
+        PkiFolder(tmp_path).create("Other", [], [])
+    assert (pki.path / "authority.pem").read_bytes() == before
+
+
+def test_without_an_authority_it_says_how_to_make_one(tmp_path: Path) -> None:
+    for act in (lambda p: p.enroll("anna"), lambda p: p.revoke("anna"), PkiFolder.registry):
+        with pytest.raises(ConfigError, match="muster pki init"):
+            act(PkiFolder(tmp_path))
+
+
+@pytest.mark.parametrize("name", ["", "all", "station", "a/b", "a*", "-a", "a b", "é"])
+def test_a_name_that_cannot_stand_in_a_key_is_refused(pki: PkiFolder, name: str) -> None:
+    with pytest.raises(ConfigError, match="cannot be used"):
+        pki.enroll(name)
+    assert len(pki.registry().entries) == 1  # the station
+
+
+def test_enrolling_twice_is_refused(pki: PkiFolder) -> None:
+    pki.enroll("anna")
+    with pytest.raises(ConfigError, match="anna is enrolled until 2027-03-01; renew it"):
+        pki.enroll("anna")
+
+
+def test_an_operator_may_have_a_units_name(pki: PkiFolder) -> None:
+    pki.enroll("anna")
+    operator = pki.enroll("anna", Holder.OPERATOR)
+    assert common_name(certificate(operator)) == "operator:anna"
+    pki.revoke("anna", Holder.OPERATOR)
+    assert pki.registry().current(Holder.UNIT, "anna") is not None
+
+
+def test_a_revoked_name_gets_another_common_name(pki: PkiFolder, clock: Clock) -> None:
+    names = []
+    for _ in range(3):
+        names.append(common_name(certificate(pki.enroll("anna"))))
+        pki.revoke("anna")
+    assert names == ["anna", "anna#2", "anna#3"]
+    revoked = [e.revoked for e in pki.registry().entries if e.name == "anna"]
+    assert revoked == [clock.now] * 3
+
+
+def test_revoking_whom_nobody_enrolled_names_those_enrolled(pki: PkiFolder) -> None:
+    with pytest.raises(ConfigError, match="no unit anna with a certificate; none is enrolled"):
+        pki.revoke("anna")
+    pki.enroll("bert")
+    with pytest.raises(ConfigError, match="enrolled are bert"):
+        pki.revoke("anna")
+    pki.revoke("bert")
+    with pytest.raises(ConfigError, match="none is enrolled"):
+        pki.renew("bert")
+
+
+def test_renewing_keeps_the_common_name_and_changes_the_key(pki: PkiFolder, clock: Clock) -> None:
+    first = pki.enroll("anna")
+    clock.now += 100 * DAY
+    second = pki.renew("anna")
+    assert common_name(certificate(second)) == "anna"
+    assert second.identity.private_key != first.identity.private_key
+    entry = pki.registry().current(Holder.UNIT, "anna")
+    assert entry is not None
+    assert entry.serial == f"{certificate(second).serial_number:x}"
+    assert len(pki.registry().entries) == 2
+
+
+def test_the_station_is_renewed_for_other_hosts(pki: PkiFolder) -> None:
+    before = pki.station_identity()
+    pki.renew_station(hosts=["192.0.2.8"], connect=["tls/192.0.2.8:7447"])
+    assert pki.station_identity().private_key != before.private_key
+    assert pki.registry().hosts == ("192.0.2.8", "localhost", "127.0.0.1", "::1")
+    assert pki.enroll("anna").connect == ("tls/192.0.2.8:7447",)
+
+
+def test_a_certificate_does_not_outlive_its_authority(pki: PkiFolder, clock: Clock) -> None:
+    clock.now += 3600 * DAY
+    with pytest.raises(ConfigError, match="outlive its authority"):
+        pki.enroll("anna")
+    pki.enroll("anna", valid=10 * DAY)
+
+
+@pytest.mark.parametrize("name", ["authority.pem", "authority.key", "registry.json"])
+def test_a_damaged_file_is_named(pki: PkiFolder, name: str) -> None:
+    path = pki.path / name
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(ConfigError, match="damaged"):
+        pki.enroll("anna")
+
+
+def test_a_missing_authority_key_is_named(pki: PkiFolder) -> None:
+    (pki.path / "authority.key").unlink()
+    with pytest.raises(ConfigError, match=r"authority\.key is missing; put it back"):
+        pki.enroll("anna")
+
+
+def test_station_files_that_do_not_belong_together_say_the_way_out(pki: PkiFolder) -> None:
+    path = pki.path / "station.key"
+    path.write_bytes((pki.path / "authority.key").read_bytes())
+    with pytest.raises(ConfigError, match="renew-station"):
+        pki.station_identity()
+    pki.renew_station()
+    pki.station_identity()
+
+
+def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, clock: Clock) -> None:
+    pki.enroll("anna", valid=20 * DAY)
+    pki.enroll("bert", valid=5 * DAY)
+    pki.enroll("chief", Holder.OPERATOR, valid=12 * DAY)
+    pki.enroll("lost", valid=5 * DAY)
+    pki.revoke("lost")
+    clock.now += 11.5 * DAY
+
+    def said(within: timedelta) -> tuple[str, ...]:
+        return about_to_expire(pki.registry(), clock.now, within)
+
+    assert said(5 * DAY) == (
+        "The certificate of unit bert expired on 2026-03-06: muster pki renew bert",
+        "The certificate of operator chief expires in less than a day: "
+        "muster pki renew --operator chief",
+    )
+    assert len(said(10 * DAY)) == 3
+    assert said(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
