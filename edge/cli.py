@@ -93,3 +93,11 @@ def plan() -> None:
     from edge.simulation.building import plan_path  # noqa: PLC0415
 
     typer.echo(plan_path().read_text())
+
+
+@app.command("compile")
+def compile_() -> None:
+    """Compile the trackers now, so that the first agent starts at once."""
+    from edge.warm_up import compile_trackers  # noqa: PLC0415
+
+    compile_trackers()
