@@ -19,6 +19,7 @@ walked since: ``p(t) = p(now) - (walked since) (c, s)``.  Height is a filter of 
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 
@@ -52,16 +53,19 @@ class GpsInertial:
     climb_part: float = 0.03  # height error by height climbed
     climb_m_per_sqrt_m: float = 0.02  # and by distance
     wander_part: float = 0.7  # of a fix's variance that wanders slowly
-    wander_s: float = 20.0  # with this correlation time
+    wander_s: float = 30.0  # with this correlation time
     gate: float = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
     aligned_rad: float = 0.35  # heading standard deviation from which the heading is given
+    scaled_rad: float = 0.12  # and from which the scale is tied down: linear only about there
     height_std_floor_m: float = 5.0
     fastest_mps: float = 12.0
     unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
     stuck_fixes: int = 5
     stuck_m: float = 8.0
-    return_fixes: int = 8  # fixes that contradict the path but agree with its shape
-    return_walk_m: float = 12.0
+    distrust_most: int = 20
+    return_fixes: int = 20  # so many that contradict the path but draw its shape are believed
+    return_spread_m: float = 7.0  # root mean square of that stretch of path
+    return_unlike: float = 0.25  # part of their variance that is not the shape of the walk
 
     def new(self) -> GpsInertialFuser:
         return GpsInertialFuser(self, _Memory())
@@ -97,6 +101,7 @@ class _Memory(msgspec.Struct):
     last_fix_m: tuple[float, float] | None = None
     same_fixes: int = 0
     same_since_m: float = 0.0  # distance walked when the fix last changed
+    distrust: int = 0  # grows by one with a fix that does not fit, falls by two with one that does
     outliers: list[_Outlier] = msgspec.field(default_factory=list)
     surprise: float = 1.0  # how much worse fixes fit than they claim
 
@@ -139,7 +144,7 @@ class GpsInertialFuser:
         self._vertical.P[:] = np.diag([start.std_m**2, 1.0])
         memory = self._memory
         memory.assumed = False
-        memory.aligned_once = start.heading_std_rad < self._kind.aligned_rad
+        memory.aligned_once = start.heading_std_rad < self._kind.scaled_rad
         memory.outliers.clear()
         if memory.last is not None:
             self._walk(memory.last.north_m, memory.last.east_m, memory.last.down_m, 0.0)
@@ -197,11 +202,12 @@ class GpsInertialFuser:
         distance2 = float((innovation.T @ np.linalg.solve(spread, innovation))[0, 0])
         if distance2 > self._kind.gate:
             return self._turned_away(fix, then)
+        if self._memory.distrust > 0:
+            self._memory.distrust -= 2
+            return FixVerdict(False, "fits, but the receiver was wrong just before")
         self._memory.outliers.clear()
-        self._memory.surprise += 0.05 * (
-            distance2 / 2.0 * self._memory.surprise - self._memory.surprise
-        )
-        self._memory.surprise = min(4.0, max(1.0, self._memory.surprise))
+        surprise = self._memory.surprise * (1.0 + 0.05 * (distance2 / 2.0 - 1.0))
+        self._memory.surprise = min(4.0, max(1.0, surprise))
         self._horizontal.update(place, R=noise, H=observe)
         self._correct_height(fix)
         self._note_alignment()
@@ -288,10 +294,14 @@ class GpsInertialFuser:
     def _leave_own_frame(self) -> None:
         """The first thing known of the incident frame: position and heading are open."""
         self._memory.assumed = False
-        self._horizontal.P[:4, :] = 0.0
-        self._horizontal.P[:, :4] = 0.0
-        self._horizontal.P[0, 0] = self._horizontal.P[1, 1] = _UNKNOWN_VAR_M2
+        self._forget_position()
         self._forget_heading()
+
+    def _forget_position(self) -> None:
+        covariance = self._horizontal.P
+        covariance[:2, :] = 0.0
+        covariance[:, :2] = 0.0
+        covariance[0, 0] = covariance[1, 1] = _UNKNOWN_VAR_M2
 
     def _forget_heading(self) -> None:
         x, covariance = self._horizontal.x, self._horizontal.P
@@ -355,24 +365,33 @@ class GpsInertialFuser:
         )
 
     def _turned_away(self, fix: PlaceFix, then: tuple[float, float]) -> FixVerdict:
-        """Outside the gate; but fixes that follow the shape of the walk are right after all."""
+        """Outside the gate; but fixes that draw the shape of the walk are right after all.
+
+        Least squares of ``seen = shift + a own`` over complex numbers (east the imaginary part);
+        a receiver that wanders or hangs has no walk in it.
+        """
         memory, kind = self._memory, self._kind
+        memory.distrust = min(memory.distrust + 1, kind.distrust_most)
         memory.outliers.append(_Outlier(fix.north_m, fix.east_m, *then))
-        del memory.outliers[: -2 * kind.return_fixes]
-        own = np.array([[o.own_north_m, o.own_east_m] for o in memory.outliers])
-        seen = np.array([[o.north_m, o.east_m] for o in memory.outliers])
-        walked_m = float(np.linalg.norm(np.ptp(own, axis=0)))
-        if len(own) < kind.return_fixes or walked_m < kind.return_walk_m:
+        del memory.outliers[: -kind.return_fixes]
+        own = np.array([complex(o.own_north_m, o.own_east_m) for o in memory.outliers])
+        seen = np.array([complex(o.north_m, o.east_m) for o in memory.outliers])
+        own, seen = own - own.mean(), seen - seen.mean()
+        walked_m2, seen_m2 = np.vdot(own, own).real, np.vdot(seen, seen).real
+        if len(own) < kind.return_fixes or walked_m2 < len(own) * kind.return_spread_m**2:
             return FixVerdict(False, "does not fit the path walked")
-        c, s = float(self._horizontal.x[2, 0]), float(self._horizontal.x[3, 0])
-        offsets_m = seen - own @ np.array([[c, s], [-s, c]])
-        if float(np.std(offsets_m, axis=0).max()) > 0.75 * fix.horizontal_std_m:
+        turn = complex(np.vdot(own, seen) / walked_m2)
+        unlike = 1.0 - abs(turn) ** 2 * walked_m2 / seen_m2
+        if unlike > kind.return_unlike or not 0.75 < abs(turn) < 1.33:
             return FixVerdict(False, "does not fit the path walked")
         memory.outliers.clear()
-        self._horizontal.P[:2, :] = 0.0
-        self._horizontal.P[:, :2] = 0.0
-        self._horizontal.P[0, 0] = self._horizontal.P[1, 1] = _UNKNOWN_VAR_M2
-        return FixVerdict(False, "fixes contradict the path but agree with each other: going there")
+        memory.distrust = 0
+        self._forget_position()
+        held_rad, std_rad = self._turn()
+        fit_rad = fix.horizontal_std_m / math.sqrt(walked_m2 / 4.0)
+        if abs(wrap_pi(cmath.phase(turn) - held_rad)) > 3.0 * math.hypot(std_rad, fit_rad):
+            self._forget_heading()
+        return FixVerdict(False, "contradicts the path, and agrees with others: going there")
 
     def _note_alignment(self) -> None:
         """Once the heading is known, so is that a metre walked is about a metre."""
@@ -381,7 +400,7 @@ class GpsInertialFuser:
         turn_std_rad = self._turn()[1]
         c, s = float(self._horizontal.x[2, 0]), float(self._horizontal.x[3, 0])
         scale = math.hypot(c, s)
-        if turn_std_rad >= self._kind.aligned_rad or scale < 0.5:
+        if turn_std_rad >= self._kind.scaled_rad or scale < 0.5:
             return
         self._memory.aligned_once = True
         observe = np.array([[0.0, 0.0, c / scale, s / scale, 0.0, 0.0]])

@@ -1,0 +1,144 @@
+"""What every fuser keeps to."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.fusion import FUSERS
+from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
+from shared.geo import rotate
+from shared.quality import Quality
+from tests.fusion_walks import Receiver, Walk
+
+
+@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
+def kind(request: pytest.FixtureRequest) -> FuserKind:
+    found: FuserKind = request.param
+    return found
+
+
+@pytest.fixture
+def walk() -> Walk:
+    return Walk.wander(np.random.default_rng(1), 60.0)
+
+
+def go(fuser: Fuser, walk: Walk, receiver: Receiver, begin: int, end: int) -> list[Estimate]:
+    estimates = []
+    for index in range(begin, end):
+        fuser.advance(walk.position(index))
+        if index % 5 == 0:
+            fuser.correct(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))
+        estimate = fuser.estimate()
+        assert estimate is not None
+        estimates.append(estimate)
+    return estimates
+
+
+def receiver() -> Receiver:
+    return Receiver(np.random.default_rng(2))
+
+
+def test_names_are_the_log_s_and_differ() -> None:
+    names = [kind.name for kind in FUSERS]
+    assert len(set(names)) == len(names)
+    assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
+
+
+def test_it_knows_nothing_before_anything_came(kind: FuserKind) -> None:
+    assert kind.new().estimate() is None
+
+
+def test_the_same_calls_give_the_same_answers(kind: FuserKind, walk: Walk) -> None:
+    one = go(kind.new(), walk, receiver(), 0, len(walk))
+    assert go(kind.new(), walk, receiver(), 0, len(walk)) == one
+
+
+def test_saved_and_restored_it_goes_on_with_the_very_same_numbers(
+    kind: FuserKind, walk: Walk
+) -> None:
+    straight, source = kind.new(), receiver()
+    first = kind.new()
+    go(first, walk, receiver(), 0, 150)
+    go(straight, walk, source, 0, 150)
+    second = kind.restore(first.save())
+    again = receiver()
+    for index in range(0, 150, 5):
+        again.fix(float(walk.t_s[index]), walk.truth_m[index])
+    assert go(second, walk, again, 150, 300) == go(straight, walk, source, 150, 300)
+    assert second.save() == straight.save()
+
+
+def test_numbers_are_finite_and_uncertainties_possible(kind: FuserKind, walk: Walk) -> None:
+    for estimate in go(kind.new(), walk, receiver(), 0, len(walk)):
+        numbers = [v for v in msgspec.structs.asdict(estimate).values() if isinstance(v, float)]
+        assert all(map(math.isfinite, numbers))
+        assert min(estimate.std_north_m, estimate.std_east_m, estimate.std_down_m) >= 0.0
+        assert -1.0 <= estimate.correlation_ne <= 1.0
+        assert 0.0 <= estimate.heading_rad < 2.0 * math.pi
+        assert (estimate.quality is Quality.GOOD) == (estimate.quality_reason == "")
+
+
+def test_a_moved_frame_moves_everything_and_changes_nothing_else(
+    kind: FuserKind, walk: Walk
+) -> None:
+    plain, moved = kind.new(), kind.new()
+    go(plain, walk, receiver(), 0, 200)
+    go(moved, walk, receiver(), 0, 200)
+    moved.reframe(0.7, 100.0, -20.0, 3.0)
+    before, after = plain.estimate(), moved.estimate()
+    assert before is not None
+    assert after is not None
+    north_m, east_m = rotate(before.north_m, before.east_m, 0.7)
+    assert (after.north_m, after.east_m) == pytest.approx((north_m + 100.0, east_m - 20.0))
+    assert after.down_m == pytest.approx(before.down_m + 3.0)
+    assert after.heading_rad == pytest.approx((before.heading_rad + 0.7) % (2.0 * math.pi))
+    spread = before.std_north_m**2 + before.std_east_m**2
+    assert after.std_north_m**2 + after.std_east_m**2 == pytest.approx(spread)
+
+
+def test_a_start_places_the_way_walked_so_far(kind: FuserKind, walk: Walk) -> None:
+    fuser = kind.new()
+    for index in range(50):
+        fuser.advance(walk.position(index))
+    fuser.start(Start(10.0, -5.0, -3.0, 1.2, 0.1, 0.0))
+    estimate = fuser.estimate()
+    assert estimate is not None
+    own_north_m, own_east_m = walk.own_m[49]
+    north_m, east_m = rotate(own_north_m, own_east_m, 1.2)
+    assert (estimate.north_m, estimate.east_m) == pytest.approx((north_m + 10.0, east_m - 5.0))
+    assert estimate.down_m == pytest.approx(-3.0)
+
+
+def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
+    fuser = kind.new()
+    go(fuser, walk, receiver(), 0, 200)
+    before = fuser.estimate()
+    walk.own_m[200:] += 500.0
+    reason = fuser.advance(walk.position(200))
+    after = fuser.estimate()
+    assert "jumped" in reason
+    assert before is not None
+    assert after is not None
+    assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 1.0
+
+
+def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
+    fuser = kind.new()
+    go(fuser, walk, receiver(), 0, 100)
+    before = fuser.save()
+    assert fuser.advance(walk.position(50))
+    assert fuser.save() == before
+
+
+def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Walk) -> None:
+    fuser, source = kind.new(), receiver()
+    for index in range(0, len(walk), 5):
+        fuser.correct(source.fix(float(walk.t_s[index]), walk.truth_m[index]))
+    estimate = fuser.estimate()
+    assert estimate is not None
+    assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[-1]) < 15.0
