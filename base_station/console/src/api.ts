@@ -1,4 +1,5 @@
 /** The station's REST API, as far as the console uses it. */
+import type { AnchorView } from "./wire";
 
 export interface Me {
   username: string;
@@ -100,6 +101,9 @@ export const acknowledge = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
 export const resolve = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
+
+export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
+export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);
 
 export const replays = () => call<RunningReplay[]>("GET", "/replays");
 export const startReplay = (incidentId: string) =>

@@ -1,4 +1,5 @@
 /** The building's plan as a layer: rooms, walls, doors and stairs of the chosen floor. */
+import type { Extent } from "ol/extent";
 import GeoJSON from "ol/format/GeoJSON";
 import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
@@ -36,8 +37,8 @@ export class Building {
     this.source.changed();
   }
 
-  extent(): number[] | null {
-    return this.source.isEmpty() ? null : (this.source.getExtent() ?? null);
+  extent(): Extent | null {
+    return this.source.getExtent() ?? null;
   }
 
   private style(feature: FeatureLike): Style | undefined {

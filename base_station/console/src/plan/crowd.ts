@@ -1,4 +1,5 @@
 /** Everybody on the plan: layers whose features follow the picture. */
+import type { Extent } from "ol/extent";
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";
 import Point from "ol/geom/Point";
@@ -61,8 +62,9 @@ export class Crowd {
     }
   }
 
-  extent(): number[] | null {
-    return this.regions.isEmpty() ? null : (this.regions.getExtent() ?? null);
+  /** Where people are, without the regions about them. */
+  extent(): Extent | null {
+    return this.marks.getExtent() ?? null;
   }
 
   /** The unit whose mark is nearest to a coordinate, and where it is. */
@@ -78,11 +80,12 @@ export class Crowd {
     const centre = siteCoordinate(position);
     const walked = scene.trails.get(unit.unit_id) ?? [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
-    region.getGeometry()?.setCoordinates([ring(centre, regionAt(position, scene.silentMs))]);
+    const ellipse = regionAt(position, scene.silentMs);
+    region.getGeometry()?.setCoordinates([ring(centre, ellipse)]);
     mark.getGeometry()?.setCoordinates(centre);
     label.getGeometry()?.setCoordinates(centre);
     trail.setStyle(trailStyle(looks, scene.colours));
-    region.setStyle(regionStyle(looks, scene.colours));
+    region.setStyle(regionStyle(looks, ellipse.major_m, scene.colours));
     mark.setStyle(markStyle(looks, scene.colours));
     label.setStyle(labelStyle(looks, scene.colours));
   }

@@ -2,7 +2,7 @@
 import OlMap from "ol/Map";
 import View from "ol/View";
 import ScaleLine from "ol/control/ScaleLine";
-import { isEmpty } from "ol/extent";
+import { buffer, createEmpty, extend } from "ol/extent";
 import type { Plan } from "../wire";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
@@ -15,6 +15,7 @@ const CLOSE_M_PER_PX = 0.06;
 const MARGIN_PX = 40;
 const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
+const AROUND_M = 2;
 
 export class PlanMap {
   private colours: Colours = readColours();
@@ -65,11 +66,13 @@ export class PlanMap {
 
   /** Show everything there is; false where there is nothing yet. */
   fit(smoothly = true): boolean {
-    const extent = this.building.extent() ?? this.crowd.extent();
-    if (extent === null || isEmpty(extent)) return false;
-    this.view.fit(extent, {
+    const all = createEmpty();
+    for (const part of [this.building.extent(), this.crowd.extent()]) {
+      if (part !== null) extend(all, part);
+    }
+    if (!all.every(Number.isFinite)) return false;
+    this.view.fit(buffer(all, AROUND_M), {
       padding: [MARGIN_PX, RIGHT_MARGIN_PX, MARGIN_PX, MARGIN_PX],
-      minResolution: CLOSE_M_PER_PX / 2,
       ...(smoothly ? moving() : {}),
     });
     return true;

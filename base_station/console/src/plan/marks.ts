@@ -20,6 +20,8 @@ export interface Mark {
 const RADIUS_PX = 13;
 const ARROW_PX = 10;
 const HATCH_PX = 12;
+const MOST_FILLING = 0.18;
+const FULL_RADIUS_M = 3; // up to here a region has all of its filling
 
 export function trailStyle(mark: Mark, colours: Colours): Style {
   const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
@@ -32,13 +34,15 @@ export function trailStyle(mark: Mark, colours: Colours): Style {
   });
 }
 
-export function regionStyle(mark: Mark, colours: Colours): Style {
+/** The larger a region, the fainter its filling: many large ones must not hide the plan. */
+export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Style {
   const colour = mark.old ? colours.quiet : colours[mark.urgency];
+  const filling = Math.min(MOST_FILLING, MOST_FILLING / Math.max(radiusM / FULL_RADIUS_M, 0.1));
   return new Style({
-    fill: new Fill({ color: mark.old ? hatching(colour) : faint(colour, 0.16) }),
+    fill: new Fill({ color: mark.old ? hatching(colour) : faint(colour, filling) }),
     stroke: new Stroke({
-      color: faint(colour, 0.9),
-      width: 1.5,
+      color: faint(colour, mark.chosen ? 1 : 0.75),
+      width: mark.chosen ? 2.5 : 1.5,
       ...(mark.old ? { lineDash: [6, 5] } : {}),
     }),
   });

@@ -2,6 +2,7 @@ import { dialog } from "../view";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
+import { SiteDialog } from "./SiteDialog";
 import { UnitsDialog } from "./UnitsDialog";
 
 export function Dialogs() {
@@ -12,6 +13,8 @@ export function Dialogs() {
       return <PeopleDialog />;
     case "units":
       return <UnitsDialog />;
+    case "site":
+      return <SiteDialog />;
     case "health":
       return <HealthDialog />;
     default:

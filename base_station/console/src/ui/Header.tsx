@@ -23,6 +23,9 @@ export function Header({ picture }: { picture: Picture }) {
             <button type="button" onClick={() => openDialog("people")}>
               People
             </button>
+            <button type="button" onClick={() => openDialog("site")}>
+              Site
+            </button>
           </>
         )}
         <button type="button" onClick={() => void leave()} title={`Logged in as ${user.value?.username}`}>

@@ -29,7 +29,9 @@ export function People({ picture }: { picture: Picture }) {
       onPointerLeave={() => (held.value = false)}
     >
       {places.value.length === 0 ? (
-        <p class="nobody">No unit has been heard yet.</p>
+        <p class="nobody">
+          {picture.ready.value ? "No unit has been heard yet." : "Waiting for the station."}
+        </p>
       ) : (
         <ul class="cards">
           {places.value.map((place) => (

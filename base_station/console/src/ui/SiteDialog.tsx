@@ -1,0 +1,93 @@
+import { ApiError, setAnchor, setPlan } from "../api";
+import { attempt, live } from "../sessions";
+import { dialog } from "../view";
+import type { AnchorView } from "../wire";
+import { Dialog } from "./Dialog";
+import { fields } from "./useLoaded";
+
+const DEGREES = 180 / Math.PI;
+
+export function SiteDialog() {
+  const picture = live.value?.picture;
+  const plan = picture?.plan.value ?? null;
+  return (
+    <Dialog title="Site">
+      <h3>Plan</h3>
+      <p>
+        {plan === null
+          ? "There is no plan; people are shown on a metre grid."
+          : `${plan.muster.name ?? "A plan without a name"} is shown.`}
+      </p>
+      <label class="row">
+        New plan (GeoJSON in site metres)
+        <input
+          type="file"
+          accept=".geojson,.json,application/geo+json"
+          onChange={(event) => {
+            const file = event.currentTarget.files?.[0];
+            if (file) void attempt(sendPlan(file));
+          }}
+        />
+      </label>
+      <h3>Place on the Earth</h3>
+      <AnchorForm anchor={picture?.anchor.value ?? null} />
+    </Dialog>
+  );
+}
+
+async function sendPlan(file: File): Promise<void> {
+  await setPlan(parsed(await file.text()));
+  dialog.value = null;
+}
+
+function parsed(text: string): object {
+  try {
+    return JSON.parse(text) as object;
+  } catch {
+    throw new ApiError("This file is no GeoJSON.", 0);
+  }
+}
+
+function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        const given = fields(event);
+        const number = (name: string) => Number(given[name]);
+        const anchor = {
+          lat_deg: number("lat"),
+          lon_deg: number("lon"),
+          height_m: number("height"),
+          plan_rotation_rad: number("turn") / DEGREES,
+        };
+        void attempt(setAnchor(anchor));
+      }}
+    >
+      <NumberField name="lat" label="Latitude of the plan’s origin, °" value={anchor?.lat_deg} />
+      <NumberField name="lon" label="Longitude, °" value={anchor?.lon_deg} />
+      <NumberField name="height" label="Height, m" value={anchor?.height_m ?? 0} />
+      <NumberField
+        name="turn"
+        label="True heading of the plan’s north, °"
+        value={(anchor?.plan_rotation_rad ?? 0) * DEGREES}
+      />
+      <button class="primary">Set place</button>
+    </form>
+  );
+}
+
+interface NumberFieldProps {
+  name: string;
+  label: string;
+  value: number | undefined;
+}
+
+function NumberField({ name, label, value }: NumberFieldProps) {
+  return (
+    <label>
+      {label}
+      <input name={name} type="number" step="any" required defaultValue={value} />
+    </label>
+  );
+}
