@@ -10,7 +10,7 @@ from edge.sources.port import Outage
 
 
 class SimulatedSource:
-    """``NAME``, ``NAME?seed=N`` or ``PATH.toml[?seed=N]``; the truth is in ``simulation``."""
+    """``NAME`` or ``PATH.toml``, with ``?seed=N&worn_on=chest``; the truth is in ``simulation``."""
 
     def __init__(self, text: str, batch_s: float = 0.05) -> None:
         self.simulation = open_simulation(text)
