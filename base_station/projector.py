@@ -9,7 +9,7 @@ import msgspec
 from base_station.events import Output, Received, Refused, StationEvent
 from base_station.sinks import Projection
 from shared.clock import NS_PER_S
-from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
 
 
 class Projector:
@@ -35,7 +35,7 @@ class Projector:
         if isinstance(message, OperatorAction):
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
-        elif outputs:
+        elif outputs and event.unit_id != STATION_ID:
             self._heard[event.unit_id] = event.t_ns
             if isinstance(message, UnitDescription):
                 self._descriptions.append(message)
