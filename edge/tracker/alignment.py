@@ -18,7 +18,7 @@ from edge.tracker.state import Ring
 from edge.tracker.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
 
 
-@njit(cache=True)
+@njit()
 def stillest_window(ring: Ring, first: int, stop: int, window_s: float) -> tuple[int, int]:
     """Return the first sample and one past the last of the window with the least motion."""
     mask = len(ring.t_ns) - 1
@@ -40,7 +40,7 @@ def stillest_window(ring: Ring, first: int, stop: int, window_s: float) -> tuple
     return best_first, best_stop
 
 
-@njit(cache=True)
+@njit()
 def level(
     ring: Ring,
     first: int,
@@ -72,7 +72,7 @@ def level(
     return config.start_tilt_std_rad + config.start_tilt_per_motion * min(math.sqrt(motion), 5.0)
 
 
-@njit(cache=True)
+@njit()
 def turn_by_gyro(ring: Ring, first: int, last: int, quaternion_nb: Floats) -> None:
     """Carry an attitude from sample ``first`` to ``last``, forward or backward, in place."""
     mask = len(ring.t_ns) - 1
@@ -86,7 +86,7 @@ def turn_by_gyro(ring: Ring, first: int, last: int, quaternion_nb: Floats) -> No
         rotate_attitude(quaternion_nb, angle_rad)
 
 
-@njit(cache=True)
+@njit()
 def _turn_upright(quaternion_nb: Floats, force_b_mps2: Floats) -> None:
     """Turn an attitude the shortest way so that the force at rest points up."""
     rotation_nb = np.zeros((3, 3))

@@ -16,7 +16,7 @@ from edge.tracker.state import Ring
 SLOPE_SAMPLES = 3
 
 
-@njit(cache=True)
+@njit()
 def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: EskfConfig) -> None:
     """At the first clipped sample ``k`` of an axis put the whole run right, in the ring.
 
@@ -38,7 +38,7 @@ def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: Es
         _bridge_run(ring, k, end, stop, axis, config)
 
 
-@njit(cache=True)
+@njit()
 def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig) -> None:
     mask = len(ring.t_ns) - 1
     begin_s = ring.t_s[first & mask]
@@ -59,7 +59,7 @@ def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: 
         ring.hidden_noise[k & mask, axis] = doubt_radps**2 * duration_s
 
 
-@njit(cache=True)
+@njit()
 def _slope(ring: Ring, first: int, last: int, axis: int) -> float:
     mask = len(ring.t_ns) - 1
     interval_s = ring.t_s[last & mask] - ring.t_s[first & mask]

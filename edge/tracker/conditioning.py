@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats, SensorDescription
+from edge.tracker.kernel_cache import SOURCES
 from edge.tracker.port import Reason
 from edge.tracker.state import Ring
 
@@ -36,6 +37,7 @@ GATE = np.dtype(
         ("backward", np.int64),  # stamps before the last one, in a row
         ("repeats", np.int64),  # equal samples in a row
         ("started", np.bool_),
+        (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
 )
 
@@ -93,7 +95,7 @@ def admit(
         ring.flags[slot] = flags
 
 
-@njit(cache=True)
+@njit()
 def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floats) -> int:
     flags = 0
     same = gate[0].started
@@ -117,7 +119,7 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
     return flags
 
 
-@njit(cache=True)
+@njit()
 def _time_flags(gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
     if not gate[0].started:
         gate[0].started = True
@@ -142,7 +144,7 @@ def _time_flags(gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
     return flags
 
 
-@njit(cache=True)
+@njit()
 def regular_time(ring: Ring, k: int, stop: int, late_s: float) -> float:
     """Return the time of sample ``k`` without late delivery, in s since the first sample.
 

@@ -23,8 +23,8 @@ class EskfConfig(NamedTuple):
     gap_s: float = 0.1  # a longer silence counts as a gap
 
     # Stance detection (zero_velocity.py).
-    half_window_s: float = 0.02
-    rate_weight_m2ps2: float = 32.8  # weight of (rad/s)^2 against (m/s^2)^2
+    half_window_s: float = 0.025
+    rate_weight_m2ps2: float = 50.0  # weight of (rad/s)^2 against (m/s^2)^2
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
     threshold_min_m2ps4: float = 1.0
@@ -37,10 +37,19 @@ class EskfConfig(NamedTuple):
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
     stance_rate_radps_rthz: float = 3.5e-4
-    stance_rate_per_motion: float = 0.7  # grows with the statistic to the power 1.5
+    stance_rate_per_motion: float = 1.4  # grows with the statistic to the power 1.5
+
+    stance_rate_worth: float = 1e-4  # an update that tells less of the bias's variance is left out
+
+    # The floor (floor.py).
+    floor_gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp
+    floor_std_m: float = 0.01
+    floor_ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
+    floor_ramp_strides: float = 6.0
+    floor_pause_s: float = 0.4  # between two looks at the floor
 
     # Process noise.
-    accel_noise_mps2_rthz: float = 0.2
+    accel_noise_mps2_rthz: float = 0.15
     gyro_noise_radps_rthz: float = 6.2e-4
     gyro_bias_walk_radps2_rthz: float = 1e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
@@ -53,6 +62,7 @@ class EskfConfig(NamedTuple):
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005
     start_accel_bias_std_mps2: float = 0.2
+    start_lever_std_m: float = 0.1
     start_tilt_std_rad: float = 0.02
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
     start_speed_std_mps: float = 1.0  # when the recording starts on the move

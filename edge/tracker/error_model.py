@@ -1,8 +1,10 @@
 """The error state: how errors grow from sample to sample and shrink with a measurement.
 
-Fifteen errors, true minus estimated, in this order: position (m, NED), velocity
-(m/s, NED), attitude (rad, small rotation in NED axes: ``R_true = (1 + [a x]) R``),
-gyroscope bias (rad/s, sensor axes), accelerometer bias (m/s^2, sensor axes).
+Fifteen errors of navigation, true minus estimated, in this order: position (m, NED),
+velocity (m/s, NED), attitude (rad, small rotation in NED axes: ``R_true = (1 + [a x]) R``),
+gyroscope bias (rad/s, sensor axes), accelerometer bias (m/s^2, sensor axes).  Three more
+are the mount's: the lever (m, sensor axes) from the point about which the foot rolls in
+stance to the sensor, constant over time.
 Formulas: Sola, "Quaternion kinematics for the error-state Kalman filter", 2017,
 chapter 7 (global angular error).
 """
@@ -19,11 +21,12 @@ VELOCITY = 3
 ATTITUDE = 6
 GYRO_BIAS = 9
 ACCEL_BIAS = 12
-SIZE = 15
+LEVER = 15
+SIZE = 18
 
 
 def transition_matrix(rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) -> Floats:
-    """Return the dense transition (15, 15) of one interval; ``propagate`` applies the same."""
+    """Return the dense transition (18, 18) of one interval; ``propagate`` applies the same."""
     x, y, z = force_n_mps2
     matrix = np.eye(SIZE)
     matrix[0:3, 3:6] = dt_s * np.eye(3)
@@ -33,16 +36,16 @@ def transition_matrix(rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) ->
     return matrix
 
 
-@njit(cache=True)
+@njit()
 def propagate(covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) -> None:
-    """Replace ``covariance`` P (15, 15) by ``F P F'``, using what is zero and one in F."""
+    """Replace ``covariance`` P (18, 18) by ``F P F'``, using what is zero and one in F."""
     fx = dt_s * force_n_mps2[0]
     fy = dt_s * force_n_mps2[1]
     fz = dt_s * force_n_mps2[2]
     p = covariance
     r = dt_s * rotation_nb
     # Rows: M = F P, top down so that every row reads rows not yet changed.
-    for j in range(15):
+    for j in range(SIZE):
         v0, v1, v2 = p[3, j], p[4, j], p[5, j]
         a0, a1, a2 = p[6, j], p[7, j], p[8, j]
         g0, g1, g2 = p[9, j], p[10, j], p[11, j]
@@ -73,32 +76,72 @@ def propagate(covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_
         row[7] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
         row[8] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
     for i in range(9):
-        for j in range(i + 1, 15):
+        for j in range(i + 1, SIZE):
             p[j, i] = p[i, j]
 
 
-@njit(cache=True)
+@njit()
 def update_one(
     covariance: Floats,
     error: Floats,
     index: int,
     residual: float,
     variance: float,
+    column: Floats,
     gain: Floats,
-) -> float:
+) -> tuple[float, float]:
     """Use one scalar measurement of error number ``index``.
 
     ``residual`` is measured minus predicted for the state before any of this
-    instant's updates; ``error`` (15,) gathers the correction.  ``gain`` (15,)
-    leaves as the Kalman gain.  Returns the innovation's inverse variance.
+    instant's updates; ``error`` (18,) gathers the correction.  ``gain`` (18,)
+    leaves as the Kalman gain; ``column`` (18,) is scratch.  Returns the innovation
+    and its inverse variance.
     """
-    inverse = 1.0 / (covariance[index, index] + variance)
+    for i in range(SIZE):
+        column[i] = covariance[i, index]
     innovation = residual - error[index]
-    for i in range(15):
-        gain[i] = covariance[i, index] * inverse
+    weight = 1.0 / (column[index] + variance)
+    _apply(covariance, error, column, innovation, weight, gain)
+    return innovation, weight
+
+
+@njit()
+def update_with_lever(
+    covariance: Floats,
+    error: Floats,
+    index: int,
+    lever_row: Floats,
+    residual: float,
+    variance: float,
+    column: Floats,
+    gain: Floats,
+) -> tuple[float, float]:
+    """Use one scalar measurement of error ``index`` minus ``lever_row`` (3,) times the lever's."""
+    a, b, c = lever_row[0], lever_row[1], lever_row[2]
+    for i in range(SIZE):
+        row = covariance[i]
+        column[i] = row[index] - a * row[LEVER] - b * row[LEVER + 1] - c * row[LEVER + 2]
+    innovation = residual - error[index]
+    innovation += a * error[LEVER] + b * error[LEVER + 1] + c * error[LEVER + 2]
+    measured = column[index] - a * column[LEVER] - b * column[LEVER + 1] - c * column[LEVER + 2]
+    weight = 1.0 / (measured + variance)
+    _apply(covariance, error, column, innovation, weight, gain)
+    return innovation, weight
+
+
+@njit()
+def _apply(
+    covariance: Floats,
+    error: Floats,
+    column: Floats,
+    innovation: float,
+    weight: float,
+    gain: Floats,
+) -> None:
+    for i in range(SIZE):
+        gain[i] = column[i] * weight
         error[i] += gain[i] * innovation
-    for i in range(15):
-        scaled = covariance[i, index]
-        for j in range(15):
+    for i in range(SIZE):
+        scaled = column[i]
+        for j in range(SIZE):
             covariance[i, j] -= scaled * gain[j]
-    return float(inverse)

@@ -132,14 +132,14 @@ def work(
     return int(memory.released)
 
 
-@njit(cache=True)
+@njit()
 def _is_past(t_s: Floats, count: int, k: int, wait_s: float) -> bool:
     """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
     mask = len(t_s) - 1
     return t_s[(count - 1) & mask] - t_s[k & mask] > wait_s or count >= k + len(t_s) // 4
 
 
-@njit(cache=True)
+@njit()
 def _release(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> None:
     """Smooth and release rows once sample ``k`` is filtered.
 

@@ -16,21 +16,23 @@ from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
     GYRO_BIAS,
+    LEVER,
     POSITION,
+    SIZE,
     VELOCITY,
     propagate,
-    update_one,
 )
+from edge.tracker.floor import settle
+from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Ring, reach
-from edge.tracker.strapdown import advance, rotate_navigation, rotation_matrix
+from edge.tracker.strapdown import advance, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
 from edge.tracker.zero_velocity import stance_threshold
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
-MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 
 
-@njit(cache=True)
+@njit()
 def filter_sample(
     ring: Ring, progress: NDArray[Any], state: FilterState, k: int, config: EskfConfig
 ) -> None:
@@ -48,14 +50,16 @@ def filter_sample(
     motion = ring.motion_m2ps4[slot]
     still = good and motion <= stance_threshold(ring.stride_minimum_m2ps4[slot], config)
     if still:
-        _stand(ring, state, slot, motion, config)
+        stand(ring, state, slot, config)
+        if motion <= ring.stride_minimum_m2ps4[slot]:
+            settle(ring, progress, state, slot, config)
     note_faults(ring, progress, slot)
     _count_steps(progress, state, still, ring.t_s[slot])
     _write_row(ring, progress, state, slot, still)
     judge(ring, progress, state, slot, config)
 
 
-@njit(cache=True)
+@njit()
 def _start(ring: Ring, progress: NDArray[Any], state: FilterState, config: EskfConfig) -> None:
     stop = min(progress[0].measured, reach(ring, 0))
     ahead_s = config.lookahead_s + config.lag_s
@@ -67,13 +71,14 @@ def _start(ring: Ring, progress: NDArray[Any], state: FilterState, config: EskfC
         state.covariance[VELOCITY + i, VELOCITY + i] = speed_std_mps**2
         state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] = config.start_accel_bias_std_mps2**2
+        state.covariance[LEVER + i, LEVER + i] = config.start_lever_std_m**2
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
     state.covariance[ATTITUDE + 1, ATTITUDE + 1] = tilt_std_rad**2
     progress[0].last_stance_s = ring.t_s[0]
 
 
-@njit(cache=True)
+@njit()
 def _predict(
     ring: Ring, progress: NDArray[Any], state: FilterState, k: int, config: EskfConfig
 ) -> None:
@@ -127,7 +132,7 @@ def _predict(
             ring.rotation_nb[slot, i, j] = state.rotation_nb[i, j]
 
 
-@njit(cache=True)
+@njit()
 def _doubt_clipped(ring: Ring, state: FilterState, slot: int, dt_s: float) -> None:
     """Widen the attitude about the axes that clipped."""
     rotation = state.rotation_nb
@@ -140,7 +145,7 @@ def _doubt_clipped(ring: Ring, state: FilterState, slot: int, dt_s: float) -> No
                 )
 
 
-@njit(cache=True)
+@njit()
 def _bridge_gap(
     ring: Ring,
     progress: NDArray[Any],
@@ -164,67 +169,15 @@ def _bridge_gap(
     state.covariance[heading, heading] += turn_std_rad**2
 
 
-@njit(cache=True)
+@njit()
 def _forget(state: FilterState, index: int, variance: float) -> None:
-    for j in range(15):
+    for j in range(SIZE):
         state.covariance[index, j] = 0.0
         state.covariance[j, index] = 0.0
     state.covariance[index, index] = variance
 
 
-@njit(cache=True)
-def _stand(ring: Ring, state: FilterState, slot: int, motion: float, config: EskfConfig) -> None:
-    """Zero velocity, and zero rate as far as the foot is still, as pseudo-measurements."""
-    interval_s = max(ring.interval_s[slot], MIN_INTERVAL_S)
-    for i in range(15):
-        state.error[i] = 0.0
-    velocity_noise = config.stance_velocity_mps_rthz**2
-    velocity_noise += config.stance_velocity_per_motion**2 * motion
-    excess = motion / max(ring.stride_minimum_m2ps4[slot], config.stance_excess_floor_m2ps4)
-    velocity_noise *= max(excess, 1.0) ** config.stance_excess_power
-    velocity_variance = velocity_noise / interval_s
-    for i in range(3):
-        _update(ring, state, slot, VELOCITY + i, -state.velocity_n_mps[i], velocity_variance)
-    rate_noise = config.stance_rate_radps_rthz**2
-    rate_noise += config.stance_rate_per_motion**2 * motion**3
-    for i in range(3):
-        rate = ring.gyro_radps[slot, i] - state.gyro_bias_radps[i]
-        _update(ring, state, slot, GYRO_BIAS + i, rate, rate_noise / interval_s)
-    _correct(state)
-
-
-@njit(cache=True)
-def _update(
-    ring: Ring, state: FilterState, slot: int, index: int, residual: float, variance: float
-) -> None:
-    """Use one scalar measurement and remember it for the smoother."""
-    u = ring.updates[slot]
-    innovation = residual - state.error[index]
-    weight = update_one(
-        state.covariance, state.error, index, residual, variance, ring.update_gain[slot, u]
-    )
-    ring.update_index[slot, u] = index
-    ring.update_pull[slot, u] = innovation * weight
-    ring.update_weight[slot, u] = weight
-    ring.updates[slot] = u + 1
-
-
-@njit(cache=True)
-def _correct(state: FilterState) -> None:
-    """Move the gathered error into the state."""
-    error = state.error
-    for i in range(3):
-        state.position_n_m[i] += error[POSITION + i]
-        state.velocity_n_mps[i] += error[VELOCITY + i]
-        state.gyro_bias_radps[i] += error[GYRO_BIAS + i]
-        state.accel_bias_mps2[i] += error[ACCEL_BIAS + i]
-    rotate_navigation(
-        state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
-    )
-    rotation_matrix(state.quaternion_nb, state.rotation_nb)
-
-
-@njit(cache=True)
+@njit()
 def _count_steps(progress: NDArray[Any], state: FilterState, still: bool, t_s: float) -> None:
     memory = progress[0]
     if still and not memory.in_stance:
@@ -242,7 +195,7 @@ def _count_steps(progress: NDArray[Any], state: FilterState, still: bool, t_s: f
     memory.in_stance = still
 
 
-@njit(cache=True)
+@njit()
 def _write_row(
     ring: Ring, progress: NDArray[Any], state: FilterState, slot: int, still: bool
 ) -> None:
@@ -252,7 +205,7 @@ def _write_row(
     for i in range(4):
         ring.quaternion_nb[slot, i] = state.quaternion_nb[i]
     for i in range(9):
-        for j in range(15):
+        for j in range(SIZE):
             ring.covariance[slot, i, j] = state.covariance[i, j]
     ring.stationary[slot] = still
     ring.distance_m[slot] = progress[0].distance_m

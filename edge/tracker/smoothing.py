@@ -12,15 +12,16 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
+from edge.tracker.error_model import LEVER, SIZE, VELOCITY
 from edge.tracker.state import Ring
 from edge.tracker.strapdown import rotate_navigation
 
 
-@njit(cache=True)
+@njit()
 def smooth(ring: Ring, first: int, stop: int, last: int) -> None:
     """Correct the rows ``first`` to ``stop - 1`` by all that was measured up to ``last``."""
     mask = len(ring.t_ns) - 1
-    adjoint = np.zeros(15)
+    adjoint = np.zeros(SIZE)
     for k in range(last, first - 1, -1):
         slot = k & mask
         if k < stop:
@@ -29,13 +30,13 @@ def smooth(ring: Ring, first: int, stop: int, last: int) -> None:
         _back_over_interval(ring, slot, adjoint)
 
 
-@njit(cache=True)
+@njit()
 def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
     covariance = ring.covariance[slot]
     for i in range(3):
         position = 0.0
         velocity = 0.0
-        for j in range(15):
+        for j in range(SIZE):
             position += covariance[i, j] * adjoint[j]
             velocity += covariance[3 + i, j] * adjoint[j]
         ring.position_n_m[slot, i] -= position
@@ -43,24 +44,28 @@ def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
     x = 0.0
     y = 0.0
     z = 0.0
-    for j in range(15):
+    for j in range(SIZE):
         x -= covariance[6, j] * adjoint[j]
         y -= covariance[7, j] * adjoint[j]
         z -= covariance[8, j] * adjoint[j]
     rotate_navigation(ring.quaternion_nb[slot], x, y, z)
 
 
-@njit(cache=True)
+@njit()
 def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
     for u in range(ring.updates[slot] - 1, -1, -1):
         gain = ring.update_gain[slot, u]
         pull = ring.update_pull[slot, u]
-        for j in range(15):
+        for j in range(SIZE):
             pull += gain[j] * adjoint[j]
-        adjoint[ring.update_index[slot, u]] -= pull
+        index = ring.update_index[slot, u]
+        adjoint[index] -= pull
+        if VELOCITY <= index < VELOCITY + 3:
+            for j in range(3):
+                adjoint[LEVER + j] += ring.lever_row[slot, index - VELOCITY, j] * pull
 
 
-@njit(cache=True)
+@njit()
 def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
     """Multiply by the transposed transition (error_model.transition_matrix)."""
     dt_s = ring.interval_s[slot]

@@ -13,6 +13,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats
+from edge.tracker.error_model import SIZE
+from edge.tracker.kernel_cache import SOURCES
 
 MAX_UPDATES = 8  # scalar updates one sample can bring
 
@@ -38,6 +40,14 @@ PROGRESS = np.dtype(
         ("foothold_north_m", np.float64),
         ("foothold_east_m", np.float64),
         ("distance_m", np.float64),
+        ("on_floor", np.bool_),  # the fields below are known
+        ("level_m", np.float64),  # height (down) of the floor walked on
+        ("level_variance_m2", np.float64),
+        ("footfall_m", np.float64),  # height of the last footfall
+        ("footfall_s", np.float64),
+        ("mean_sink_m", np.float64),  # of the last strides, before the floor's correction
+        ("withheld_m", np.float64),  # what the floor has taken out in one direction
+        (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
 )
 
@@ -58,15 +68,15 @@ class Ring(NamedTuple):
     position_n_m: Floats  # (n, 3)
     velocity_n_mps: Floats  # (n, 3)
     quaternion_nb: Floats  # (n, 4)
-    covariance: Floats  # (n, 9, 15) its rows of position, velocity and attitude
+    covariance: Floats  # (n, 9, 18) its rows of position, velocity and attitude
     interval_s: Floats  # (n,) since the sample before; negative after a gap
     force_n_mps2: Floats  # (n, 3) over that interval
     rotation_nb: Floats  # (n, 3, 3) at its end
+    lever_row: Floats  # (n, 3, 3) how the lever enters the velocity updates
     updates: NDArray[np.int64]  # (n,) how many scalar updates followed
     update_index: NDArray[np.int64]  # (n, MAX_UPDATES) which error was measured
-    update_gain: Floats  # (n, MAX_UPDATES, 15)
+    update_gain: Floats  # (n, MAX_UPDATES, 18)
     update_pull: Floats  # (n, MAX_UPDATES) innovation by its variance
-    update_weight: Floats  # (n, MAX_UPDATES) inverse variance of the innovation
     stationary: NDArray[np.bool_]  # (n,)
     heading_std_rad: Floats  # (n,)
     distance_m: Floats  # (n,)
@@ -84,15 +94,17 @@ class FilterState(NamedTuple):
     rotation_nb: Floats  # (3, 3)
     gyro_bias_radps: Floats  # (3,)
     accel_bias_mps2: Floats  # (3,)
-    covariance: Floats  # (15, 15), see error_model
-    error: Floats  # (15,) scratch: correction gathered at one instant
+    lever_b_m: Floats  # (3,) from the point the foot rolls about to the sensor
+    covariance: Floats  # (18, 18), see error_model
+    error: Floats  # (18,) scratch: correction gathered at one instant
+    column: Floats  # (18,) scratch
     force_n_mps2: Floats  # (3,) scratch
     accel_mps2: Floats  # (3,) scratch
     gyro_radps: Floats  # (3,) scratch
     angle_rad: Floats  # (3,) scratch
 
 
-@njit(cache=True)
+@njit()
 def reach(ring: Ring, k: int) -> int:
     """Return one past the last sample that work on sample ``k`` may look at.
 
@@ -118,15 +130,15 @@ def new_ring(slots: int) -> Ring:
         position_n_m=np.zeros((slots, 3)),
         velocity_n_mps=np.zeros((slots, 3)),
         quaternion_nb=np.zeros((slots, 4)),
-        covariance=np.zeros((slots, 9, 15)),
+        covariance=np.zeros((slots, 9, SIZE)),
         interval_s=np.zeros(slots),
         force_n_mps2=np.zeros((slots, 3)),
         rotation_nb=np.zeros((slots, 3, 3)),
+        lever_row=np.zeros((slots, 3, 3)),
         updates=np.zeros(slots, np.int64),
         update_index=np.zeros((slots, MAX_UPDATES), np.int64),
-        update_gain=np.zeros((slots, MAX_UPDATES, 15)),
+        update_gain=np.zeros((slots, MAX_UPDATES, SIZE)),
         update_pull=np.zeros((slots, MAX_UPDATES)),
-        update_weight=np.zeros((slots, MAX_UPDATES)),
         stationary=np.zeros(slots, np.bool_),
         heading_std_rad=np.zeros(slots),
         distance_m=np.zeros(slots),
@@ -144,8 +156,10 @@ def new_filter_state() -> FilterState:
         rotation_nb=np.eye(3),
         gyro_bias_radps=np.zeros(3),
         accel_bias_mps2=np.zeros(3),
-        covariance=np.zeros((15, 15)),
-        error=np.zeros(15),
+        lever_b_m=np.zeros(3),
+        covariance=np.zeros((SIZE, SIZE)),
+        error=np.zeros(SIZE),
+        column=np.zeros(SIZE),
         force_n_mps2=np.zeros(3),
         accel_mps2=np.zeros(3),
         gyro_radps=np.zeros(3),

@@ -19,7 +19,7 @@ from edge.samples import Floats
 GRAVITY_MPS2 = 9.80665
 
 
-@njit(cache=True)
+@njit()
 def rotate_attitude(quaternion_nb: Floats, angle_b_rad: Floats) -> None:
     """Turn ``quaternion_nb`` (4,) in place by a rotation vector (3,) in sensor axes."""
     x, y, z = angle_b_rad[0], angle_b_rad[1], angle_b_rad[2]
@@ -42,7 +42,7 @@ def rotate_attitude(quaternion_nb: Floats, angle_b_rad: Floats) -> None:
     quaternion_nb[2], quaternion_nb[3] = j / norm, k / norm
 
 
-@njit(cache=True)
+@njit()
 def rotate_navigation(quaternion_nb: Floats, x: float, y: float, z: float) -> None:
     """Turn ``quaternion_nb`` in place by the small rotation vector in navigation axes."""
     qw, qx, qy, qz = quaternion_nb[0], quaternion_nb[1], quaternion_nb[2], quaternion_nb[3]
@@ -56,7 +56,7 @@ def rotate_navigation(quaternion_nb: Floats, x: float, y: float, z: float) -> No
     quaternion_nb[2], quaternion_nb[3] = j / norm, k / norm
 
 
-@njit(cache=True)
+@njit()
 def rotation_matrix(quaternion_nb: Floats, rotation_nb: Floats) -> None:
     """Write the matrix of ``quaternion_nb`` into ``rotation_nb`` (3, 3)."""
     w, x, y, z = quaternion_nb[0], quaternion_nb[1], quaternion_nb[2], quaternion_nb[3]
@@ -71,7 +71,7 @@ def rotation_matrix(quaternion_nb: Floats, rotation_nb: Floats) -> None:
     rotation_nb[2, 2] = 1.0 - 2.0 * (x * x + y * y)
 
 
-@njit(cache=True)
+@njit()
 def advance(
     position_n_m: Floats,
     velocity_n_mps: Floats,

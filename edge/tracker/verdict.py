@@ -27,7 +27,7 @@ DEGRADED = int(Quality.DEGRADED)
 LOST = int(Quality.LOST)
 
 
-@njit(cache=True)
+@njit()
 def note_faults(ring: Ring, progress: NDArray[Any], slot: int) -> None:
     """Remember when a sample's own flags were last seen."""
     flags = ring.flags[slot]
@@ -41,7 +41,7 @@ def note_faults(ring: Ring, progress: NDArray[Any], slot: int) -> None:
         memory.gap_s = t_s
 
 
-@njit(cache=True)
+@njit()
 def judge(
     ring: Ring, progress: NDArray[Any], state: FilterState, slot: int, config: EskfConfig
 ) -> None:

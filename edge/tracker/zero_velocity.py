@@ -20,7 +20,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.state import Ring, reach
 
 
-@njit(cache=True)
+@njit()
 def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float:
     """Return the statistic of sample ``k``; samples from ``stop`` on are not looked at."""
     mask = len(ring.t_ns) - 1
@@ -54,7 +54,7 @@ def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float
     return max(spread, 0.0) + config.rate_weight_m2ps2 * rates / count
 
 
-@njit(cache=True)
+@njit()
 def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> float:
     """Return the smallest statistic from ``stride_past_s`` before to ``lookahead_s`` after ``k``.
 
@@ -85,7 +85,7 @@ def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfi
     return float(motion[at & mask])
 
 
-@njit(cache=True)
+@njit()
 def stance_threshold(stride_minimum_m2ps4: float, config: EskfConfig) -> float:
     """Return the statistic up to which a sample counts as standing."""
     threshold = config.threshold_ratio * stride_minimum_m2ps4

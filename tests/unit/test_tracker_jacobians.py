@@ -9,13 +9,16 @@ from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
     GYRO_BIAS,
+    LEVER,
     POSITION,
     SIZE,
     VELOCITY,
     propagate,
     transition_matrix,
     update_one,
+    update_with_lever,
 )
+from edge.tracker.stance import lever_velocity_row
 from edge.tracker.strapdown import (
     GRAVITY_MPS2,
     advance,
@@ -108,21 +111,44 @@ def test_sparse_propagation_is_the_dense_product(seed):
 
 
 @pytest.mark.parametrize("index", [POSITION, VELOCITY + 1, GYRO_BIAS + 2])
-def test_scalar_update_is_the_joseph_form(index):
+@pytest.mark.parametrize("lever_row", [None, (0.4, -1.1, 0.2)])
+def test_scalar_update_is_the_joseph_form(index, lever_row):
     noise = np.random.default_rng(index)
     root = noise.standard_normal((SIZE, SIZE))
     before = root @ root.T
-    row = np.zeros((1, SIZE))
-    row[0, index] = 1.0
-    gain = before @ row.T / (before[index, index] + 0.3)
-    kept = np.eye(SIZE) - gain @ row
-    expected = kept @ before @ kept.T + 0.3 * gain @ gain.T
-    after, error, found = before.copy(), np.zeros(SIZE), np.zeros(SIZE)
-    weight = update_one(after, error, index, 2.0, 0.3, found)
+    row = np.zeros(SIZE)
+    row[index] = 1.0
+    if lever_row is not None:
+        row[LEVER : LEVER + 3] = -np.array(lever_row)
+    variance = 0.3
+    gain = before @ row / (row @ before @ row + variance)
+    kept = np.eye(SIZE) - np.outer(gain, row)
+    expected = kept @ before @ kept.T + variance * np.outer(gain, gain)
+    gathered = noise.standard_normal(SIZE)
+    after, error = before.copy(), gathered.copy()
+    column, found = np.zeros(SIZE), np.zeros(SIZE)
+    if lever_row is None:
+        innovation, weight = update_one(after, error, index, 2.0, variance, column, found)
+    else:
+        innovation, weight = update_with_lever(
+            after, error, index, np.array(lever_row), 2.0, variance, column, found
+        )
     np.testing.assert_allclose(after, expected, atol=1e-9)
-    np.testing.assert_allclose(error, 2.0 * gain[:, 0])
-    np.testing.assert_allclose(found, gain[:, 0])
-    assert weight == pytest.approx(1.0 / (before[index, index] + 0.3))
+    np.testing.assert_allclose(error, gathered + gain * (2.0 - row @ gathered))
+    np.testing.assert_allclose(found, gain)
+    assert innovation == pytest.approx(2.0 - row @ gathered)
+    assert weight == pytest.approx(1.0 / (row @ before @ row + variance))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_stance_velocity_row_is_the_derivative_by_the_lever(axis):
+    state = _random_state(axis)
+    rotation, row = np.zeros((3, 3)), np.zeros(3)
+    rotation_matrix(state["quaternion"], rotation)
+    lever_velocity_row(rotation, state["gyro"], axis, row)
+    for j, step in enumerate(STEP * np.eye(3)):
+        moved = rotation @ np.cross(state["gyro"], step)
+        assert row[j] == pytest.approx(moved[axis] / STEP)
 
 
 def test_rotation_vector_turns_about_its_axis():

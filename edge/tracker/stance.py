@@ -1,0 +1,136 @@
+"""What a standing foot tells: it turns about a point that rests, and hardly turns at all.
+
+Zero velocity holds for the point of the sole on the ground, not for a sensor some
+centimetres above it on a foot that rolls.  So the velocity is measured as
+``rate x lever`` with the lever estimated like a bias: from how the velocity changes
+while the rate changes within a stance.  Both pseudo-measurements are worth the more,
+the stiller the sample is.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    GYRO_BIAS,
+    LEVER,
+    POSITION,
+    SIZE,
+    VELOCITY,
+    update_one,
+    update_with_lever,
+)
+from edge.tracker.state import FilterState, Ring
+from edge.tracker.strapdown import rotate_navigation, rotation_matrix
+
+MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
+
+
+@njit()
+def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+    """Use the pseudo-measurements of one still sample."""
+    interval_s = max(ring.interval_s[slot], MIN_INTERVAL_S)
+    motion = ring.motion_m2ps4[slot]
+    for i in range(3):
+        state.gyro_radps[i] = ring.gyro_radps[slot, i] - state.gyro_bias_radps[i]
+    _begin_updates(state)
+    velocity_variance = _velocity_noise(ring, slot, motion, config) / interval_s
+    for i in range(3):
+        _measure_velocity(ring, state, slot, i, velocity_variance)
+    rate_noise = config.stance_rate_radps_rthz**2
+    rate_noise += config.stance_rate_per_motion**2 * motion**3
+    rate_variance = rate_noise / interval_s
+    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
+        for i in range(3):
+            _measure(ring, state, slot, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
+    _end_updates(state)
+
+
+@njit()
+def _velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
+    noise = config.stance_velocity_mps_rthz**2
+    noise += config.stance_velocity_per_motion**2 * motion
+    stillest = max(ring.stride_minimum_m2ps4[slot], config.stance_excess_floor_m2ps4)
+    return float(noise * max(motion / stillest, 1.0) ** config.stance_excess_power)
+
+
+@njit()
+def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row: Floats) -> None:
+    """Write row ``axis`` of ``R [w x]`` into ``row`` (3,): times the lever it is the velocity."""
+    x, y, z = rate_b_radps[0], rate_b_radps[1], rate_b_radps[2]
+    row[0] = rotation_nb[axis, 1] * z - rotation_nb[axis, 2] * y
+    row[1] = rotation_nb[axis, 2] * x - rotation_nb[axis, 0] * z
+    row[2] = rotation_nb[axis, 0] * y - rotation_nb[axis, 1] * x
+
+
+@njit()
+def _measure_velocity(
+    ring: Ring, state: FilterState, slot: int, axis: int, variance: float
+) -> None:
+    u = ring.updates[slot]
+    row = ring.lever_row[slot, axis]
+    lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
+    expected_mps = (row * state.lever_b_m).sum()
+    innovation, weight = update_with_lever(
+        state.covariance,
+        state.error,
+        VELOCITY + axis,
+        row,
+        expected_mps - state.velocity_n_mps[axis],
+        variance,
+        state.column,
+        ring.update_gain[slot, u],
+    )
+    remember(ring, slot, VELOCITY + axis, innovation * weight)
+
+
+@njit()
+def _measure(
+    ring: Ring, state: FilterState, slot: int, index: int, residual: float, variance: float
+) -> None:
+    """Use one scalar measurement of error ``index`` and remember it for the smoother."""
+    innovation, weight = update_one(
+        state.covariance,
+        state.error,
+        index,
+        residual,
+        variance,
+        state.column,
+        ring.update_gain[slot, ring.updates[slot]],
+    )
+    remember(ring, slot, index, innovation * weight)
+
+
+@njit()
+def remember(ring: Ring, slot: int, index: int, pull: float) -> None:
+    """Count the update whose gain is in the ring, for the smoother."""
+    u = ring.updates[slot]
+    ring.update_index[slot, u] = index
+    ring.update_pull[slot, u] = pull
+    ring.updates[slot] = u + 1
+
+
+@njit()
+def _begin_updates(state: FilterState) -> None:
+    for i in range(SIZE):
+        state.error[i] = 0.0
+
+
+@njit()
+def _end_updates(state: FilterState) -> None:
+    """Move the gathered error into the state."""
+    error = state.error
+    for i in range(3):
+        state.position_n_m[i] += error[POSITION + i]
+        state.velocity_n_mps[i] += error[VELOCITY + i]
+        state.gyro_bias_radps[i] += error[GYRO_BIAS + i]
+        state.accel_bias_mps2[i] += error[ACCEL_BIAS + i]
+        state.lever_b_m[i] += error[LEVER + i]
+    rotate_navigation(
+        state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
+    )
+    rotation_matrix(state.quaternion_nb, state.rotation_nb)
