@@ -115,6 +115,8 @@ class ReplaySession:
             now_ns = self._clock.monotonic_ns()
             self._move(now_ns - before_ns)
             before_ns = now_ns
+            if self._seek_ns is not None:
+                continue  # a picture now would be of another time than asked for
             while self._asked:
                 self._asked.popleft()(self._picture.snapshot(self.view()))
             self._news.wait(DELTA_S if self._playing else PAUSED_S)

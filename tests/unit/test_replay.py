@@ -1,0 +1,191 @@
+"""A replay session: play, pause, seek, speed, and a console that follows it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import pytest
+
+from base_station.api.wire import Snapshot
+from base_station.checkpoints import Checkpoints
+from base_station.playback import Archive, Playback, Record
+from base_station.replay import ReplaySession, Window
+from shared.clock import NS_PER_S, SystemClock
+from shared.errors import UserError
+from shared.messages import EventKind
+from shared.messages.station import Assign, OpenIncident
+from tests.live_station import Screen, make_pipeline, until
+from tests.station_script import START_NS, Script
+
+DURATION_S = 120
+MAYDAY_S = 60
+
+
+@pytest.fixture(scope="module")
+def records() -> list[Record]:
+    """Two minutes' walk to the north at 1 m/s, with a mayday after one."""
+    script = Script()
+    script.register("FF-01")
+    script.act(Assign("FF-01", "p1", "Ada", "red", "leader"))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(DURATION_S):
+        script.now_s += 1.0
+        script.position("FF-01", 1.0 * second, 0.0)
+        if second == MAYDAY_S:
+            script.event("FF-01", EventKind.MAYDAY)
+        script.tick()
+    return script.records
+
+
+def archive(records: list[Record], folder: Path) -> Archive:
+    def from_time(t_ns: int) -> Iterable[Record]:
+        return (record for record in records if record[0] >= t_ns)
+
+    return Archive(from_time, Checkpoints(folder), make_pipeline)
+
+
+@pytest.fixture
+def screen() -> Screen:
+    return Screen()
+
+
+@pytest.fixture
+def session(records: list[Record], tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    session = ReplaySession(
+        archive(records, tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+    )
+    yield session
+    session.close()
+
+
+def picture(session: ReplaySession) -> Snapshot:
+    found: list[Snapshot] = []
+    came = threading.Event()
+
+    def take(snapshot: Snapshot) -> None:
+        found.append(snapshot)
+        came.set()
+
+    session.request_snapshot(take)
+    assert came.wait(10.0)
+    return found[0]
+
+
+def at_s(session: ReplaySession) -> float:
+    return session.view().at_ms / 1e3 - START_NS / NS_PER_S
+
+
+def north_m(snapshot: Snapshot) -> float:
+    (unit,) = snapshot.units
+    assert unit.position is not None
+    return unit.position.north_m
+
+
+def test_seeking_forth_and_back_shows_that_instant(session: ReplaySession) -> None:
+    session.pause()
+    for second in (100, 30, 119, 61):
+        session.seek(START_NS + second * NS_PER_S)
+        seen = picture(session)
+        assert seen.replay is not None
+        assert seen.replay.at_ms == START_NS // 10**6 + second * 1000
+        assert north_m(seen) == pytest.approx(second - 1.0)
+        assert bool(seen.alarms) == (second > MAYDAY_S)
+
+
+def test_a_seek_is_a_new_picture_for_everybody(session: ReplaySession, screen: Screen) -> None:
+    until(lambda: len(screen.resets) == 1)
+    session.pause()
+    session.seek(START_NS + 50 * NS_PER_S)
+    until(lambda: len(screen.resets) == 2)
+    assert north_m(screen.resets[-1]) == pytest.approx(49.0)
+
+
+def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Screen) -> None:
+    session.set_speed(1000.0)
+    until(lambda: not session.view().playing)
+    assert at_s(session) == DURATION_S
+    assert any(alarm.rule == "mayday" for delta in screen.deltas for alarm in delta.alarms)
+    assert [delta.seq for delta in screen.deltas] == list(range(1, len(screen.deltas) + 1))
+    assert all(delta.replay is not None for delta in screen.deltas)
+
+
+def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
+    session.pause()
+    session.seek(START_NS + 10**6 * NS_PER_S)
+    assert at_s(session) == DURATION_S, "behind the end is the end"
+    session.play()
+    until(lambda: 0.0 < at_s(session) < 60.0)
+
+
+def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
+    session.set_speed(32.0)
+    pause = threading.Event()
+    begin_s = at_s(session)
+    pause.wait(1.0)
+    assert 15.0 < at_s(session) - begin_s < 60.0
+    session.pause()
+    picture(session)
+    paused_s = at_s(session)
+    pause.wait(0.3)
+    assert at_s(session) == paused_s
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf"), 0.1])
+def test_an_impossible_speed_is_refused_in_words(session: ReplaySession, speed: float) -> None:
+    with pytest.raises(UserError, match="times real time"):
+        session.set_speed(speed)
+
+
+def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
+    window = Window("i1", START_NS, START_NS + NS_PER_S)
+    session = ReplaySession(
+        archive([], tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+    )
+    assert picture(session).units == ()
+    session.close()
+
+
+def test_a_checkpoint_on_the_way_gives_the_same_picture(
+    records: list[Record], tmp_path: Path
+) -> None:
+    plain = Playback(archive(records, tmp_path / "none"))
+    source = archive(records, tmp_path / "some")
+    saving = Playback(source)
+    for second in (40, 80):
+        for _ in saving.seek(START_NS + second * NS_PER_S):
+            pass
+        at_ns = saving.pipeline.state.t_ns
+        events = sum(record[0] == at_ns for record in records)
+        source.checkpoints.save(at_ns, events, saving.pipeline.checkpoint())
+    opened: list[int] = []
+
+    def counting(t_ns: int) -> Iterable[Record]:
+        opened.append(t_ns)
+        return source.open_log(t_ns)
+
+    quick = Playback(Archive(counting, source.checkpoints, make_pipeline))
+    for second in (100, 60, 20, 110):
+        target_ns = START_NS + second * NS_PER_S
+        for playback in (plain, quick):
+            for _ in playback.seek(target_ns):
+                pass
+        assert quick.pipeline.checkpoint() == plain.pipeline.checkpoint()
+    assert max(opened) == START_NS + 80 * NS_PER_S
+
+
+def test_a_damaged_checkpoint_only_costs_time(records: list[Record], tmp_path: Path) -> None:
+    source = archive(records, tmp_path)
+    for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
+        pass
+    source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, saving.pipeline.checkpoint())
+    (path,) = tmp_path.iterdir()
+    for damaged in (path.read_bytes()[:-10], b"", path.read_bytes()[::-1]):
+        path.write_bytes(damaged)
+        assert source.checkpoints.latest() is None
+        again = Playback(source)
+        for _ in again.seek(START_NS + 60 * NS_PER_S):
+            pass
+        assert again.pipeline.state.units["FF-01"].position is not None
