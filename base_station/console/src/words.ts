@@ -108,7 +108,7 @@ export function place(at: { north_m: number; east_m: number }): string {
 
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
 export function alarmWord(alarm: AlarmView): string {
-  const rule = alarm.rule.replaceAll("_", " ");
+  const rule = alarm.rule.replaceAll(/[-_]/g, " ");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
 }

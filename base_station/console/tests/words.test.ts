@@ -52,9 +52,9 @@ describe("words", () => {
   });
 
   it.each([
-    ["no_motion", "pre-alert", "No motion: pre-alert"],
-    ["no_motion", "alarm", "No motion"],
-    ["link_lost", "lost", "Link lost"],
+    ["no-motion", "pre-alert", "No motion: pre-alert"],
+    ["no-motion", "alarm", "No motion"],
+    ["link-lost", "lost", "Link lost"],
     ["mayday", "mayday", "Mayday"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
