@@ -1,0 +1,139 @@
+"""``muster base ...`` as a process of its own, and units that speak to it."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import channel_of
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.messages import Message
+
+PATIENCE_S = 60.0
+# As ``shared.command_line.main`` does it, without the entry points of an installed program.
+RUN = """
+import sys
+from base_station.cli import app
+from shared.errors import MusterError
+try:
+    app(prog_name="muster base")
+except MusterError as error:
+    print(error, file=sys.stderr)
+    sys.exit(2)
+"""
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def wait_until(what: str, condition: Callable[[], object], patience_s: float = PATIENCE_S) -> None:
+    end_s = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < end_s, f"it never came true that {what}"
+        time.sleep(0.05)
+
+
+class Command:
+    """One run of ``muster base``; it is killed where a test leaves it running."""
+
+    def __init__(self, output: Path, *arguments: str, stdin: str = "") -> None:
+        self._output = output
+        with output.open("wb") as written:
+            self.process = subprocess.Popen(
+                [sys.executable, "-c", RUN, *arguments],
+                stdin=subprocess.PIPE,
+                stdout=written,
+                stderr=subprocess.STDOUT,
+            )
+        assert self.process.stdin is not None
+        self.process.stdin.write(stdin.encode())
+        self.process.stdin.close()
+
+    def __enter__(self) -> Command:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
+
+    def said(self) -> str:
+        return self._output.read_text(errors="replace")
+
+    def wait_ready(self) -> str:
+        """The address of the console."""
+        wait_until(
+            "the station is ready or has ended",
+            lambda: "\nready " in f"\n{self.said()}" or self.process.poll() is not None,
+        )
+        assert self.process.poll() is None, f"the station ended:\n{self.said()}"
+        (line,) = (line for line in self.said().splitlines() if line.startswith("ready "))
+        return line.removeprefix("ready ")
+
+    def wait(self) -> int:
+        return self.process.wait(PATIENCE_S)
+
+    def stop(self) -> int:
+        self.process.send_signal(signal.SIGTERM)
+        return self.wait()
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+
+
+class Browser:
+    """A person at the console."""
+
+    def __init__(self, address: str, data: Path) -> None:
+        self.address = address
+        self._client = httpx.Client(
+            base_url=f"{address}/api/v1", headers={"Origin": address}, verify=False
+        )
+        text = (data / "first-login.txt").read_text()
+        credentials = dict(line.split(": ", 1) for line in text.splitlines())
+        self.call("POST", "/login", json=credentials)
+
+    def __enter__(self) -> Browser:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._client.close()
+
+    def cookie(self) -> str:
+        return "; ".join(f"{name}={value}" for name, value in self._client.cookies.items())
+
+    def call(self, method: str, path: str, **request: Any) -> Any:
+        answer = self._client.request(method, path, **request)
+        assert answer.is_success, f"{method} {path}: {answer.status_code} {answer.text}"
+        return answer.json() if answer.content else None
+
+    def status(self, method: str, path: str, **request: Any) -> int:
+        return self._client.request(method, path, **request).status_code
+
+
+class Unit:
+    """A wearable as the bus sees it."""
+
+    def __init__(self, port: int, unit_id: str, boot_id: int = 1) -> None:
+        self.bus = ZenohBus(UnitEndpoint((f"tcp/127.0.0.1:{port}",)))
+        self.stamper = Stamper(unit_id, boot_id, SystemClock())
+
+    def say(self, message: Message) -> None:
+        channel = channel_of(message)
+        self.bus.publish(channel.key(self.stamper.unit_id), encode(message), channel.qos)
+
+    def close(self) -> None:
+        self.bus.close()
