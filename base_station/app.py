@@ -35,15 +35,19 @@ from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
 from base_station.fusion import FUSERS
 from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.pki.expiry import ExpiryWatch
+from base_station.pki.folder import PkiFolder
 from base_station.playback import Archive
 from base_station.read_only import ReadOnlyGate
 from base_station.rebuild import project_log
 from base_station.recorder import Recorder
 from base_station.replay import ReplaySession, Window
+from base_station.router import station_endpoint
+from base_station.router_process import RouterProcess
 from base_station.server import ConsoleServer, bind
 from base_station.sinks import Projection
 from base_station.views import StationFacts
-from shared.bus_zenoh import StationEndpoint, ZenohBus
+from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT
 from shared.clock import Clock, SystemClock
 from shared.errors import StoreError, UserError
@@ -79,7 +83,9 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         closing.callback(projection.close)
         steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
         feed = LiveFeed(steady)
-        bus = ZenohBus(StationEndpoint(listen=config.bus.listen))
+        router = RouterProcess(folder.path, config.bus.listen)
+        closing.callback(router.close)
+        bus = ZenohBus(station_endpoint(folder.path, config.bus.listen))
         closing.callback(bus.close)
         hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
         closing.callback(hearing.close)
@@ -87,6 +93,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
 
         checkpoints = Checkpoints(folder.checkpoints)
         insecure = bool(config.plain_endpoints())
+        expiry = ExpiryWatch(PkiFolder(folder.path), clock)
         drive = _start_drive(
             LogFeed(folder.log, recorder.flush),
             Surroundings(
@@ -96,7 +103,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
                 projection=projection,
                 checkpoints=checkpoints,
                 photo_urls=roster.photo_url,
-                facts=lambda: _facts(recorder, feed, insecure),
+                facts=lambda: _facts(recorder, feed, router, expiry, insecure),
                 clock=steady,
                 boot_id=secrets.randbits(63),
                 report=backfill.report,
@@ -222,8 +229,16 @@ def _replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartRepl
     return start
 
 
-def _facts(recorder: Recorder, feed: LiveFeed, insecure: bool) -> StationFacts:
-    problems = []
+def _facts(
+    recorder: Recorder,
+    feed: LiveFeed,
+    router: RouterProcess,
+    expiry: ExpiryWatch,
+    insecure: bool,
+) -> StationFacts:
+    problems = [*expiry.problems()]
+    if not router.is_open:
+        problems.append("The bus's router is away and is started again; no unit is linked")
     if feed.overflowed:
         problems.append(f"{feed.overflowed} messages came faster than this machine can take them")
     return StationFacts(

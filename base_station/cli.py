@@ -39,7 +39,7 @@ def serve(
     config: ConfigOption = None,
     data: DataOption = None,
     listen: Annotated[
-        list[str] | None, typer.Option(help="Where units connect, tcp/HOST:PORT; repeatable.")
+        list[str] | None, typer.Option(help="Where units connect, tls/HOST:PORT; repeatable.")
     ] = None,
     http: HttpOption = None,
     insecure: InsecureOption = None,

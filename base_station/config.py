@@ -13,9 +13,10 @@ from shared.errors import ConfigError
 
 @dataclass(frozen=True, slots=True)
 class BusConfig:
-    """The Zenoh router inside the station."""
+    """The Zenoh router beside the station."""
 
-    listen: tuple[str, ...] = ("tcp/127.0.0.1:7447",)  # where units connect
+    # Where units connect.  tls/ wants `muster pki init`; tcp/ is not secured.
+    listen: tuple[str, ...] = ("tls/0.0.0.0:7447",)
 
 
 @dataclass(frozen=True, slots=True)

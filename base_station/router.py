@@ -1,4 +1,4 @@
-"""The bus's router, a process of its own beside the station.
+"""The bus's router, a process of its own beside the station; ``router_process`` keeps it running.
 
 Zenoh reads access rules when it opens, so enrolling or revoking somebody means opening the
 router again.  In its own process that costs everybody's link half a second, and the station
@@ -14,14 +14,11 @@ import time
 from contextlib import closing
 from pathlib import Path
 from threading import Event, Thread
-from typing import Annotated
-
-import typer
 
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
-from shared.bus_zenoh import StationEndpoint, ZenohBus
-from shared.errors import BusError, ConfigError, MusterError
+from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
+from shared.errors import ConfigError, MusterError, PortInUseError
 from shared.log import set_up_logging
 
 logger = logging.getLogger(__name__)
@@ -29,8 +26,8 @@ logger = logging.getLogger(__name__)
 READY = "router ready"
 FAILED = "router failed: "
 _LOOK_EVERY_S = 1.0
-_OPEN_ATTEMPTS = 10  # after a change: the port may take a moment to come free
-_ATTEMPT_EVERY_S = 0.5
+_OPEN_ATTEMPTS = 10
+_ATTEMPT_EVERY_S = 0.3
 
 
 def endpoint_of(data: Path, listen: tuple[str, ...]) -> StationEndpoint:
@@ -38,21 +35,17 @@ def endpoint_of(data: Path, listen: tuple[str, ...]) -> StationEndpoint:
 
     Raises ConfigError where there is no authority, or plain and TLS are mixed.
     """
-    if not any(endpoint.startswith("tls/") for endpoint in listen):
+    if not _is_secure(listen):
         return StationEndpoint(listen)
-    if not all(endpoint.startswith("tls/") for endpoint in listen):
-        raise ConfigError(
-            f"{', '.join(listen)}: the bus is either secure or not; listen on tls/ only, or on "
-            "tcp/ only"
-        )
     pki = PkiFolder(data)
     return StationEndpoint(listen, pki.station_identity(), access_control(pki.registry()))
 
 
-def own_endpoint(listen: tuple[str, ...]) -> str:
-    """Where the station itself finds its router."""
-    first = listen[0]
-    return first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
+def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
+    """How the station itself joins its router; over TLS with a right to everything."""
+    own = listen[0].replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
+    identity = PkiFolder(data).station_identity() if _is_secure(listen) else None
+    return ClientEndpoint((own,), identity)
 
 
 class Router:
@@ -63,7 +56,7 @@ class Router:
         self._data = data
         self._listen = listen
         self._endpoint = endpoint_of(data, listen)
-        self._bus = ZenohBus(self._endpoint)
+        self._bus = _open(self._endpoint)
         self._told = ""
 
     def refresh(self) -> None:
@@ -83,7 +76,7 @@ class Router:
         self._told = ""
         if wanted != self._endpoint:
             self._bus.close()
-            self._bus = _open_again(wanted)
+            self._bus = _open(wanted)
             self._endpoint = wanted
             logger.info("open again with the changed certificates and rules")
 
@@ -91,50 +84,51 @@ class Router:
         self._bus.close()
 
 
-def router(
-    listen: Annotated[
-        list[str], typer.Option(help="tls/HOST:PORT, or by name the insecure tcp/HOST:PORT.")
-    ],
-    data: Annotated[Path, typer.Option(help="The station's data folder.")] = Path("muster-data"),
-    with_parent: Annotated[
-        bool, typer.Option("--with-parent", help="End when standard input ends.")
-    ] = False,
-) -> None:
-    """Run the bus's router until Ctrl-C; a station starts its own by itself."""
+def run_router(data: Path, listen: tuple[str, ...]) -> int:
+    """Until a signal comes or standard input ends, which it does when the parent dies.
+
+    Tells the parent on standard output whether it is open.  Gives the exit code.
+    """
     set_up_logging()
     stop = Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    if with_parent:
-        Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
+    Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
     try:
-        opened = Router(data, tuple(listen))
+        with closing(Router(data, listen)) as router:
+            print(READY, flush=True)
+            while not stop.wait(_LOOK_EVERY_S):
+                router.refresh()
     except MusterError as error:
-        if with_parent:
-            print(f"{FAILED}{error}", flush=True)
-        raise
-    with closing(opened):
-        print(READY, flush=True)
-        while not stop.wait(_LOOK_EVERY_S):
-            opened.refresh()
+        print(f"{FAILED}{error}", flush=True)
+        return 2
+    return 0
+
+
+def _is_secure(listen: tuple[str, ...]) -> bool:
+    secure = [endpoint.startswith("tls/") for endpoint in listen]
+    if any(secure) and not all(secure):
+        raise ConfigError(
+            f"{', '.join(listen)}: the bus is either secure or not; listen on tls/ only, or on "
+            "tcp/ only"
+        )
+    return all(secure)
+
+
+def _open(endpoint: StationEndpoint) -> ZenohBus:
+    """The port takes a moment to come free after the router before this one."""
+    for _ in range(_OPEN_ATTEMPTS - 1):
+        try:
+            return ZenohBus(endpoint)
+        except PortInUseError:
+            time.sleep(_ATTEMPT_EVERY_S)
+    return ZenohBus(endpoint)
 
 
 def _stop_at_end_of_input(stop: Event) -> None:
-    """The parent's end of the pipe closes however the parent dies."""
     sys.stdin.buffer.read()
     stop.set()
 
 
-def _open_again(endpoint: StationEndpoint) -> ZenohBus:
-    """The port may take a moment to come free."""
-    for _ in range(_OPEN_ATTEMPTS - 1):
-        try:
-            return ZenohBus(endpoint)
-        except BusError as error:
-            logger.warning("%s; trying again", error)
-        time.sleep(_ATTEMPT_EVERY_S)
-    return ZenohBus(endpoint)
-
-
 if __name__ == "__main__":
-    typer.run(router)
+    sys.exit(run_router(Path(sys.argv[1]), tuple(sys.argv[2:])))

@@ -25,10 +25,7 @@ class RouterProcess:
 
     def __init__(self, data: Path, listen: tuple[str, ...]) -> None:
         """Raises BusError with the router's own sentence when it cannot open."""
-        self._command = [sys.executable, "-m", "base_station.router", "--with-parent"]
-        self._command += ["--data", str(data)]
-        for endpoint in listen:
-            self._command += ["--listen", endpoint]
+        self._command = [sys.executable, "-m", "base_station.router", str(data), *listen]
         self._closing = Event()
         self._starting = Lock()
         self._process = self._start()
@@ -38,6 +35,10 @@ class RouterProcess:
     @property
     def pid(self) -> int:
         return self._process.pid
+
+    @property
+    def is_open(self) -> bool:
+        return self._process.poll() is None
 
     def close(self) -> None:
         with self._starting:

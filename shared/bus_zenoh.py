@@ -14,7 +14,7 @@ import zenoh
 from shared.bus import LivelinessHandler, QueryHandler, SampleHandler, Subscription
 from shared.bus_handlers import HandlerGate, require_key, require_key_expression
 from shared.channels import Qos
-from shared.errors import BusError
+from shared.errors import BusError, PortInUseError
 from shared.tls import TlsIdentity
 
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
@@ -72,7 +72,7 @@ class ZenohBus:
             config = zenoh.Config.from_json5(json.dumps(_settings(endpoint)))
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
-            raise BusError(_in_words(endpoint, str(error))) from error
+            raise _in_words(endpoint, str(error)) from error
         self._watched: dict[str, zenoh.Publisher] = {}
 
     def publish(self, key: str, payload: bytes, qos: Qos) -> None:
@@ -253,13 +253,13 @@ def _tls_settings(identity: TlsIdentity, role: str) -> dict[str, Any]:
     }
 
 
-def _in_words(endpoint: Endpoint, reason: str) -> str:
+def _in_words(endpoint: Endpoint, reason: str) -> BusError:
     if not isinstance(endpoint, StationEndpoint):
-        return f"the bus cannot be opened towards {', '.join(endpoint.connect)}: {reason}"
+        return BusError(f"the bus cannot be opened towards {', '.join(endpoint.connect)}: {reason}")
     where = ", ".join(endpoint.listen)
     if "address already in use" in reason.lower():
-        return (
+        return PortInUseError(
             f"the bus cannot listen on {where}: another program uses this port, perhaps another "
             "station; stop it or choose another port"
         )
-    return f"the bus cannot listen on {where}: {reason}"
+    return BusError(f"the bus cannot listen on {where}: {reason}")

@@ -7,6 +7,7 @@
       │    ├─ UnknownChannelError   no channel has this key
       │    └─ UnknownSchemaError    a schema revision newer than this program
       ├─ BusError           the message bus cannot do what was asked
+      │    └─ PortInUseError        another program listens there
       ├─ LogError           a log segment or folder cannot be read or written
       │    └─ DataFolderInUseError  another station writes to this folder
       ├─ StoreError         the database cannot do what was asked
@@ -44,6 +45,10 @@ class UnknownSchemaError(WireError):
 
 class BusError(MusterError):
     """The message bus cannot do what was asked."""
+
+
+class PortInUseError(BusError):
+    """Another program listens where the bus was to listen."""
 
 
 class LogError(MusterError):

@@ -139,8 +139,8 @@ def show(data: Data = _DATA) -> None:
     """Who is enrolled, and until when."""
     from datetime import UTC, datetime  # noqa: PLC0415
 
-    from base_station.pki.folder import EXPIRY_WARNING, PkiFolder  # noqa: PLC0415
-    from base_station.pki.registry import about_to_expire  # noqa: PLC0415
+    from base_station.pki.expiry import EXPIRY_WARNING, about_to_expire  # noqa: PLC0415
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
     from base_station.pki.table import print_registry  # noqa: PLC0415
 
     registry = PkiFolder(data).registry()

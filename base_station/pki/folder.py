@@ -26,7 +26,6 @@ from shared.tls import TlsIdentity, check_identity
 STATION_NAME = "station"
 AUTHORITY_VALID = timedelta(days=3650)
 CERTIFICATE_VALID = timedelta(days=365)
-EXPIRY_WARNING = timedelta(days=30)
 
 Clock = Callable[[], datetime]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta
+from datetime import datetime
 from pathlib import Path
 
 import msgspec
@@ -54,31 +54,6 @@ class Registry(msgspec.Struct, frozen=True):
         plain = name if holder is not Holder.OPERATOR else f"operator:{name}"
         before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
         return plain if before == 0 else f"{plain}#{before + 1}"
-
-
-def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tuple[str, ...]:
-    """A sentence for each certificate in use that has ended or ends ``within``, the first
-    to end first.
-    """
-    ending = sorted(
-        (e for e in registry.entries if e.revoked is None and e.valid_to <= now + within),
-        key=lambda entry: (entry.valid_to, entry.common_name),
-    )
-    return tuple(_expiry_sentence(entry, now) for entry in ending)
-
-
-def _expiry_sentence(entry: Entry, now: datetime) -> str:
-    if entry.holder is Holder.STATION:
-        who, command = "this station", "muster pki renew-station"
-    elif entry.holder is Holder.OPERATOR:
-        who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
-    else:
-        who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
-    if entry.valid_to <= now:
-        return f"The certificate of {who} expired on {entry.valid_to:%Y-%m-%d}: {command}"
-    days = (entry.valid_to - now).days
-    left = "in less than a day" if days < 1 else f"in {days} day{'s' if days > 1 else ''}"
-    return f"The certificate of {who} expires {left}: {command}"
 
 
 def load_registry(path: Path) -> Registry:

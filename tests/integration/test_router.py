@@ -16,7 +16,7 @@ import psutil
 import pytest
 
 from base_station.pki.folder import PkiFolder
-from base_station.router import Router, own_endpoint
+from base_station.router import Router, station_endpoint
 from base_station.router_process import RouterProcess
 from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos
@@ -59,7 +59,7 @@ def process(tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]) -> Iterator
 
 
 def station(pki: PkiFolder, listen: tuple[str, ...]) -> ZenohBus:
-    return ZenohBus(ClientEndpoint(listen, pki.station_identity()))
+    return ZenohBus(station_endpoint(pki.path.parent, listen))
 
 
 def unit(enrolment: Enrolment) -> ZenohBus:
@@ -185,7 +185,10 @@ def test_plain_and_secure_do_not_mix(tmp_path: Path, listen: tuple[str, ...]) ->
         Router(tmp_path, (*listen, "tcp/127.0.0.1:1"))
 
 
-def test_the_station_finds_its_router_on_the_loopback() -> None:
-    assert own_endpoint(("tls/0.0.0.0:7447",)) == "tls/127.0.0.1:7447"
-    assert own_endpoint(("tls/[::]:7447",)) == "tls/[::1]:7447"
-    assert own_endpoint(("tls/192.0.2.7:7447", "tls/0.0.0.0:1")) == "tls/192.0.2.7:7447"
+def test_the_station_finds_its_router_on_the_loopback(tmp_path: Path) -> None:
+    for listen, found in (
+        (("tcp/0.0.0.0:7447",), "tcp/127.0.0.1:7447"),
+        (("tcp/[::]:7447",), "tcp/[::1]:7447"),
+        (("tcp/192.0.2.7:7447", "tcp/0.0.0.0:1"), "tcp/192.0.2.7:7447"),
+    ):
+        assert station_endpoint(tmp_path, listen).connect == (found,)

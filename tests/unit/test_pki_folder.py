@@ -10,8 +10,9 @@ import pytest
 from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from base_station.pki.expiry import ExpiryWatch, about_to_expire
 from base_station.pki.folder import PkiFolder
-from base_station.pki.registry import about_to_expire
+from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
 from shared.tls import check_identity, validity_problem
@@ -218,3 +219,15 @@ def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, cloc
     )
     assert len(said(10 * DAY)) == 3
     assert said(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
+
+
+def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: Path) -> None:
+    clock = ManualClock(utc_ns=int(datetime(2027, 2, 20, tzinfo=UTC).timestamp()) * NS_PER_S)
+    watch = ExpiryWatch(pki, clock)
+    (before,) = watch.problems()
+    assert before.startswith("The certificate of this station expires in 9 days")
+    pki.registry_path.write_bytes(b"{")
+    assert watch.problems() == (before,)
+    clock.advance(61.0)
+    assert "damaged" in watch.problems()[0]
+    assert ExpiryWatch(PkiFolder(tmp_path / "plain"), clock).problems() == ()

@@ -1,0 +1,66 @@
+"""Which certificates end soon, in sentences for the console and the command line."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+
+from base_station.pki.folder import PkiFolder
+from base_station.pki.registry import Entry, Registry
+from shared.clock import NS_PER_S, Clock
+from shared.enrolment import Holder
+from shared.errors import ConfigError
+
+EXPIRY_WARNING = timedelta(days=30)
+_READ_AGAIN_NS = 60 * NS_PER_S
+
+
+class ExpiryWatch:
+    """Reads the registry once a minute at most: it is asked once a second."""
+
+    def __init__(self, pki: PkiFolder, clock: Clock) -> None:
+        self._pki = pki
+        self._clock = clock
+        self._read_ns: int | None = None
+        self._problems: tuple[str, ...] = ()
+
+    def problems(self) -> tuple[str, ...]:
+        """Nothing without an authority; what is wrong with one that cannot be read."""
+        now_ns = self._clock.monotonic_ns()
+        if self._read_ns is None or now_ns - self._read_ns >= _READ_AGAIN_NS:
+            self._read_ns = now_ns
+            self._problems = self._read()
+        return self._problems
+
+    def _read(self) -> tuple[str, ...]:
+        if not self._pki.path.exists():
+            return ()
+        now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
+        try:
+            return about_to_expire(self._pki.registry(), now, EXPIRY_WARNING)
+        except ConfigError as error:
+            return (str(error),)
+
+
+def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tuple[str, ...]:
+    """A sentence for each certificate in use that has ended or ends ``within``, the first
+    to end first.
+    """
+    ending = sorted(
+        (e for e in registry.entries if e.revoked is None and e.valid_to <= now + within),
+        key=lambda entry: (entry.valid_to, entry.common_name),
+    )
+    return tuple(_expiry_sentence(entry, now) for entry in ending)
+
+
+def _expiry_sentence(entry: Entry, now: datetime) -> str:
+    if entry.holder is Holder.STATION:
+        who, command = "this station", "muster pki renew-station"
+    elif entry.holder is Holder.OPERATOR:
+        who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
+    else:
+        who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
+    if entry.valid_to <= now:
+        return f"The certificate of {who} expired on {entry.valid_to:%Y-%m-%d}: {command}"
+    days = (entry.valid_to - now).days
+    left = "in less than a day" if days < 1 else f"in {days} day{'s' if days > 1 else ''}"
+    return f"The certificate of {who} expires {left}: {command}"
