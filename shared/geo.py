@@ -57,7 +57,9 @@ def rotate(north_m: float, east_m: float, angle_rad: float) -> tuple[float, floa
 def anchor_through(
     lat_deg: float, lon_deg: float, height_m: float, position_m: tuple[float, float, float]
 ) -> Anchor:
-    """The true-north anchor that puts ``position_m`` (north, east, down) on the given place."""
+    """The true-north anchor that puts ``position_m`` (north, east, down) on the given place, to
+    some centimetres within 500 m: north is not quite parallel there.
+    """
     north_m, east_m, down_m = position_m
     lat0_deg, lon0_deg, height0_m = pymap3d.ned2geodetic(
         -north_m, -east_m, -down_m, lat_deg, lon_deg, height_m

@@ -334,10 +334,11 @@ class GpsInertialFuser:
         if before_ns is None or t_mono_ns <= before_ns:
             return
         keep = math.exp(-(t_mono_ns - before_ns) / NS_PER_S / self._kind.wander_s)
-        fade = np.diag([1.0, 1.0, 1.0, 1.0, keep, keep])
-        new = 1.0 - keep**2
-        self._horizontal.predict(F=fade, Q=np.diag([0.0, 0.0, 0.0, 0.0, new, new]))
-        self._vertical.predict(F=np.diag([1.0, keep]), Q=np.diag([0.0, new]))
+        for one, states in ((self._horizontal, [4, 5]), (self._vertical, [1])):
+            one.x[states] *= keep
+            one.P[states, :] *= keep
+            one.P[:, states] *= keep
+            one.P[states, states] += 1.0 - keep**2
 
     def _correct_height(self, fix: PlaceFix) -> None:
         if fix.vertical_std_m is None:

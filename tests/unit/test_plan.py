@@ -1,0 +1,88 @@
+"""Plans: what they must say, which floor a height is, and what is inside."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.plan import Plan, read_plan
+from shared.errors import UserError
+
+HOUSE = {
+    "type": "FeatureCollection",
+    "muster": {
+        "frame": "site-m",
+        "floors": [
+            {"floor": 1, "down_m": -3.2},
+            {"floor": 0, "down_m": 0.0},
+            {"floor": -1, "down_m": 2.8},
+        ],
+    },
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"kind": "outline", "floor": 0},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [[[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]],
+            },
+        },
+        {"type": "Feature", "properties": {"kind": "door"}, "geometry": None},
+    ],
+}
+
+
+@pytest.fixture
+def house() -> Plan:
+    return read_plan(msgspec.json.encode(HOUSE))
+
+
+def test_storeys_are_told_apart_by_height(house: Plan) -> None:
+    assert [house.floor_at(down_m, None) for down_m in (3.0, 0.3, -3.0, -50.0)] == [-1, 0, 1, 1]
+
+
+def test_a_floor_is_kept_about_the_middle_of_the_stairs(house: Plan) -> None:
+    middle_m = -1.6
+    assert house.floor_at(middle_m - 0.2, 0) == 0
+    assert house.floor_at(middle_m + 0.2, 1) == 1
+    assert house.floor_at(middle_m - 0.6, 0) == 1
+    assert house.floor_at(middle_m + 0.6, 1) == 0
+
+
+def test_a_plan_without_storeys_knows_no_floor() -> None:
+    plan = read_plan(b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}')
+    assert plan.floor_at(0.0, 3) is None
+    assert not plan.is_inside(5.0, 5.0, False)
+
+
+def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> None:
+    assert house.is_inside(north_m=5.0, east_m=15.0, inside=False)
+    assert not house.is_inside(north_m=15.0, east_m=5.0, inside=False)
+    for was_inside in (True, False):
+        assert house.is_inside(north_m=10.5, east_m=5.0, inside=was_inside) == was_inside
+        assert house.is_inside(north_m=9.5, east_m=5.0, inside=was_inside) == was_inside
+    assert not house.is_inside(north_m=12.0, east_m=5.0, inside=True)
+
+
+@pytest.mark.parametrize(
+    ("geojson", "words"),
+    [
+        (b"not json", "no JSON"),
+        (b"\xff\xfe", "no JSON"),
+        (b"[]", "FeatureCollection"),
+        (b'{"type":"FeatureCollection","features":[]}', "no scale"),
+        (b'{"type":"FeatureCollection","muster":{"frame":"wgs84"}}', "no scale"),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0}]}}',
+            "down_m",
+        ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
+            b'{"kind":"outline"},"geometry":{"type":"Polygon","coordinates":[]}}]}',
+            "cannot be read",
+        ),
+    ],
+)
+def test_a_plan_that_cannot_be_used_says_what_is_wrong(geojson: bytes, words: str) -> None:
+    with pytest.raises(UserError, match=words):
+        read_plan(geojson)

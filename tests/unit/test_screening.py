@@ -1,0 +1,171 @@
+"""Fixes that cannot be true are turned away with a reason, and move nobody."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.fusion.port import FixVerdict, PlaceFix
+from base_station.fusion.screening import in_incident_frame, may_anchor, screen
+from shared.geo import Anchor
+from shared.messages import FixType, GpsFix, Header
+from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
+from tests.station_script import Script
+
+U = "FF-01"
+ANCHOR = Anchor(52.0, 4.0, 10.0)
+PLAN = b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}'
+
+
+def fix(**changes: object) -> GpsFix:
+    fields: dict[str, object] = {
+        "header": Header(U, 1, 1, 0),
+        "fix_type": FixType.THREE_D,
+        "lat_deg": 52.0001,
+        "lon_deg": 4.0001,
+        "height_m": 10.0,
+        "horizontal_std_m": 3.0,
+        "vertical_std_m": 5.0,
+        "satellites": 9,
+        "speed_mps": 0.0,
+        "course_rad": 0.0,
+    }
+    return GpsFix(**{**fields, **changes})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"fix_type": FixType.NONE}, "no fix"),
+        ({"fix_type": FixType.UNKNOWN}, "no fix"),
+        ({"lat_deg": 0.0, "lon_deg": 0.0}, "latitude and longitude 0"),
+        ({"lat_deg": 91.0}, "not on the Earth"),
+        ({"lon_deg": -181.0}, "not on the Earth"),
+        ({"lat_deg": math.nan}, "no numbers"),
+        ({"height_m": math.inf}, "no numbers"),
+        ({"horizontal_std_m": 0.0}, "accuracy"),
+        ({"horizontal_std_m": 5000.0}, "accuracy"),
+        ({"horizontal_std_m": math.nan}, "accuracy"),
+    ],
+)
+def test_a_fix_that_tells_against_itself(changes: dict[str, object], reason: str) -> None:
+    verdict = screen(fix(**changes))
+    assert not verdict.accepted
+    assert reason in verdict.reason
+
+
+def test_a_good_fix_passes_and_lies_where_it_should() -> None:
+    assert screen(fix()).accepted
+    place = in_incident_frame(fix(), ANCHOR)
+    assert isinstance(place, PlaceFix)
+    assert place.north_m == pytest.approx(11.13, abs=0.01)
+    assert place.east_m == pytest.approx(6.86, abs=0.01)
+    assert place.down_m == pytest.approx(0.0, abs=0.01)
+
+
+def test_the_wrong_hemisphere_is_too_far() -> None:
+    verdict = in_incident_frame(fix(lat_deg=-52.0), ANCHOR)
+    assert isinstance(verdict, FixVerdict)
+    assert "too far" in verdict.reason
+
+
+def test_a_receiver_is_never_believed_to_the_centimetre() -> None:
+    place = in_incident_frame(fix(horizontal_std_m=0.01), ANCHOR)
+    assert isinstance(place, PlaceFix)
+    assert place.horizontal_std_m >= 2.0
+
+
+def test_an_accuracy_that_is_not_stated_is_a_poor_one() -> None:
+    place = in_incident_frame(fix(horizontal_std_m=None, vertical_std_m=None), ANCHOR)
+    assert isinstance(place, PlaceFix)
+    assert place.horizontal_std_m >= 10.0
+    assert not may_anchor(fix(horizontal_std_m=None))
+
+
+def test_a_flat_fix_says_nothing_of_the_height() -> None:
+    place = in_incident_frame(fix(fix_type=FixType.TWO_D), ANCHOR)
+    assert isinstance(place, PlaceFix)
+    assert place.vertical_std_m is None
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    return script
+
+
+def not_used(script: Script) -> dict[str, int]:
+    return script.pipeline.state.units[U].not_used
+
+
+def test_a_fix_from_the_future_is_refused(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.wait(5, lambda: script.position(U, 0.0, 0.0))
+    script.gps(U, 52.0, 4.0, header=script.header(U, captured_s=script.now_s + 3600.0))
+    assert not_used(script) == {"from the future": 1}
+    assert script.fused[-1].since_gps_s is None
+
+
+def test_bad_fixes_are_counted_by_reason_and_nobody_jumps(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    for _ in range(30):
+        script.wait(1, lambda: script.position(U, 0.0, 0.0))
+        script.gps(U, 52.0, 4.0)
+    before = script.fused[-1]
+    for bad in ({"lat_deg": 0.0, "lon_deg": 0.0}, {"lat_deg": -52.0}, {"horizontal_std_m": 900.0}):
+        script.gps(U, **{"lat_deg": 52.0, "lon_deg": 4.0, **bad})
+    script.gps(U, 52.002, 4.0)
+    script.wait(1, lambda: script.position(U, 0.0, 0.0))
+    after = script.fused[-1]
+    assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 0.1
+    assert sorted(not_used(script).values()) == [1, 1, 1, 1]
+
+
+def test_without_an_anchor_everything_works_in_metres(script: Script) -> None:
+    script.act(SetPlan(PLAN))
+    script.act(SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0))
+    script.wait(3, lambda: script.position(U, 2.0, 0.0))
+    script.gps(U, 52.0, 4.0)
+    assert (script.fused[-1].north_m, script.fused[-1].east_m) == pytest.approx((7.0, 7.0))
+    assert script.pipeline.state.anchor is None
+    assert not_used(script) == {"the site has no anchor": 1}
+
+
+def test_the_first_good_fix_anchors_a_site_that_nobody_placed_and_moves_nobody(
+    script: Script,
+) -> None:
+    script.wait(3, lambda: script.position(U, 2.0, 1.0))
+    before = script.fused[-1]
+    script.gps(U, 52.0, 4.0, horizontal_std_m=40.0)
+    assert not_used(script) == {"the site has no anchor": 1}, "a poor fix places no site"
+    script.gps(U, 52.0, 4.0)
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    assert anchor.to_incident_m(52.0, 4.0, 50.0)[:2] == pytest.approx((2.0, 1.0), abs=1e-6)
+    after = script.fused[-1]
+    assert (after.north_m, after.east_m) == pytest.approx((before.north_m, before.east_m), abs=0.01)
+
+
+def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) -> None:
+    """The frame moves under people, not people over the Earth; trails move with them."""
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(60):
+        script.now_s += 1.0
+        script.position(U, 1.2 * second, 0.0, distance_m=1.2 * second)
+        script.gps(U, 52.0 + 1.2 * second / 111_300.0, 4.0)
+    old = script.pipeline.state.anchor
+    before, trail = script.fused[-1], list(script.pipeline.state.units[U].trail)
+    assert old is not None
+    script.act(SetAnchor(52.0003, 4.0004, 20.0, 0.8))
+    script.position(U, 1.2 * 59, 0.0, distance_m=1.2 * 59)
+    new, after = script.pipeline.state.anchor, script.fused[-1]
+    assert new is not None
+    was = old.to_geodetic(before.north_m, before.east_m, before.down_m)
+    now = new.to_geodetic(after.north_m, after.east_m, after.down_m)
+    assert now[:2] == pytest.approx(was[:2], abs=2e-8)
+    step, moved = trail[20], script.pipeline.state.units[U].trail[20]
+    assert new.to_geodetic(moved.north_m, moved.east_m, 0.0)[:2] == pytest.approx(
+        old.to_geodetic(step.north_m, step.east_m, 0.0)[:2], abs=2e-8
+    )
