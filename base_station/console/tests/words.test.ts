@@ -70,6 +70,11 @@ describe("words", () => {
   });
 
   it("count bytes", () => {
-    expect([0, 999, 1_500, 98_000_000].map(words.bytes)).toEqual(["0 B", "999 B", "1.5 kB", "98 MB"]);
+    expect([0, 999, 1_500, 98_000_000].map(words.bytes)).toEqual([
+      "0 B",
+      "999 B",
+      "1.5 kB",
+      "98 MB",
+    ]);
   });
 });

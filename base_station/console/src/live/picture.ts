@@ -13,14 +13,8 @@ import type {
 import { openAlarms } from "./alarms";
 import type { State } from "./state";
 
-export interface LinkUp {
-  kind: "up";
-}
-export interface LinkDown {
-  kind: "down";
-  sinceMs: number; // by the console's own clock
-}
-export type LinkState = { kind: "connecting" } | LinkUp | LinkDown;
+/** `sinceMs` is by the console's own clock. */
+export type LinkState = { kind: "connecting" } | { kind: "up" } | { kind: "down"; sinceMs: number };
 
 const SILENCE_MS = 3000;
 

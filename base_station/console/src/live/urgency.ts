@@ -62,9 +62,10 @@ function placeOf(
   return { ...place, urgency: before.urgency, calmSinceMs };
 }
 
-export function sameOrder(a: readonly Place[], b: readonly Place[]): boolean {
-  return (
-    a.length === b.length &&
-    a.every((place, i) => place.unitId === b[i]?.unitId && place.urgency === b[i]?.urgency)
-  );
+export function samePlaces(a: readonly Place[], b: readonly Place[]): boolean {
+  return a.length === b.length && a.every((place, i) => samePlace(place, b[i]));
+}
+
+function samePlace(a: Place, b: Place | undefined): boolean {
+  return a.unitId === b?.unitId && a.urgency === b.urgency && a.calmSinceMs === b.calmSinceMs;
 }

@@ -32,7 +32,10 @@ const NAMES: Record<keyof Colours, string> = {
 
 export function readColours(): Colours {
   const style = getComputedStyle(document.documentElement);
-  const entries = Object.entries(NAMES).map(([key, name]) => [key, style.getPropertyValue(name).trim()]);
+  const entries = Object.entries(NAMES).map(([key, name]) => [
+    key,
+    style.getPropertyValue(name).trim(),
+  ]);
   return Object.fromEntries(entries) as Colours;
 }
 

@@ -57,7 +57,8 @@ export class Grid extends Layer {
 function lines(length: number, stepPx: number, centre: number): number[] {
   const first = centre - length / 2;
   const start = Math.ceil(first / stepPx) * stepPx - first;
-  return Array.from({ length: Math.max(0, Math.ceil((length - start) / stepPx)) }, (_, i) =>
-    Math.round(start + i * stepPx) + 0.5,
+  return Array.from(
+    { length: Math.max(0, Math.ceil((length - start) / stepPx)) },
+    (_, i) => Math.round(start + i * stepPx) + 0.5,
   );
 }

@@ -5,7 +5,7 @@ import { openDialog, select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { isOld, regionAt } from "../plan/ellipse";
-import type { AlarmView, UnitView } from "../wire";
+import type { AlarmView, Link, UnitView } from "../wire";
 import * as words from "../words";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { Photo } from "./Photo";
@@ -17,6 +17,7 @@ interface Props {
 }
 
 const LOW_BATTERY = 0.1;
+const LINK_LEVEL: Record<Link, string> = { live: "", never: "", stale: "caution", lost: "critical" };
 
 export const Card = memo(({ unitId, urgency, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
@@ -60,10 +61,14 @@ function Activity({ unit }: { unit: UnitView }) {
   const mayday = unit.status?.mayday ?? false;
   return (
     <span class={`activity ${mayday ? "mayday" : ""}`}>
-      <Icon name={mayday ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
+      <Icon name={mayday ? "alarm" : activityOrNone(unit)} />
       {words.activityOf(unit)}
     </span>
   );
+}
+
+function activityOrNone(unit: UnitView): IconName {
+  return unit.status === null ? "linkLost" : activityIcon(unit.status.activity);
 }
 
 function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<string, AlarmView> }) {
@@ -132,7 +137,7 @@ interface HeardProps {
 
 function Heard({ unit, now, silent }: HeardProps) {
   const good = unit.link === "live" && !silent;
-  const level = good ? "" : unit.link === "stale" ? "caution" : "critical";
+  const level = silent ? "critical" : LINK_LEVEL[unit.link];
   return (
     <Fact
       icon={good ? "linkGood" : "linkLost"}

@@ -28,7 +28,11 @@ export function Header({ picture }: { picture: Picture }) {
             </button>
           </>
         )}
-        <button type="button" onClick={() => void leave()} title={`Logged in as ${user.value?.username}`}>
+        <button
+          type="button"
+          onClick={() => void leave()}
+          title={`Logged in as ${user.value?.username}`}
+        >
           Log out
         </button>
       </nav>
@@ -72,7 +76,11 @@ function HealthLight({ picture }: { picture: Picture }) {
   if (health === null) return null;
   const [first, ...more] = health.problems;
   const sentence =
-    first === undefined ? "Station is well" : more.length > 0 ? `${first} (+${more.length})` : first;
+    first === undefined
+      ? "Station is well"
+      : more.length > 0
+        ? `${first} (+${more.length})`
+        : first;
   return (
     <button
       type="button"

@@ -41,7 +41,9 @@ export function IncidentsDialog() {
               <th scope="row">{incident.name}</th>
               <td>{dateAndTime(incident.opened_ms)}</td>
               <td>
-                {incident.closed_ms === null ? "open" : minutes(incident.closed_ms - incident.opened_ms)}
+                {incident.closed_ms === null
+                  ? "open"
+                  : minutes(incident.closed_ms - incident.opened_ms)}
               </td>
               <td>
                 <button

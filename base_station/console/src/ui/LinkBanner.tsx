@@ -17,7 +17,9 @@ export function LinkBanner({ picture }: { picture: Picture }) {
     return () => clearInterval(timer);
   }, [sinceMs]);
   if (sinceMs === null) return null;
-  const shown = picture.ready.value ? `This picture is from ${clockTime(pictureMs(picture, sinceMs))} and is not being updated.` : "";
+  const shown = picture.ready.value
+    ? `This picture is from ${clockTime(pictureMs(picture, sinceMs))} and is not being updated.`
+    : "";
   return (
     <div class="link-banner" role="alert">
       <Icon name="linkLost" />

@@ -1,6 +1,6 @@
 import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import type { Picture } from "../live/picture";
-import { arrange, sameOrder, type Place } from "../live/urgency";
+import { arrange, samePlaces, type Place } from "../live/urgency";
 import { Card } from "./Card";
 
 /** The list of people: who needs attention first, without jumping while somebody reads. */
@@ -18,7 +18,7 @@ export function People({ picture }: { picture: Picture }) {
         picture.nowMs.value,
         held.value,
       );
-      if (!sameOrder(next, places.value) || next.some(movesSoon)) places.value = next;
+      if (!samePlaces(next, places.value)) places.value = next;
     });
   });
   return (
@@ -35,14 +35,15 @@ export function People({ picture }: { picture: Picture }) {
       ) : (
         <ul class="cards">
           {places.value.map((place) => (
-            <Card key={place.unitId} unitId={place.unitId} urgency={place.urgency} picture={picture} />
+            <Card
+              key={place.unitId}
+              unitId={place.unitId}
+              urgency={place.urgency}
+              picture={picture}
+            />
           ))}
         </ul>
       )}
     </section>
   );
-}
-
-function movesSoon(place: Place): boolean {
-  return place.calmSinceMs !== null;
 }

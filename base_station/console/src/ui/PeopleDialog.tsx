@@ -57,7 +57,11 @@ function PersonRow({ person, done }: { person: api.Person; done: () => void }) {
 async function add(form: HTMLFormElement): Promise<void> {
   const data = new FormData(form);
   const text = (name: string) => String(data.get(name) ?? "").trim();
-  const person = await api.addPerson({ name: text("name"), crew: text("crew"), role: text("role") });
+  const person = await api.addPerson({
+    name: text("name"),
+    crew: text("crew"),
+    role: text("role"),
+  });
   const photo = data.get("photo");
   if (photo instanceof File && photo.size > 0) await api.setPhoto(person.person_id, photo);
   form.reset();

@@ -32,7 +32,13 @@ export function PlanPanel({ picture }: { picture: Picture }) {
   return (
     <section class="plan" aria-label="Plan">
       <Floors picture={picture} />
-      <div class="map" ref={target} tabIndex={0} role="application" aria-label="Plan of the site. The list of people says the same in words." />
+      <div
+        class="map"
+        ref={target}
+        tabIndex={0}
+        role="application"
+        aria-label="Plan of the site. The list of people says the same in words."
+      />
       <div class="zoom">
         <button type="button" aria-label="Zoom in" onClick={() => map.current?.zoom(1)}>
           +
