@@ -1,0 +1,182 @@
+"""What the station knows: repeats, restarts, late messages, trails, and how a card shows it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import msgspec
+import pytest
+
+from base_station.live_state import TRAIL_POINTS, UnitState
+from base_station.views import StationFacts, health_view, snapshot, unit_view
+from shared.messages import EventKind
+from shared.messages.station import Assign, OpenIncident, RegisterUnit, SetPlan, Unassign
+from tests.station_script import Script
+
+U = "FF-01"
+OUTLINE = (
+    b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"type":"Feature",'
+    b'"properties":{"kind":"outline"},"geometry":{"type":"Polygon","coordinates":'
+    b"[[[-10,10],[10,10],[10,30],[-10,30],[-10,10]]]}}]}"
+)
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    return script
+
+
+def unit(script: Script) -> UnitState:
+    return script.pipeline.state.units[U]
+
+
+def test_a_repeat_changes_nothing_and_is_counted(script: Script) -> None:
+    script.position(U, 1.0, 2.0)
+    t_ns, key, payload = script.records[-1]
+    fused = len(script.fused)
+    script.now_s += 30.0
+    assert script.record(key, payload) == []
+    assert unit(script).duplicates == 1
+    assert len(script.fused) == fused
+    assert unit(script).heard_ns == t_ns, "a repeat is no sign of life"
+
+
+def test_an_older_message_does_not_set_the_state_back(script: Script) -> None:
+    late = script.header(U, captured_s=-5.0)
+    script.position(U, 1.0, 2.0)
+    script.position(U, 9.0, 9.0, header=late)
+    assert unit(script).out_of_order == 1
+    assert unit(script).position is not None
+    assert script.fused[-1].north_m == pytest.approx(1.0)
+
+
+def test_messages_of_an_earlier_run_are_old_news(script: Script) -> None:
+    before = script.header(U)
+    script.status(U, steps=5)
+    script.boot_ids[U] = 8
+    script.now_s = -900.0  # the new run's monotonic clock begins earlier
+    script.status(U, steps=1)
+    assert unit(script).status is not None
+    script.status(U, steps=99, header=before)
+    assert unit(script).status.steps == 1  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("silent_s", "link"), [(0, "live"), (9, "live"), (10, "stale"), (29, "stale"), (30, "lost")]
+)
+def test_the_link_is_as_old_as_the_last_message(script: Script, silent_s: int, link: str) -> None:
+    assert unit(script).link == "never"
+    script.status(U)
+    script.wait(silent_s)
+    assert unit(script).link == link
+
+
+def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
+    script.position(U, 1.0, 2.0)
+    state = script.pipeline.state
+
+    def region_m() -> float:
+        view = unit_view(state, unit(script), lambda _: None)
+        assert view.position is not None
+        return view.position.ellipse_major_m
+
+    fresh_m = region_m()
+    script.wait(20)
+    stale_m = region_m()
+    script.wait(20)
+    assert fresh_m < stale_m < region_m()
+    touched = script.tick()
+    assert touched, "the console hears of it although nothing came"
+
+
+def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
+    script.register("FF-02")
+    script.act(Assign(U, "p1", "Ada", "red", "leader"))
+    script.act(Assign("FF-02", "p1", "Ada", "red", "leader"))
+    assert unit(script).person is None, "nobody wears two units"
+    script.act(Unassign("FF-02"))
+    assert script.pipeline.state.units["FF-02"].person is None
+
+
+def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> None:
+    (refused,) = script.act(Assign("nobody", "p1", "Ada", "", ""))
+    assert "register" in refused.reason  # type: ignore[union-attr]
+
+
+def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
+    for step in range(3 * TRAIL_POINTS):
+        script.now_s += 0.5
+        script.position(U, 0.8 * step, 0.0)
+    trail = unit(script).trail
+    assert len(trail) == TRAIL_POINTS
+    steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(trail)]
+    assert min(steps_ns) >= 10**9
+
+
+def test_time_inside_begins_at_the_outline_or_at_the_first_steps(script: Script) -> None:
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.position(U, 0.0, 0.0, distance_m=0.0)
+    assert unit(script).inside_since_ns is None
+    script.position(U, 6.0, 0.0, distance_m=6.0)
+    assert unit(script).inside_since_ns == script.t_ns
+    script.act(SetPlan(OUTLINE))
+    script.position(U, 0.0, 0.0)
+    assert unit(script).inside_since_ns is None
+    script.wait(20, lambda: None)
+    script.position(U, 20.0, 0.0)
+    assert unit(script).inside_since_ns == script.t_ns
+
+
+def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
+    script.position(U, 0.0, 0.0)
+    fused = unit(script).fused
+    assert fused is not None
+    unit(script).fused = msgspec.structs.replace(
+        fused, std_north_m=2.0, std_east_m=1.0, correlation_ne=0.0
+    )
+    view = unit_view(script.pipeline.state, unit(script), lambda _: None).position
+    assert view is not None
+    assert view.ellipse_major_m == pytest.approx(2.0 * 2.4477, rel=1e-3)
+    assert view.ellipse_minor_m == pytest.approx(1.0 * 2.4477, rel=1e-3)
+    assert view.ellipse_heading_rad == pytest.approx(0.0)
+    unit(script).fused = msgspec.structs.replace(
+        fused, std_north_m=1.0, std_east_m=1.0, correlation_ne=0.9
+    )
+    view = unit_view(script.pipeline.state, unit(script), lambda _: None).position
+    assert view is not None
+    assert view.ellipse_heading_rad == pytest.approx(math.pi / 4.0), "towards north-east"
+
+
+def test_a_snapshot_shows_people_alarms_and_trails(script: Script) -> None:
+    script.act(Assign(U, "p1", "Ada", "red", "leader"))
+    script.event(U, EventKind.MAYDAY)
+    script.position(U, 1.0, 2.0)
+    shown = snapshot(script.pipeline.state, 7, StationFacts(), lambda p: f"/photo/{p}")
+    (view,) = shown.units
+    assert view.person is not None
+    assert view.person.photo_url == "/photo/p1"
+    assert view.alarms == (shown.alarms[0].alarm_id,)
+    assert [point.north_m for point in shown.trails[U]] == [1.0]
+    assert shown.seq == 7
+
+
+def test_rubbish_and_strangers_show_in_health(script: Script) -> None:
+    script.record("muster/v1/FF-01/up/position", b"rubbish")
+    script.status("stranger")
+    health = health_view(script.pipeline.state, StationFacts())
+    assert (health.undecodable, health.unknown_units, health.messages) == (1, 1, 1)
+    assert any("up/position" in problem for problem in health.problems)
+
+
+def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
+    for number in range(300):
+        script.status(f"X-{number}")
+    state = script.pipeline.state
+    assert len(state.units) == 201
+    assert state.counts.units_left_out == 100
+    script.act(RegisterUnit("X-299", "late"))
+    script.status("X-299")
+    assert state.units["X-299"].status is not None
