@@ -59,6 +59,22 @@ class Children:
 
     def start(self, name: str, arguments: Sequence[str]) -> Child:
         """Start ``muster ARGUMENTS`` in a process of its own."""
+        child = self._launch(name, arguments)
+        self._children.append(child)
+        return child
+
+    def run(self, name: str, arguments: Sequence[str]) -> bytes:
+        """Run ``muster ARGUMENTS`` to its end; what it printed.  UserError where it fails."""
+        child = self._launch(name, arguments)
+        if child.process.wait() != 0:
+            raise UserError(f"`muster {' '.join(arguments)}` failed:\n{child.last_words()}")
+        return child.output_path.read_bytes()
+
+    def dead(self) -> tuple[Child, ...]:
+        """Those that ended although nobody asked them to."""
+        return tuple(child for child in self._children if child.exit_code is not None)
+
+    def _launch(self, name: str, arguments: Sequence[str]) -> Child:
         output_path = self._output_folder / f"{name}.txt"
         with output_path.open("wb") as output:
             process = subprocess.Popen(
@@ -69,13 +85,7 @@ class Children:
                 # A Ctrl-C in the terminal reaches the demo alone, which then ends them in order.
                 start_new_session=True,
             )
-        child = Child(name, process, output_path)
-        self._children.append(child)
-        return child
-
-    def dead(self) -> tuple[Child, ...]:
-        """Those that ended although nobody asked them to."""
-        return tuple(child for child in self._children if child.exit_code is not None)
+        return Child(name, process, output_path)
 
 
 def wait_for_line(child: Child, beginning: str, patience_s: float) -> str:

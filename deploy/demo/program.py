@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 import time
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
@@ -49,7 +50,7 @@ def demo(
         signal.signal(number, lambda *_: stop.set())
     folder = data or Path("muster-data") / f"demo-{datetime.now(UTC):%Y%m%d-%H%M%S}"
     address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
-    bus = f"tcp/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
+    bus = f"tls/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
     crew = read_crew(recording or _recorded_walk())
     with Children(folder / "output") as children:
         _Demo(children, folder, address, bus, crew, headless).run(stop, for_s)
@@ -73,15 +74,17 @@ class _Demo:
         self._bus = bus
         self._crew = crew
         self._headless = headless
+        self._station_data = folder / "station"
         self._screen = Console(highlight=False, soft_wrap=True)
 
     def run(self, stop: Event, for_s: float | None) -> None:
+        enrolments = self._enrol_units()
         self._screen.print("Starting the base station ...")
         username, password = self._start_station()
         with ConsoleClient(self._address, username, password) as console:
-            plan = self._simulated_plan()
+            plan = self._children.run("plan", ("edge", "plan"))
             incident = console.prepare(self._crew, plan, f"Demo {datetime.now(UTC):%H:%M} UTC")
-            self._start_agents(console)
+            self._start_agents(console, enrolments)
             self._screen.print(
                 f"\n  console   [bold]{self._address}[/]\n"
                 f"  login     [bold]{username}[/]  password  [bold]{password}[/]\n"
@@ -92,11 +95,24 @@ class _Demo:
             self._summarise(console)
             console.close_incident(incident)
         self._screen.print(
-            f"To replay it: ./muster base replay {incident} --data {self._folder / 'station'}"
+            f"To replay it: ./muster base replay {incident} --data {self._station_data}"
         )
 
+    def _enrol_units(self) -> list[Path]:
+        """Make the station's authority and, for each unit, the file that is carried to it."""
+        self._screen.print("Enrolling the units ...")
+        host, _, port = self._bus.removeprefix("tls/").rpartition(":")
+        data = ("--data", str(self._station_data))
+        self._children.run("pki", ("pki", "init", *data, "--host", host, "--port", port))
+        enrolments = []
+        for responder in self._crew.responder:
+            enrolments.append(self._folder / f"{responder.unit}.enrolment.toml")
+            flags = (*data, "--out", str(enrolments[-1]))
+            self._children.run(f"enrol-{responder.unit}", ("pki", "enroll", responder.unit, *flags))
+        return enrolments
+
     def _start_station(self) -> tuple[str, str]:
-        data, http = self._folder / "station", self._address.removeprefix("http://")
+        data, http = self._station_data, self._address.removeprefix("http://")
         station = self._children.start(
             "station",
             ("base", "serve", "--data", str(data), "--listen", self._bus, "--http", http),
@@ -107,26 +123,19 @@ class _Demo:
         )
         return login["username"], login["password"]
 
-    def _simulated_plan(self) -> bytes:
-        """The plan of the building in which the simulated responders work."""
-        printing = self._children.start("plan", ("edge", "plan"))
-        if printing.process.wait() != 0:
-            raise UserError(f"the simulated building has no plan:\n{printing.last_words()}")
-        return printing.output_path.read_bytes()
-
-    def _start_agents(self, console: ConsoleClient) -> None:
+    def _start_agents(self, console: ConsoleClient, enrolments: Sequence[Path]) -> None:
         data = str(self._folder / "units")
-        for responder in self._crew.responder:
+        for responder, enrolment in zip(self._crew.responder, enrolments, strict=True):
             unit, source = responder.unit, responder.source
             if source.startswith("recording:"):
                 console.start_unit_at(unit, north_m=-6.0, east_m=4.0)
-            flags = ("--unit", unit, "--source", source, "--connect", self._bus, "--data", data)
+            flags = ("--enrolment", str(enrolment), "--source", source, "--data", data)
             self._children.start(unit, ("edge", "run", *flags))
 
     def _watch(self, console: ConsoleClient, stop: Event, for_s: float | None) -> None:
         """Wait for the end, saying how things stand; UserError when the station dies."""
         started_s = time.monotonic()
-        mourned: set[str] = {"plan"}
+        mourned: set[str] = set()
         while not stop.wait(_WATCH_EVERY_S):
             elapsed_s = time.monotonic() - started_s
             if for_s is not None and elapsed_s >= for_s:
