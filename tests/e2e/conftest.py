@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from deploy.build_hook import CONSOLE
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
-ROOT = Path(__file__).resolve().parents[2]
+CONSOLE = Path(__file__).resolve().parents[2] / "base_station" / "console"
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 UNIT = "FF-07"
 
@@ -24,7 +23,7 @@ def chromium() -> Iterator[Browser]:
     program = next(filter(None, map(shutil.which, CHROMIUM)), None)
     if program is None:
         pytest.skip("no Chromium on this machine: install the package chromium")
-    if not (ROOT / CONSOLE / "dist" / "index.html").is_file():
+    if not (CONSOLE / "dist" / "index.html").is_file():
         pytest.skip(f"the console is not built: run npm ci and npm run build in {CONSOLE}")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(

@@ -1,22 +1,10 @@
-"""A real station as a process of its own, which a test may kill and start again."""
+"""A real station that a test may kill and start again where it was."""
 
 from __future__ import annotations
 
-import signal
-import socket
-import subprocess
-import sys
-import time
 from pathlib import Path
 
-PATIENCE_S = 60.0
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
+from tests.station_command import Command, free_port
 
 
 class StationProcess:
@@ -27,47 +15,28 @@ class StationProcess:
 
     def __init__(self, data: Path, replayed: str | None = None) -> None:
         self.data = data
-        self._replayed = replayed
-        self._output = data.with_suffix(".replay.txt" if replayed else ".txt")
-        self._process: subprocess.Popen[bytes] | None = None
         self.bus = f"tcp/127.0.0.1:{free_port()}"
         self.http = f"127.0.0.1:{free_port()}"
         self.address = f"http://{self.http}"
+        what = ("replay", replayed) if replayed else ("serve", "--listen", self.bus)
+        self._arguments = (*what, "--data", str(data), "--http", self.http)
+        self._output = data.with_suffix(f".{what[0]}.txt")
+        self._command: Command | None = None
 
     def start(self) -> None:
         """Returns when it is ready."""
-        what = ("replay", self._replayed) if self._replayed else ("serve", "--listen", self.bus)
-        flags = ("--data", str(self.data), "--http", self.http)
-        with self._output.open("wb") as output:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "shared.command_line", "base", *what, *flags],
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-            )
-        deadline = time.monotonic() + PATIENCE_S
-        while not any(line.startswith("ready") for line in self.said().splitlines()):
-            assert self._process.poll() is None, f"the station ended:\n{self.said()}"
-            assert time.monotonic() < deadline, f"the station is not ready:\n{self.said()}"
-            time.sleep(0.05)
-
-    def said(self) -> str:
-        return self._output.read_text(errors="replace")
+        self._command = Command(self._output, *self._arguments)
+        self._command.wait_ready()
 
     def kill(self) -> None:
         """As a power cut would."""
-        assert self._process is not None
-        self._process.kill()
-        self._process.wait()
+        assert self._command is not None
+        self._command.kill()
 
     def stop(self) -> None:
-        if self._process is None or self._process.poll() is not None:
-            return
-        self._process.send_signal(signal.SIGTERM)
-        try:
-            self._process.wait(20.0)
-        except subprocess.TimeoutExpired:
-            self.kill()
+        """In order; nothing happens where it does not run."""
+        if self._command is not None and self._command.process.poll() is None:
+            self._command.stop()
 
     def login(self) -> tuple[str, str]:
         """Name and password that the station made at its first start."""

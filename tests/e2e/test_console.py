@@ -12,12 +12,11 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
-from deploy.build_hook import CONSOLE
-from tests.e2e.conftest import ROOT, UNIT, log_in
+from tests.e2e.conftest import CONSOLE, UNIT, log_in
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
-AXE = ROOT / CONSOLE / "node_modules/axe-core/axe.min.js"
+AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
 INCIDENT = "Mill Road 7"
 NAME = "Ana Kovač"
 SOON_MS = 15_000
