@@ -61,7 +61,6 @@ _log = logging.getLogger(__name__)
 
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
-    config.refuse_plain()
     clock = SystemClock()
     with ExitStack() as closing:
         folder = DataFolder(config.data)
@@ -145,7 +144,6 @@ def run_replay_station(
 
     A live station may be running on it: the database is copied first.
     """
-    config.refuse_plain()
     clock = SystemClock()
     folder = DataFolder(config.data)
     folder.require()
@@ -273,7 +271,7 @@ def _project_log(store: Store, log: Path, on_progress: Callable[[float], None]) 
 
     def write(projection: Projection) -> None:
         with store.write() as session:
-            project_into(session, projection)
+            project_into(session, (projection,))
 
     count = project_log(
         LogFeed(log).records(),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import msgspec
 from sqlalchemy import ColumnElement, func, update
 from sqlalchemy.dialects.sqlite import insert
@@ -49,20 +51,27 @@ _NEW_UNIT = {
 }
 
 
-def project_into(session: Session, projection: Projection) -> None:
-    """Write one projection."""
-    for action in projection.actions:
-        if not isinstance(action.action, ReportProblem):  # that is no person's doing
-            _audit(session, action.header.t_utc_ns, action)
-        _action(session, action.header.t_utc_ns, action)
-    for change in projection.alarms:
-        _alarm(session, change)
-    if projection.tracks:
-        _tracks(session, projection.tracks)
-    for description in projection.descriptions:
-        _unit(session, description.header.unit_id, **_described(description))
-    for unit_id, t_ns in projection.heard:
-        _unit(session, unit_id, last_heard_ns=t_ns)
+def project_into(session: Session, projections: Sequence[Projection]) -> None:
+    """Write projections in their order.
+
+    Where units were and when they were heard makes up nearly all of it and depends on nothing
+    else, so that goes in at the end, in one go.
+    """
+    tracks: list[FusedPosition] = []
+    heard: dict[str, int] = {}
+    for projection in projections:
+        for action in projection.actions:
+            if not isinstance(action.action, ReportProblem):  # that is no person's doing
+                _audit(session, action.header.t_utc_ns, action)
+            _action(session, action.header.t_utc_ns, action)
+        for change in projection.alarms:
+            _alarm(session, change)
+        for description in projection.descriptions:
+            _unit(session, description.header.unit_id, **_described(description))
+        tracks += projection.tracks
+        heard.update(projection.heard)
+    _tracks(session, tracks)
+    _heard(session, heard)
 
 
 def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
@@ -140,7 +149,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
     )  # fmt: skip
 
 
-def _tracks(session: Session, tracks: tuple[FusedPosition, ...]) -> None:
+def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> None:
     rows = [
         {
             "unit_id": fused.unit_id,
@@ -158,7 +167,23 @@ def _tracks(session: Session, tracks: tuple[FusedPosition, ...]) -> None:
         }
         for fused in tracks
     ]
-    session.execute(insert(TrackPoint).on_conflict_do_nothing(), rows)
+    if rows:
+        session.execute(insert(TrackPoint).on_conflict_do_nothing(), rows)
+
+
+def _heard(session: Session, heard: Mapping[str, int]) -> None:
+    rows = [
+        {"unit_id": unit_id, **_NEW_UNIT, "last_heard_ns": t_ns} for unit_id, t_ns in heard.items()
+    ]
+    if rows:
+        statement = insert(Unit)
+        latest = func.max(func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns)
+        session.execute(
+            statement.on_conflict_do_update(
+                index_elements=[Unit.unit_id], set_={"last_heard_ns": latest}
+            ),
+            rows,
+        )
 
 
 def _described(description: UnitDescription) -> dict[str, object]:
@@ -167,13 +192,11 @@ def _described(description: UnitDescription) -> dict[str, object]:
 
 
 def _unit(session: Session, unit_id: str, **columns: object) -> None:
-    statement = insert(Unit).values(unit_id=unit_id, **(_NEW_UNIT | columns))
-    changed: dict[str, object] = dict(columns)
-    if "last_heard_ns" in columns:
-        changed["last_heard_ns"] = func.max(
-            func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns
-        )
-    session.execute(statement.on_conflict_do_update(index_elements=[Unit.unit_id], set_=changed))
+    session.execute(
+        insert(Unit)
+        .values(unit_id=unit_id, **(_NEW_UNIT | columns))
+        .on_conflict_do_update(index_elements=[Unit.unit_id], set_=columns)
+    )
 
 
 def _end_assignments(session: Session, t_ns: int, which: ColumnElement[bool]) -> None:

@@ -10,8 +10,6 @@ import threading
 from collections import deque
 from collections.abc import Sequence
 
-from sqlalchemy.orm import Session
-
 from base_station.db.projecting import project_into
 from base_station.db.store import Store
 from base_station.sinks import Projection
@@ -90,7 +88,7 @@ class SqlProjection:
     def _write(self, batch: Sequence[Projection]) -> None:
         try:
             with self._store.write() as session:
-                write_projections(session, batch)
+                project_into(session, batch)
         except StoreError as error:
             with self._changed:
                 self._failure = str(error)
@@ -103,9 +101,3 @@ class SqlProjection:
                 self._pending.popleft()
                 self._settled += 1
             self._changed.notify_all()
-
-
-def write_projections(session: Session, projections: Sequence[Projection]) -> None:
-    """Write in order; doing it again changes nothing."""
-    for projection in projections:
-        project_into(session, projection)
