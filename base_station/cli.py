@@ -45,16 +45,17 @@ def serve(
     insecure: InsecureOption = None,
 ) -> None:
     """Run the station until Ctrl-C.  Prints `ready http://...` when consoles can connect."""
-    # Only the commands that need these import them: they take their time.
-    from base_station.app import run_station  # noqa: PLC0415
-
     flags = {
         "data": data,
         "bus.listen": listen or None,
         "http.listen": http,
         "insecure": insecure or None,
     }
-    run_station(_settle(config, flags), _announce)
+    settings = _settle(config, flags)
+    # Imported where needed: it takes its time, and a wrong setting is said before.
+    from base_station.app import run_station  # noqa: PLC0415
+
+    run_station(settings, _announce)
 
 
 @app.command()
@@ -67,10 +68,11 @@ def replay(
     insecure: InsecureOption = None,
 ) -> None:
     """Show a past incident in a console of its own; the folder is only read."""
+    flags = {"data": data, "http.listen": http, "insecure": insecure or None}
+    settings = _settle(config, flags)
     from base_station.app import run_replay_station  # noqa: PLC0415
 
-    flags = {"data": data, "http.listen": http, "insecure": insecure or None}
-    run_replay_station(_settle(config, flags), incident, speed, _announce)
+    run_replay_station(settings, incident, speed, _announce)
 
 
 @app.command()
@@ -174,6 +176,7 @@ def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
     from shared.log import set_up_logging  # noqa: PLC0415
 
     settings = load_config(config, StationConfig, flags)
+    settings.refuse_plain()
     set_up_logging(settings.log_level)
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)  # people's photos and tracks are nobody else's business
