@@ -43,7 +43,7 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     source = open_source(config.source)
     with ExitStack() as held:
         held.callback(source.close)
-        folder = DataFolder(config.data / config.unit)
+        folder = DataFolder(config.data / member.unit_id)
         held.callback(folder.close)
         speed = config.speed if paced else None
         agent = compose_agent(
