@@ -18,14 +18,16 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
     <section class="alarms" aria-label="Open alarms">
       <div class="alarms-head">
         <h2>{alarms.length === 0 ? "No open alarms" : `${alarms.length} open`}</h2>
-        <button
-          type="button"
-          class="sound"
-          aria-pressed={sound.value}
-          onClick={() => (sound.value = !sound.value)}
-        >
-          <Icon name={sound.value ? "bell" : "bellOff"} /> Sound {sound.value ? "on" : "off"}
-        </button>
+        {!isPast.value && (
+          <button
+            type="button"
+            class="sound"
+            aria-pressed={sound.value}
+            onClick={() => (sound.value = !sound.value)}
+          >
+            <Icon name={sound.value ? "bell" : "bellOff"} /> Sound {sound.value ? "on" : "off"}
+          </button>
+        )}
       </div>
       <ul aria-live="assertive" aria-relevant="additions">
         {alarms.map((alarm) => (
