@@ -1,0 +1,123 @@
+"""A disk that is full stops no message, is told, and what it missed is written later."""
+
+from __future__ import annotations
+
+import errno
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from edge.app import compose_agent
+from edge.config import EdgeConfig
+from edge.data_folder import DataFolder
+from edge.sources import open_source
+from edge.warm_up import compile_trackers
+from shared.bus import Bus
+from shared.bus_memory import MemoryRouter
+from shared.channels import parse_key
+from shared.codec import decode
+from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
+
+
+def wait_until(condition: Callable[[], object]) -> None:
+    end_s = time.monotonic() + 40.0
+    while not condition():
+        assert time.monotonic() < end_s, "it never came true"
+        time.sleep(0.01)
+
+
+class Station:
+    """The agent's other end, in memory; notes every message."""
+
+    def __init__(self) -> None:
+        self.router = MemoryRouter()
+        self.messages: list[Message] = []
+        self.router.attach_station().subscribe("muster/v1/u1/**", self._take)
+
+    def open_bus(self) -> Bus:
+        return self.router.attach_unit()
+
+    def why_no_link(self) -> str:
+        return "nobody is there"
+
+    def _take(self, key: str, payload: bytes) -> None:
+        self.messages.append(decode(parse_key(key)[1], payload))
+
+    def count(self, kind: type[Message]) -> int:
+        return sum(isinstance(message, kind) for message in list(self.messages))
+
+    def faults(self) -> list[str]:
+        return [
+            message.detail
+            for message in list(self.messages)
+            if isinstance(message, UnitEvent) and message.kind is EventKind.STORAGE_FAULT
+        ]
+
+
+class Running:
+    """An agent in a thread, with its insides at hand."""
+
+    def __init__(self, folder: Path) -> None:
+        compile_trackers()
+        self.station = Station()
+        self.data = DataFolder(folder / "u1")
+        config = EdgeConfig(unit="u1", source="simulated:search-ground-floor", data=folder)
+        source = open_source(config.source)
+        self.agent = compose_agent(config, "u1", self.data, source, self.station, speed=4.0)
+        self.parts = self.agent._parts
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self.agent.run, args=(self._stop,))
+        self._thread.start()
+        wait_until(lambda: self.station.count(Position) > 5)
+
+    def end(self) -> None:
+        self._stop.set()
+        self._thread.join()
+        self.data.close()
+
+
+@pytest.fixture
+def running(tmp_path):
+    running = Running(tmp_path)
+    yield running
+    running.end()
+
+
+def set_room(running: Running, pages: int) -> None:
+    """How large the journal's file can become, as a disk would limit it."""
+    spool = running.parts.spool
+    with spool._lock:
+        spool._writer.execute(f"PRAGMA max_page_count = {pages}")
+
+
+def test_a_full_disk_under_the_journal(running):
+    set_room(running, 1)
+    wait_until(running.station.faults)
+    before = running.station.count(Position)
+    wait_until(lambda: running.station.count(Position) > before + 20)
+    assert len(running.station.faults()) == 1
+    assert "full" in running.station.faults()[0]
+
+    set_room(running, 1_000_000)
+    wait_until(lambda: running.parts.outbox.storage_fault is None)
+    spool = running.parts.spool
+    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    assert kept == list(range(1, len(kept) + 1))
+    assert running.parts.outbox.never_saved == 0
+
+
+def test_a_full_disk_under_the_black_box(running, monkeypatch):
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("shared.mcap_log.durable_file.os.pwrite", full)
+        wait_until(running.station.faults)
+        assert "No space left" in running.station.faults()[0]
+        before = running.station.count(Heartbeat)
+        wait_until(lambda: running.station.count(Heartbeat) > before + 2)
+    wait_until(lambda: running.parts.black_box.fault is None)
+    assert len(running.station.faults()) == 1
