@@ -15,6 +15,7 @@ from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
+from edge.last_words import mayday_before
 from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
 from edge.outbox import Outbox
@@ -78,6 +79,10 @@ def compose_agent(
         make_tracker(config.tracker, sensor),
         stamper,
         config.position_rate_hz,
+        mayday=mayday_before(spool),
+    )
+    black_box = BlackBox(
+        folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
     )
     commands: SimpleQueue[bytes] = SimpleQueue()
     server = JournalServer(unit_id, spool)
@@ -100,9 +105,7 @@ def compose_agent(
             desk=CommandDesk(stamper, pipeline.set_position_rate),
             stamper=stamper,
             clock=clock,
-            black_box=BlackBox(
-                folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
-            ),
+            black_box=black_box,
             spool=spool,
             outbox=outbox,
             link=link,

@@ -51,7 +51,10 @@ class TrackerPipeline:
         tracker: Tracker,
         stamper: Stamper,
         position_rate_hz: float,
+        *,
+        mayday: bool = False,
     ) -> None:
+        """``mayday``: one was latched when the unit last came to a sudden end."""
         self._identity = identity
         self._tracker = tracker
         self._stamper = stamper
@@ -63,13 +66,16 @@ class TrackerPipeline:
         self._gps_times = _decimator(GPS)
         self._temperature_times = _decimator(TEMPERATURE)
         self._battery: float | None = None
-        self._mayday = False
+        self._mayday = mayday
         self._has_gps = False
         self._journal_pending = 0
 
     def start(self) -> tuple[Message, ...]:
         """The unit's first words."""
-        return (self._event(EventKind.STARTED, None, self._identity.source), self._describe(None))
+        first = (self._event(EventKind.STARTED, None, self._identity.source), self._describe(None))
+        if not self._mayday:
+            return first
+        return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
 
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
         """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""

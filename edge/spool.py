@@ -126,6 +126,17 @@ class Spool:
                     kept.append(JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns))
         return tuple(kept)
 
+    def newest_first(self, boot_id: int, channel: Channel) -> Iterator[bytes]:
+        """What is kept of one channel of a boot; reads while it is iterated."""
+        with _in_words(self._path), closing(_connect(self._path)) as reader:
+            for (payload,) in reader.execute(
+                "SELECT payload FROM message WHERE worth = ? AND "
+                "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
+                "ORDER BY seq DESC",
+                (_worth(channel), boot_id, channel.suffix),
+            ):
+                yield payload
+
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
         """The station has everything of this boot up to ``to_seq`` on its own disk."""
         with _in_words(self._path), self._lock, self._writer:
