@@ -140,6 +140,7 @@ export interface Delta {
   now_ms: number;
   units?: UnitView[];
   alarms?: AlarmView[];
+  trails?: Record<string, TrailPoint[]>;
   health?: HealthView;
   incident?: IncidentView;
   replay?: ReplayView;

@@ -80,6 +80,16 @@ describe("trails", () => {
     expect(trail(state)).toEqual([5000]);
   });
 
+  it("are replaced whole where their past was filled in", () => {
+    const filled: TrailPoint[] = [
+      [1000, 0, 0, 0],
+      [3000, 2, 0, 0],
+      [5000, 4, 0, 0],
+    ];
+    const state = after(snapshot(), walk(11, 5000, 4), delta(12, { trails: { a: filled } }));
+    expect(trail(state)).toEqual([1000, 3000, 5000]);
+  });
+
   it("keep a bounded number of points", () => {
     const long = Array.from({ length: TRAIL_POINTS }, (_, i): TrailPoint => [i * 1000, i, 0, 0]);
     const state = after(snapshot({ trails: { a: long } }), walk(11, 1e7, 1e4));

@@ -69,7 +69,7 @@ function withDelta(state: State, delta: Delta): State {
     health: delta.health ?? state.health,
     replay: delta.replay ?? state.replay,
     units: delta.units ? withUnits(state.units, delta.units) : state.units,
-    trails: delta.units ? withPositions(state.trails, delta.units) : state.trails,
+    trails: withTrails(state.trails, delta),
     alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
   };
 }
@@ -78,6 +78,12 @@ function withUnits(units: State["units"], changed: readonly UnitView[]): State["
   const next = new Map(units);
   for (const unit of changed) next.set(unit.unit_id, unit);
   return next;
+}
+
+/** Trails whose past was filled in come whole; the others go on to where the unit now is. */
+function withTrails(trails: State["trails"], delta: Delta): State["trails"] {
+  const goneOn = delta.units ? withPositions(trails, delta.units) : trails;
+  return delta.trails ? new Map([...goneOn, ...Object.entries(delta.trails)]) : goneOn;
 }
 
 function withPositions(trails: State["trails"], changed: readonly UnitView[]): State["trails"] {
@@ -93,8 +99,7 @@ function withPositions(trails: State["trails"], changed: readonly UnitView[]): S
   return next ?? trails;
 }
 
-/** Whether a trail goes on to this point: somebody walked, or rested for long.  A position older
- * than the trail's end was backfilled and comes with the next snapshot. */
+/** Whether a trail goes on to this point: somebody walked, or rested for long. */
 function isStep(last: TrailPoint | undefined, point: TrailPoint): boolean {
   if (last === undefined) return true;
   const passedMs = point[0] - last[0];
