@@ -41,6 +41,12 @@ class UnitTouched(msgspec.Struct, frozen=True):
     unit_id: str
 
 
+class TrailFilled(msgspec.Struct, frozen=True):
+    """Points that came late were put into this unit's trail."""
+
+    unit_id: str
+
+
 class Refused(msgspec.Struct, frozen=True):
     """A person's action that had no effect."""
 
@@ -48,7 +54,7 @@ class Refused(msgspec.Struct, frozen=True):
     reason: str  # for that person
 
 
-Output = FusedPosition | AlarmChange | UnitTouched | Refused
+Output = FusedPosition | AlarmChange | UnitTouched | TrailFilled | Refused
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:

@@ -6,6 +6,7 @@ a station starts again from a checkpoint instead of from the beginning of the lo
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from typing import Literal
 
 import msgspec
@@ -180,6 +181,19 @@ class UnitState(msgspec.Struct):
         self.trail.append(TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
         if len(self.trail) > TRAIL_POINTS:
             del self.trail[0]
+        return True
+
+    def fill_trail(self, fused: FusedPosition) -> bool:
+        """Put a point that came late in its place, where none is near in time."""
+        place = bisect_left(self.trail, fused.t_meas_ns, key=lambda step: step.t_ns)
+        near = self.trail[max(place - 1, 0) : place + 1]
+        if len(self.trail) >= TRAIL_POINTS and place == 0:
+            return False
+        if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in near):
+            return False
+        step = TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor)
+        self.trail.insert(place, step)
+        del self.trail[:-TRAIL_POINTS]
         return True
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from base_station.api.wire import Delta, ReplayView, Snapshot
-from base_station.events import Output, UnitTouched
+from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
+from base_station.events import Output, TrailFilled, UnitTouched
 from base_station.pipeline import StationPipeline
 from base_station.sinks import LiveSink, PhotoUrls
 from base_station.views import (
@@ -16,6 +16,7 @@ from base_station.views import (
     alarm_view,
     health_view,
     snapshot,
+    trail_view,
     unit_view,
 )
 from shared.messages import AlarmChange
@@ -36,12 +37,15 @@ class Picture:
         self._pipeline = pipeline
         self._units: dict[str, None] = {}  # an ordered set
         self._alarms: list[AlarmChange] = []
+        self._filled: dict[str, None] = {}
         self._frame = self._frame_now()
 
     def note(self, outputs: Sequence[Output]) -> None:
         for output in outputs:
             if isinstance(output, UnitTouched):
                 self._units[output.unit_id] = None
+            elif isinstance(output, TrailFilled):
+                self._filled[output.unit_id] = None
             elif isinstance(output, AlarmChange):
                 self._alarms.append(output)
                 if output.unit_id:
@@ -63,6 +67,7 @@ class Picture:
                 unit_view(state, state.units[unit_id], self._photo_urls) for unit_id in self._units
             ),
             alarms=tuple(map(alarm_view, self._alarms)),
+            trails=self._filled_trails() if health else {},
             health=health_view(state, self.facts) if health else None,
             replay=replay,
         )
@@ -75,12 +80,20 @@ class Picture:
         self._frame = self._frame_now()
         self._units.clear()
         self._alarms.clear()
+        self._filled.clear()
         self._sink.reset(self._snapshot(replay))
 
     def snapshot(self, replay: ReplayView | None = None) -> Snapshot:
         """For one console, after what was noted so far was told to all."""
         self.flush(replay=replay)
         return self._snapshot(replay)
+
+    def _filled_trails(self) -> dict[str, tuple[TrailPoint, ...]]:
+        """Once a second will do: a gap is filled over seconds."""
+        units = self._pipeline.state.units
+        trails = {unit_id: trail_view(units[unit_id].trail) for unit_id in self._filled}
+        self._filled.clear()
+        return trails
 
     def _snapshot(self, replay: ReplayView | None) -> Snapshot:
         return snapshot(self._pipeline.state, self._seq, self.facts, self._photo_urls, replay)

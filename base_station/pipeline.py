@@ -14,7 +14,15 @@ import msgspec
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
-from base_station.events import Output, Received, Refused, Rejected, StationEvent, UnitTouched
+from base_station.events import (
+    Output,
+    Received,
+    Refused,
+    Rejected,
+    StationEvent,
+    TrailFilled,
+    UnitTouched,
+)
 from base_station.fusion.port import FuserKind
 from base_station.live_state import Alarm, Fault, StationState, UnitState
 from base_station.positioning import Positioning
@@ -135,6 +143,8 @@ class StationPipeline:
         outputs: list[Output] = []
         if news == "new" or isinstance(message, UnitEvent):
             outputs.extend(self._observe(unit, message))
+        elif isinstance(message, Position) and unit.registered:
+            outputs.extend(self._recall(unit, message))
         outputs.append(UnitTouched(unit_id))
         outputs.extend(self._review(unit))
         return outputs
@@ -173,6 +183,10 @@ class StationPipeline:
     def _fuse(self, unit: UnitState) -> list[Output]:
         fused = self._positioning.fused(self.state, unit, self._header())
         return [fused] if fused is not None else []
+
+    def _recall(self, unit: UnitState, position: Position) -> list[Output]:
+        fused = self._positioning.recalled(self.state, unit, position, self._header())
+        return [] if fused is None else [fused, TrailFilled(unit.unit_id)]
 
     def _review(self, unit: UnitState) -> list[Output]:
         return [self._change(alarm) for alarm in self._book.review(self.state, unit)]

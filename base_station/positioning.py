@@ -67,6 +67,19 @@ class Positioning:
         _note_inside(state, unit)
         return unit.fused
 
+    def recalled(
+        self, state: StationState, unit: UnitState, position: Position, header: Header
+    ) -> FusedPosition | None:
+        """Where the wearer was at a position that came late; the trail is filled in there."""
+        estimate = self._fuser(unit).recall(position)
+        boot = unit.boots[-1]
+        if estimate is None or boot.boot_id != position.header.boot_id or boot.offset_t_ns == 0:
+            return None
+        floor = state.plan.floor_at(estimate.down_m, None) if state.plan is not None else None
+        fused = _as_message(estimate, unit, self._kind.name, floor, header)
+        unit.fill_trail(fused)
+        return fused
+
     def _fuser(self, unit: UnitState) -> Fuser:
         fuser = self._fusers.get(unit.unit_id)
         if fuser is None:

@@ -149,7 +149,9 @@ def snapshot(
         incident=incident_view(state.incident) if state.incident else None,
         units=tuple(unit_view(state, unit, photo_urls) for unit in state.units.values()),
         alarms=tuple(map(alarm_view, shown)),
-        trails={unit.unit_id: _trail(unit.trail) for unit in state.units.values() if unit.trail},
+        trails={
+            unit.unit_id: trail_view(unit.trail) for unit in state.units.values() if unit.trail
+        },
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
         anchor=_anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),
@@ -211,7 +213,7 @@ def _ellipse(fused: FusedPosition) -> tuple[float, float, float]:
     return major_m, RADII_95 * math.sqrt(max(middle - half, 0.0)), heading_rad
 
 
-def _trail(trail: Iterable[TrailStep]) -> tuple[TrailPoint, ...]:
+def trail_view(trail: Iterable[TrailStep]) -> tuple[TrailPoint, ...]:
     return tuple(
         TrailPoint(
             step.t_ns // NS_PER_MS, round(step.north_m, 2), round(step.east_m, 2), step.floor

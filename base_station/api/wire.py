@@ -148,6 +148,7 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     now_ms: int
     units: tuple[UnitView, ...] = ()
     alarms: tuple[AlarmView, ...] = ()
+    trails: dict[str, tuple[TrailPoint, ...]] = {}  # whole, of units whose past was filled in
     health: HealthView | None = None
     incident: IncidentView | None = None
     replay: ReplayView | None = None

@@ -230,8 +230,51 @@ class GpsInertialFuser:
             return None
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        north_m, east_m = float(self._horizontal.x[0, 0]), float(self._horizontal.x[1, 0])
-        variances = self._horizontal.P[:2, :2]
+        return self._estimate_at(
+            t_mono_ns,
+            last.heading_rad if last else 0.0,
+            self._horizontal.x[:2, 0],
+            self._horizontal.P[:2, :2],
+            float(self._vertical.x[0, 0]),
+            float(self._vertical.P[0, 0]),
+        )
+
+    def recall(self, position: Position) -> Estimate | None:
+        """The path from then to now is taken back from the present place, with the heading and
+        scale that are believed now.
+        """
+        last, kind = self._memory.last, self._kind
+        if last is None or last.header.boot_id != position.header.boot_id:
+            return None
+        north_m, east_m = last.north_m - position.north_m, last.east_m - position.east_m
+        back = np.array(
+            [
+                [1.0, 0.0, -north_m, east_m, 0.0, 0.0],
+                [0.0, 1.0, -east_m, -north_m, 0.0, 0.0],
+            ]
+        )
+        walked_m = abs(last.distance_m - position.distance_m)
+        climbed_m = last.down_m - position.down_m
+        climbed_m2 = kind.climb_part**2 * abs(climbed_m) + kind.climb_m_per_sqrt_m**2 * walked_m
+        return self._estimate_at(
+            position.header.t_mono_ns,
+            position.heading_rad,
+            (back @ self._horizontal.x)[:, 0],
+            back @ self._horizontal.P @ back.T + np.eye(2) * kind.walk_m_per_sqrt_m**2 * walked_m,
+            float(self._vertical.x[0, 0]) - climbed_m,
+            float(self._vertical.P[0, 0]) + climbed_m2,
+        )
+
+    def _estimate_at(
+        self,
+        t_mono_ns: int,
+        own_heading_rad: float,
+        place_m: Floats,
+        variances: Floats,
+        down_m: float,
+        down_var_m2: float,
+    ) -> Estimate:
+        memory = self._memory
         std_north_m, std_east_m = math.sqrt(variances[0, 0]), math.sqrt(variances[1, 1])
         product = std_north_m * std_east_m
         turn_rad, turn_std_rad = self._turn()
@@ -241,14 +284,14 @@ class GpsInertialFuser:
         quality, reason = self._quality(math.hypot(std_north_m, std_east_m), turn_std_rad)
         return Estimate(
             t_mono_ns=t_mono_ns,
-            north_m=north_m,
-            east_m=east_m,
-            down_m=float(self._vertical.x[0, 0]),
+            north_m=float(place_m[0]),
+            east_m=float(place_m[1]),
+            down_m=down_m,
             std_north_m=std_north_m,
             std_east_m=std_east_m,
-            std_down_m=math.sqrt(self._vertical.P[0, 0]),
+            std_down_m=math.sqrt(down_var_m2),
             correlation_ne=float(variances[0, 1]) / product if product > 0.0 else 0.0,
-            heading_rad=(turn_rad + (last.heading_rad if last else 0.0)) % (2.0 * math.pi),
+            heading_rad=(turn_rad + own_heading_rad) % (2.0 * math.pi),
             heading_std_rad=turn_std_rad,
             quality=quality,
             quality_reason=reason,

@@ -84,6 +84,12 @@ class Fuser(Protocol):
         """None before anything is known."""
         ...
 
+    def recall(self, position: Position) -> Estimate | None:
+        """Where the wearer was at an earlier position of the unit's own path, as it looks now;
+        None where that path does not reach the present.  Changes nothing.
+        """
+        ...
+
     def save(self) -> bytes:
         """All of its state; restored, it goes on with the very same numbers."""
         ...

@@ -15,6 +15,8 @@ from shared.geo import rotate
 from shared.quality import Quality
 from tests.fusion_walks import Receiver, Walk
 
+CHI2_2_95 = 5.991
+
 
 @pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
 def kind(request: pytest.FixtureRequest) -> FuserKind:
@@ -142,3 +144,44 @@ def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Wal
     estimate = fuser.estimate()
     assert estimate is not None
     assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[-1]) < 15.0
+
+
+def test_the_present_recalled_is_the_present(kind: FuserKind, walk: Walk) -> None:
+    fuser = kind.new()
+    present = go(fuser, walk, receiver(), 0, len(walk))[-1]
+    recalled = fuser.recall(walk.position(len(walk) - 1))
+    assert recalled is not None
+    assert recalled.north_m == pytest.approx(present.north_m)
+    assert recalled.east_m == pytest.approx(present.east_m)
+    assert recalled.std_north_m == pytest.approx(present.std_north_m)
+
+
+def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> None:
+    inside = total = 0
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        walk = Walk.wander(rng, 120.0)
+        fuser = kind.new()
+        go(fuser, walk, Receiver(rng), 0, len(walk))
+        before = fuser.save()
+        for index in range(len(walk) - 300, len(walk), 20):
+            recalled = fuser.recall(walk.position(index))
+            assert recalled is not None
+            assert recalled.t_mono_ns == walk.position(index).header.t_mono_ns
+            error_m = np.array([recalled.north_m, recalled.east_m]) - walk.truth_m[index]
+            product = recalled.correlation_ne * recalled.std_north_m * recalled.std_east_m
+            covariance = np.array(
+                [[recalled.std_north_m**2, product], [product, recalled.std_east_m**2]]
+            )
+            inside += float(error_m @ np.linalg.solve(covariance, error_m)) < CHI2_2_95
+            total += 1
+        assert fuser.save() == before
+    assert inside / total > 0.85
+
+
+def test_another_run_of_the_unit_cannot_be_recalled(kind: FuserKind, walk: Walk) -> None:
+    fuser = kind.new()
+    go(fuser, walk, receiver(), 0, 50)
+    earlier = walk.position(10)
+    header = msgspec.structs.replace(earlier.header, boot_id=earlier.header.boot_id + 1)
+    assert fuser.recall(msgspec.structs.replace(earlier, header=header)) is None

@@ -1,0 +1,95 @@
+"""What comes late goes where it belongs in time, and never sets the present back."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.alarms import ALARMS
+from base_station.events import Received, TrailFilled, event_of
+from base_station.fusion import FUSERS
+from base_station.pipeline import StationPipeline
+from shared.channels import EVENT, POSITION, backfilled_key
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.messages import STATION_ID, EventKind, FusedPosition, Header, OperatorAction, UnitEvent
+from shared.messages.station import RegisterUnit
+
+START_NS = 1_700_000_000 * NS_PER_S
+
+
+class Walked:
+    """A unit that walks north at 1 m/s, a position a second; some of them came late."""
+
+    def __init__(self, make_position):
+        self.pipeline = StationPipeline(ALARMS, FUSERS[0])
+        action = OperatorAction(Header(STATION_ID, 1, 1, 0), "a", "b", RegisterUnit("FF-01", ""))
+        self.pipeline.step(Received(START_NS, STATION_ID, action))
+        self._make_position = make_position
+
+    def position(self, second: int):
+        header = Header("FF-01", 7, second + 1, second * NS_PER_S)
+        north_m = float(second)
+        return self._make_position(header=header, north_m=north_m, east_m=0.0, distance_m=north_m)
+
+    def live(self, second: int):
+        key, payload = POSITION.key("FF-01"), encode(self.position(second))
+        return self.pipeline.step(event_of(START_NS + second * NS_PER_S, key, payload))
+
+    def late(self, second: int, at_second: int):
+        key = backfilled_key("FF-01", POSITION.suffix)
+        payload = encode(self.position(second))
+        return self.pipeline.step(event_of(START_NS + at_second * NS_PER_S, key, payload))
+
+    @property
+    def unit(self):
+        return self.pipeline.state.units["FF-01"]
+
+
+@pytest.fixture
+def walked(make_position):
+    walked = Walked(make_position)
+    for second in (*range(11), *range(20, 31)):
+        walked.live(second)
+    return walked
+
+
+def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
+    for second in range(11, 20):
+        outputs = walked.late(second, at_second=31)
+        fused = next(output for output in outputs if isinstance(output, FusedPosition))
+        assert fused.t_meas_ns == START_NS + second * NS_PER_S
+        assert fused.north_m == pytest.approx(second)
+        assert any(isinstance(output, TrailFilled) for output in outputs)
+    trail = walked.unit.trail
+    assert [round(step.north_m) for step in trail] == list(range(31))
+    assert [step.t_ns for step in trail] == sorted(step.t_ns for step in trail)
+
+
+def test_the_present_stays(walked):
+    before = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position, walked.unit.heard_ns))
+    walked.late(15, at_second=31)
+    after = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position, walked.unit.heard_ns))
+    assert after == before
+
+
+def test_a_second_copy_changes_nothing(walked):
+    walked.late(15, at_second=31)
+    assert walked.late(15, at_second=32) == []
+    assert walked.unit.duplicates == 1
+
+
+def test_a_mayday_that_the_radio_lost_is_raised_when_it_comes(walked):
+    mayday = UnitEvent(Header("FF-01", 7, 500, 15 * NS_PER_S), EventKind.MAYDAY)
+    key = backfilled_key("FF-01", EVENT.suffix)
+    walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, encode(mayday)))
+    assert any(alarm.rule == "mayday" for alarm in walked.pipeline.state.alarms.values())
+
+
+def test_a_run_of_the_program_that_nobody_heard_is_not_taken_for_the_present_one(walked):
+    earlier = walked.position(3)
+    header = msgspec.structs.replace(earlier.header, boot_id=6)
+    payload = encode(msgspec.structs.replace(earlier, header=header))
+    key = backfilled_key("FF-01", POSITION.suffix)
+    walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
+    assert [boot.boot_id for boot in walked.unit.boots] == [6, 7]
