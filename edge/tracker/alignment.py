@@ -21,22 +21,22 @@ from edge.tracker.strapdown import rotate_attitude, rotate_navigation, rotation_
 @njit()
 def stillest_window(ring: Ring, first: int, stop: int, window_s: float) -> tuple[int, int]:
     """Return the first sample and one past the last of the window with the least motion."""
-    mask = len(ring.t_ns) - 1
+    mask = len(ring) - 1
     best = np.inf
     best_first = first
     best_stop = first + 1
     end = first
     total = 0.0
     for begin in range(first, stop):
-        while end < stop and ring.t_s[end & mask] - ring.t_s[begin & mask] <= window_s:
-            total += ring.motion_m2ps4[end & mask]
+        while end < stop and ring[end & mask].t_s - ring[begin & mask].t_s <= window_s:
+            total += ring[end & mask].motion_m2ps4
             end += 1
         mean = total / (end - begin)
         if mean < best:
             best, best_first, best_stop = mean, begin, end
         if end == stop:
             break
-        total -= ring.motion_m2ps4[begin & mask]
+        total -= ring[begin & mask].motion_m2ps4
     return best_first, best_stop
 
 
@@ -55,17 +55,17 @@ def level(
     turn that does it is taken, so the heading stays as good as it was.
     Returns the tilt's standard deviation in rad.
     """
-    mask = len(ring.t_ns) - 1
-    while stop > first + 1 and ring.t_s[(stop - 1) & mask] - ring.t_s[first & mask] > ahead_s:
+    mask = len(ring) - 1
+    while stop > first + 1 and ring[(stop - 1) & mask].t_s - ring[first & mask].t_s > ahead_s:
         stop -= 1
     begin, end = stillest_window(ring, first, stop, config.start_window_s)
     middle = (begin + end) // 2
     mean_b = np.zeros(3)
     motion = 0.0
     for i in range(begin, end):
-        motion += ring.motion_m2ps4[i & mask] / (end - begin)
+        motion += ring[i & mask].motion_m2ps4 / (end - begin)
         for j in range(3):
-            mean_b[j] += ring.accel_mps2[i & mask, j] / (end - begin)
+            mean_b[j] += ring[i & mask].accel_mps2[j] / (end - begin)
     turn_by_gyro(ring, first, middle, quaternion_nb)
     _turn_upright(quaternion_nb, mean_b)
     turn_by_gyro(ring, middle, first, quaternion_nb)
@@ -75,14 +75,14 @@ def level(
 @njit()
 def turn_by_gyro(ring: Ring, first: int, last: int, quaternion_nb: Floats) -> None:
     """Carry an attitude from sample ``first`` to ``last``, forward or backward, in place."""
-    mask = len(ring.t_ns) - 1
+    mask = len(ring) - 1
     angle_rad = np.zeros(3)
     step = 1 if last > first else -1
     for k in range(first, last, step):
         here, there = k & mask, (k + step) & mask
-        dt_s = ring.t_s[there] - ring.t_s[here]
+        dt_s = ring[there].t_s - ring[here].t_s
         for j in range(3):
-            angle_rad[j] = 0.5 * dt_s * (ring.gyro_radps[here, j] + ring.gyro_radps[there, j])
+            angle_rad[j] = 0.5 * dt_s * (ring[here].gyro_radps[j] + ring[there].gyro_radps[j])
         rotate_attitude(quaternion_nb, angle_rad)
 
 

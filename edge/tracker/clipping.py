@@ -23,16 +23,16 @@ def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: Es
     Looks at samples before ``stop`` and within the look-ahead.  ``hidden_noise`` of the run
     becomes the density (rad^2/s) of what may still be wrong.
     """
-    mask = len(ring.t_ns) - 1
+    mask = len(ring) - 1
     slot = k & mask
     for axis in range(3):
-        if abs(ring.gyro_radps[slot, axis]) < clip_radps or ring.hidden_noise[slot, axis] > 0.0:
+        if abs(ring[slot].gyro_radps[axis]) < clip_radps or ring[slot].hidden_noise[axis] > 0.0:
             continue
         end = k
         while (
             end < stop
-            and abs(ring.gyro_radps[end & mask, axis]) >= clip_radps
-            and ring.t_s[end & mask] - ring.t_s[slot] <= config.lookahead_s
+            and abs(ring[end & mask].gyro_radps[axis]) >= clip_radps
+            and ring[end & mask].t_s - ring[slot].t_s <= config.lookahead_s
         ):
             end += 1
         _bridge_run(ring, k, end, stop, axis, config)
@@ -40,10 +40,10 @@ def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: Es
 
 @njit()
 def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig) -> None:
-    mask = len(ring.t_ns) - 1
-    begin_s = ring.t_s[first & mask]
-    duration_s = ring.t_s[(end - 1) & mask] - begin_s + ring.period_s[first & mask]
-    side = 1.0 if ring.gyro_radps[first & mask, axis] > 0.0 else -1.0
+    mask = len(ring) - 1
+    begin_s = ring[first & mask].t_s
+    duration_s = ring[(end - 1) & mask].t_s - begin_s + ring[first & mask].period_s
+    side = 1.0 if ring[first & mask].gyro_radps[axis] > 0.0 else -1.0
     rise = 0.0
     fall = 0.0
     if first >= SLOPE_SAMPLES:
@@ -54,16 +54,16 @@ def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: 
     peak_radps = min(0.25 * slope_radps2 * duration_s, config.hidden_rate_limit_radps)
     doubt_radps = config.hidden_rate_floor_radps + config.hidden_rate_doubt * peak_radps
     for k in range(first, end):
-        u = (ring.t_s[k & mask] - begin_s + 0.5 * ring.period_s[first & mask]) / duration_s
-        ring.gyro_radps[k & mask, axis] += side * 4.0 * u * (1.0 - u) * peak_radps
-        ring.hidden_noise[k & mask, axis] = doubt_radps**2 * duration_s
+        u = (ring[k & mask].t_s - begin_s + 0.5 * ring[first & mask].period_s) / duration_s
+        ring[k & mask].gyro_radps[axis] += side * 4.0 * u * (1.0 - u) * peak_radps
+        ring[k & mask].hidden_noise[axis] = doubt_radps**2 * duration_s
 
 
 @njit()
 def _slope(ring: Ring, first: int, last: int, axis: int) -> float:
-    mask = len(ring.t_ns) - 1
-    interval_s = ring.t_s[last & mask] - ring.t_s[first & mask]
+    mask = len(ring) - 1
+    interval_s = ring[last & mask].t_s - ring[first & mask].t_s
     if interval_s <= 0.0:
         return 0.0
-    change = ring.gyro_radps[last & mask, axis] - ring.gyro_radps[first & mask, axis]
+    change = ring[last & mask].gyro_radps[axis] - ring[first & mask].gyro_radps[axis]
     return float(change / interval_s)

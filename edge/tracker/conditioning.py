@@ -75,10 +75,10 @@ def admit(
     gyro_radps: Floats,
 ) -> None:
     """Append samples (n,), (n, 3), (n, 3) to the ring of ``received`` with flags and times."""
-    mask = len(ring.t_ns) - 1
+    mask = len(ring) - 1
     for i in range(len(t_ns)):
         slot = (received + i) & mask
-        ring.t_ns[slot] = t_ns[i]
+        ring[slot].t_ns = t_ns[i]
         flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
         if flags & BAD_SAMPLES == 0:
             flags |= _time_flags(gate, t_ns[i], gap_s)
@@ -87,12 +87,12 @@ def admit(
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
         for j in range(3):
-            ring.accel_mps2[slot, j] = gate[0].accel_mps2[j]
-            ring.gyro_radps[slot, j] = gate[0].gyro_radps[j]
-            ring.hidden_noise[slot, j] = 0.0
-        ring.arrival_s[slot] = gate[0].arrival_s
-        ring.period_s[slot] = gate[0].period_s
-        ring.flags[slot] = flags
+            ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
+            ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
+            ring[slot].hidden_noise[j] = 0.0
+        ring[slot].arrival_s = gate[0].arrival_s
+        ring[slot].period_s = gate[0].period_s
+        ring[slot].flags = flags
 
 
 @njit()
@@ -151,18 +151,18 @@ def regular_time(ring: Ring, k: int, stop: int, late_s: float) -> float:
     A stamp may be late (polled or quantised transport) but not early, so samples
     that follow on time, counted back by the mean period, bound when ``k`` was taken.
     """
-    mask = len(ring.t_ns) - 1
-    arrival_s = ring.arrival_s[k & mask]
-    period_s = ring.period_s[k & mask]
+    mask = len(ring) - 1
+    arrival_s = ring[k & mask].arrival_s
+    period_s = ring[k & mask].period_s
     best_s = arrival_s
     back_s = 0.0
     for j in range(k + 1, stop):
         slot = j & mask
-        if ring.arrival_s[slot] - arrival_s > late_s:
+        if ring[slot].arrival_s - arrival_s > late_s:
             break
-        if ring.flags[slot] & (BAD_SAMPLES | SAMPLE_GAP) == 0:
+        if ring[slot].flags & (BAD_SAMPLES | SAMPLE_GAP) == 0:
             back_s += period_s
-            best_s = min(best_s, ring.arrival_s[slot] - back_s)
+            best_s = min(best_s, ring[slot].arrival_s - back_s)
     if k > 0:
-        best_s = max(best_s, ring.t_s[(k - 1) & mask])
+        best_s = max(best_s, ring[(k - 1) & mask].t_s)
     return float(best_s)

@@ -14,14 +14,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from edge.samples import Floats, ImuBatch, SensorDescription
+from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.conditioning import GATE, admit, limits_of, regular_time
 from edge.tracker.config import EskfConfig
 from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import empty_rows, join_rows
 from edge.tracker.smoothing import smooth
-from edge.tracker.state import FilterState, Ring, new_filter_state, new_progress, new_ring, reach
+from edge.tracker.state import RING, Progress, Ring, new_filter_state, new_progress, reach
 from edge.tracker.zero_velocity import motion_statistic, stride_minimum
 
 RING_S = 4.0  # of samples in the ring at the described rate
@@ -37,7 +37,7 @@ class EskfTracker:
         self.config = config or EskfConfig()
         rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
-        self._ring = new_ring(slots)
+        self._ring = np.zeros(slots, RING)
         self._progress = new_progress()
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._progress["gyro_clip_radps"] = self._limits.gyro_clip_radps
@@ -78,54 +78,58 @@ class EskfTracker:
 
     def _rows(self, first: int, stop: int) -> TrackBatch:
         ring = self._ring
-        slots = np.arange(first, stop) & (len(ring.t_ns) - 1)
+        slots = np.arange(first, stop) & (len(ring) - 1)
         return TrackBatch(
-            t_ns=ring.t_ns[slots],
-            position_n_m=ring.position_n_m[slots],
-            velocity_n_mps=ring.velocity_n_mps[slots],
-            quaternion_nb=ring.quaternion_nb[slots],
-            position_cov_m2=ring.covariance[slots, :3, :3],
-            heading_std_rad=ring.heading_std_rad[slots],
-            stationary=ring.stationary[slots],
-            distance_m=ring.distance_m[slots],
-            steps=ring.steps[slots],
-            quality=ring.quality[slots],
-            reasons=ring.reasons[slots],
+            t_ns=ring["t_ns"][slots],
+            position_n_m=ring["position_n_m"][slots],
+            velocity_n_mps=ring["velocity_n_mps"][slots],
+            quaternion_nb=ring["quaternion_nb"][slots],
+            position_cov_m2=ring["covariance"][slots, :3, :3],
+            heading_std_rad=ring["heading_std_rad"][slots],
+            stationary=ring["stationary"][slots],
+            distance_m=ring["distance_m"][slots],
+            steps=ring["steps"][slots],
+            quality=ring["quality"][slots],
+            reasons=ring["reasons"][slots],
         )
 
 
 @njit(cache=True)
 def work(
-    ring: Ring, progress: NDArray[Any], state: FilterState, config: EskfConfig, final: bool
+    ring: Ring,
+    progress: NDArray[Any],
+    state: NDArray[Any],
+    config: EskfConfig,
+    final: bool,
 ) -> int:
     """Take every sample as far as it can go; return one past the last released row."""
     memory = progress[0]
     while memory.timed < memory.received:
         k = memory.timed
-        if not final and not _is_past(ring.arrival_s, memory.received, k, config.late_delivery_s):
+        if not final and not _has_arrived(ring, memory.received, k, config):
             break
-        slot = k & (len(ring.t_ns) - 1)
+        slot = k & (len(ring) - 1)
         stop = min(memory.received, reach(ring, k))
-        ring.t_s[slot] = regular_time(ring, k, stop, config.late_delivery_s)
+        ring[slot].t_s = regular_time(ring, k, stop, config.late_delivery_s)
         memory.timed = k + 1
     while memory.measured < memory.timed:
         k = memory.measured
-        if not final and not _is_past(ring.t_s, memory.timed, k, config.half_window_s):
+        if not final and not _is_past(ring, memory.timed, k, config.half_window_s):
             break
-        slot = k & (len(ring.t_ns) - 1)
+        slot = k & (len(ring) - 1)
         stop = min(memory.timed, reach(ring, k))
-        ring.motion_m2ps4[slot] = motion_statistic(ring, k, stop, config)
+        ring[slot].motion_m2ps4 = motion_statistic(ring, k, stop, config)
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered
         ahead_s = config.lookahead_s + (config.lag_s if k == 0 else 0.0)
-        if not final and not _is_past(ring.t_s, memory.measured, k, ahead_s):
+        if not final and not _is_past(ring, memory.measured, k, ahead_s):
             break
-        slot = k & (len(ring.t_ns) - 1)
-        ring.stride_minimum_m2ps4[slot] = stride_minimum(ring, progress, k, config)
-        filter_sample(ring, progress, state, k, config)
+        slot = k & (len(ring) - 1)
+        ring[slot].stride_minimum_m2ps4 = stride_minimum(ring, memory, k, config)
+        filter_sample(ring, memory, state[0], k, config)
         memory.filtered = k + 1
-        _release(ring, progress, k, config)
+        _release(ring, memory, k, config)
     if final and memory.released < memory.filtered:
         smooth(ring, memory.released, memory.filtered, memory.filtered - 1)
         memory.released = memory.filtered
@@ -133,29 +137,36 @@ def work(
 
 
 @njit()
-def _is_past(t_s: Floats, count: int, k: int, wait_s: float) -> bool:
-    """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
-    mask = len(t_s) - 1
-    return t_s[(count - 1) & mask] - t_s[k & mask] > wait_s or count >= k + len(t_s) // 4
+def _has_arrived(ring: Ring, count: int, k: int, config: EskfConfig) -> bool:
+    """Whether all samples are there that can put the time of ``k`` right."""
+    mask = len(ring) - 1
+    since_s = ring[(count - 1) & mask].arrival_s - ring[k & mask].arrival_s
+    return since_s > config.late_delivery_s or count >= reach(ring, k)
 
 
 @njit()
-def _release(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> None:
+def _is_past(ring: Ring, count: int, k: int, wait_s: float) -> bool:
+    """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
+    mask = len(ring) - 1
+    return ring[(count - 1) & mask].t_s - ring[k & mask].t_s > wait_s or count >= reach(ring, k)
+
+
+@njit()
+def _release(ring: Ring, memory: Progress, k: int, config: EskfConfig) -> None:
     """Smooth and release rows once sample ``k`` is filtered.
 
     Firm stance adds little to what is known of the rows before it, so they go at
     once; a long swing is released from its old end when the lag is used up.
     """
-    mask = len(ring.t_ns) - 1
-    memory = progress[0]
-    now_s = ring.t_s[k & mask]
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
     first = memory.released
     stop = first
     if memory.in_stance and now_s - memory.stance_since_s >= config.stance_release_s:
         memory.stance_since_s = now_s
         stop = k + 1
-    elif now_s - ring.t_s[first & mask] >= config.lag_s or k - first >= len(ring.t_ns) // 4:
-        while stop <= k and now_s - ring.t_s[stop & mask] >= KEEP_OF_LAG * config.lag_s:
+    elif now_s - ring[first & mask].t_s >= config.lag_s or k - first >= len(ring) // 4:
+        while stop <= k and now_s - ring[stop & mask].t_s >= KEEP_OF_LAG * config.lag_s:
             stop += 1
         stop = max(stop, first + 1)
     if stop > first:

@@ -9,49 +9,44 @@ floor stops correcting and gives back what it took out.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numba import njit
-from numpy.typing import NDArray
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION, SIZE
 from edge.tracker.stance import remember
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Progress, Ring
 
 DOWN = POSITION + 2
 
 
 @njit()
 def settle(
-    ring: Ring, progress: NDArray[Any], state: FilterState, slot: int, config: EskfConfig
+    ring: Ring, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
     """Look at the floor once a stance, at its stillest sample."""
-    memory = progress[0]
-    if memory.on_floor and ring.t_s[slot] - memory.footfall_s < config.floor_pause_s:
+    if progress.on_floor and ring[slot].t_s - progress.footfall_s < config.floor_pause_s:
         return
-    sink_m = state.position_n_m[2] - memory.footfall_m
-    if memory.on_floor and _is_flat(progress, sink_m, config):
+    sink_m = state.position_n_m[2] - progress.footfall_m
+    if progress.on_floor and _is_flat(progress, sink_m, config):
         _hold_level(ring, progress, state, slot, config)
     else:
         _enter_level(progress, state)
-    memory.footfall_m = state.position_n_m[2]
-    memory.footfall_s = ring.t_s[slot]
+    progress.footfall_m = state.position_n_m[2]
+    progress.footfall_s = ring[slot].t_s
 
 
 @njit()
 def _hold_level(
-    ring: Ring, progress: NDArray[Any], state: FilterState, slot: int, config: EskfConfig
+    ring: Ring, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
-    memory = progress[0]
-    off_m = memory.level_m - state.position_n_m[2]
-    if off_m * memory.withheld_m < 0.0:
-        memory.withheld_m = 0.0
-    memory.withheld_m += off_m
-    variance_m2 = config.floor_std_m**2 + memory.level_variance_m2
+    off_m = progress.level_m - state.position_n_m[2]
+    if off_m * progress.withheld_m < 0.0:
+        progress.withheld_m = 0.0
+    progress.withheld_m += off_m
+    variance_m2 = config.floor_std_m**2 + progress.level_variance_m2
     _measure_height_only(ring, state, slot, off_m, variance_m2)
     # The floor is no better known than when it was entered.
-    state.covariance[DOWN, DOWN] = max(state.covariance[DOWN, DOWN], memory.level_variance_m2)
+    state.covariance[DOWN, DOWN] = max(state.covariance[DOWN, DOWN], progress.level_variance_m2)
 
 
 @njit()
@@ -71,31 +66,29 @@ def _measure_height_only(
         p[j, DOWN] = p[DOWN, j]
     p[DOWN, DOWN] = kept
     state.position_n_m[2] += gain * off_m
-    u = ring.updates[slot]
+    u = ring[slot].updates
     for j in range(SIZE):
-        ring.update_gain[slot, u, j] = 0.0
-    ring.update_gain[slot, u, DOWN] = gain
+        ring[slot].update_gain[u, j] = 0.0
+    ring[slot].update_gain[u, DOWN] = gain
     remember(ring, slot, DOWN, weight * off_m)
 
 
 @njit()
-def _enter_level(progress: NDArray[Any], state: FilterState) -> None:
+def _enter_level(progress: Progress, state: FilterState) -> None:
     """Take the height as it is for the level, with what a ramp had lost to the one before."""
-    memory = progress[0]
-    state.position_n_m[2] -= memory.withheld_m
-    state.covariance[DOWN, DOWN] += memory.withheld_m**2
-    memory.withheld_m = 0.0
-    memory.on_floor = True
-    memory.level_m = state.position_n_m[2]
-    memory.level_variance_m2 = state.covariance[DOWN, DOWN]
+    state.position_n_m[2] -= progress.withheld_m
+    state.covariance[DOWN, DOWN] += progress.withheld_m**2
+    progress.withheld_m = 0.0
+    progress.on_floor = True
+    progress.level_m = state.position_n_m[2]
+    progress.level_variance_m2 = state.covariance[DOWN, DOWN]
 
 
 @njit()
-def _is_flat(progress: NDArray[Any], sink_m: float, config: EskfConfig) -> bool:
-    memory = progress[0]
+def _is_flat(progress: Progress, sink_m: float, config: EskfConfig) -> bool:
     if abs(sink_m) >= config.floor_gate_m:
-        memory.mean_sink_m = 0.0
-        memory.withheld_m = 0.0
+        progress.mean_sink_m = 0.0
+        progress.withheld_m = 0.0
         return False
-    memory.mean_sink_m += (sink_m - memory.mean_sink_m) / config.floor_ramp_strides
-    return bool(abs(memory.mean_sink_m) < config.floor_ramp_m)
+    progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor_ramp_strides
+    return bool(abs(progress.mean_sink_m) < config.floor_ramp_m)

@@ -20,7 +20,7 @@ from edge.tracker.strapdown import rotate_navigation
 @njit()
 def smooth(ring: Ring, first: int, stop: int, last: int) -> None:
     """Correct the rows ``first`` to ``stop - 1`` by all that was measured up to ``last``."""
-    mask = len(ring.t_ns) - 1
+    mask = len(ring) - 1
     adjoint = np.zeros(SIZE)
     for k in range(last, first - 1, -1):
         slot = k & mask
@@ -32,15 +32,15 @@ def smooth(ring: Ring, first: int, stop: int, last: int) -> None:
 
 @njit()
 def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
-    covariance = ring.covariance[slot]
+    covariance = ring[slot].covariance
     for i in range(3):
         position = 0.0
         velocity = 0.0
         for j in range(SIZE):
             position += covariance[i, j] * adjoint[j]
             velocity += covariance[3 + i, j] * adjoint[j]
-        ring.position_n_m[slot, i] -= position
-        ring.velocity_n_mps[slot, i] -= velocity
+        ring[slot].position_n_m[i] -= position
+        ring[slot].velocity_n_mps[i] -= velocity
     x = 0.0
     y = 0.0
     z = 0.0
@@ -48,35 +48,35 @@ def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
         x -= covariance[6, j] * adjoint[j]
         y -= covariance[7, j] * adjoint[j]
         z -= covariance[8, j] * adjoint[j]
-    rotate_navigation(ring.quaternion_nb[slot], x, y, z)
+    rotate_navigation(ring[slot].quaternion_nb, x, y, z)
 
 
 @njit()
 def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
-    for u in range(ring.updates[slot] - 1, -1, -1):
-        gain = ring.update_gain[slot, u]
-        pull = ring.update_pull[slot, u]
+    for u in range(ring[slot].updates - 1, -1, -1):
+        gain = ring[slot].update_gain[u]
+        pull = ring[slot].update_pull[u]
         for j in range(SIZE):
             pull += gain[j] * adjoint[j]
-        index = ring.update_index[slot, u]
+        index = ring[slot].update_index[u]
         adjoint[index] -= pull
         if VELOCITY <= index < VELOCITY + 3:
             for j in range(3):
-                adjoint[LEVER + j] += ring.lever_row[slot, index - VELOCITY, j] * pull
+                adjoint[LEVER + j] += ring[slot].lever_row[index - VELOCITY, j] * pull
 
 
 @njit()
 def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
     """Multiply by the transposed transition (error_model.transition_matrix)."""
-    dt_s = ring.interval_s[slot]
+    dt_s = ring[slot].interval_s
     if dt_s < 0.0:  # across a gap only position and biases carry over
         for i in range(3, 9):
             adjoint[i] = 0.0
         return
-    fx = dt_s * ring.force_n_mps2[slot, 0]
-    fy = dt_s * ring.force_n_mps2[slot, 1]
-    fz = dt_s * ring.force_n_mps2[slot, 2]
-    rotation = ring.rotation_nb[slot]
+    fx = dt_s * ring[slot].force_n_mps2[0]
+    fy = dt_s * ring[slot].force_n_mps2[1]
+    fz = dt_s * ring[slot].force_n_mps2[2]
+    rotation = ring[slot].rotation_nb
     vx, vy, vz = adjoint[3], adjoint[4], adjoint[5]
     ax, ay, az = adjoint[6], adjoint[7], adjoint[8]
     for i in range(3):

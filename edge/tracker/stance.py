@@ -33,10 +33,10 @@ MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 @njit()
 def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Use the pseudo-measurements of one still sample."""
-    interval_s = max(ring.interval_s[slot], MIN_INTERVAL_S)
-    motion = ring.motion_m2ps4[slot]
+    interval_s = max(ring[slot].interval_s, MIN_INTERVAL_S)
+    motion = ring[slot].motion_m2ps4
     for i in range(3):
-        state.gyro_radps[i] = ring.gyro_radps[slot, i] - state.gyro_bias_radps[i]
+        state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
     _begin_updates(state)
     velocity_variance = _velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
@@ -54,7 +54,7 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
 def _velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
     noise = config.stance_velocity_mps_rthz**2
     noise += config.stance_velocity_per_motion**2 * motion
-    stillest = max(ring.stride_minimum_m2ps4[slot], config.stance_excess_floor_m2ps4)
+    stillest = max(ring[slot].stride_minimum_m2ps4, config.stance_excess_floor_m2ps4)
     return float(noise * max(motion / stillest, 1.0) ** config.stance_excess_power)
 
 
@@ -71,8 +71,8 @@ def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row
 def _measure_velocity(
     ring: Ring, state: FilterState, slot: int, axis: int, variance: float
 ) -> None:
-    u = ring.updates[slot]
-    row = ring.lever_row[slot, axis]
+    u = ring[slot].updates
+    row = ring[slot].lever_row[axis]
     lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
     expected_mps = (row * state.lever_b_m).sum()
     innovation, weight = update_with_lever(
@@ -83,7 +83,7 @@ def _measure_velocity(
         expected_mps - state.velocity_n_mps[axis],
         variance,
         state.column,
-        ring.update_gain[slot, u],
+        ring[slot].update_gain[u],
     )
     remember(ring, slot, VELOCITY + axis, innovation * weight)
 
@@ -100,7 +100,7 @@ def _measure(
         residual,
         variance,
         state.column,
-        ring.update_gain[slot, ring.updates[slot]],
+        ring[slot].update_gain[ring[slot].updates],
     )
     remember(ring, slot, index, innovation * weight)
 
@@ -108,10 +108,10 @@ def _measure(
 @njit()
 def remember(ring: Ring, slot: int, index: int, pull: float) -> None:
     """Count the update whose gain is in the ring, for the smoother."""
-    u = ring.updates[slot]
-    ring.update_index[slot, u] = index
-    ring.update_pull[slot, u] = pull
-    ring.updates[slot] = u + 1
+    u = ring[slot].updates
+    ring[slot].update_index[u] = index
+    ring[slot].update_pull[u] = pull
+    ring[slot].updates = u + 1
 
 
 @njit()

@@ -11,22 +11,20 @@ smallest statistic in the surrounding stride, within bounds.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from numba import njit
-from numpy.typing import NDArray
 
 from edge.tracker.config import EskfConfig
-from edge.tracker.state import Ring, reach
+from edge.tracker.state import Progress, Ring, reach
 
 
 @njit()
 def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float:
     """Return the statistic of sample ``k``; samples from ``stop`` on are not looked at."""
-    mask = len(ring.t_ns) - 1
-    now_s = ring.t_s[k & mask]
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
     first = k
-    while first > 0 and now_s - ring.t_s[(first - 1) & mask] <= config.half_window_s:
+    while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.half_window_s:
         first -= 1
         if k - first > mask // 4:
             break
@@ -38,14 +36,14 @@ def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float
     count = 0
     for i in range(first, stop):
         slot = i & mask
-        if ring.t_s[slot] - now_s > config.half_window_s:
+        if ring[slot].t_s - now_s > config.half_window_s:
             break
-        x, y, z = ring.accel_mps2[slot, 0], ring.accel_mps2[slot, 1], ring.accel_mps2[slot, 2]
+        x, y, z = ring[slot].accel_mps2[0], ring[slot].accel_mps2[1], ring[slot].accel_mps2[2]
         mean_x += x
         mean_y += y
         mean_z += z
         squares += x * x + y * y + z * z
-        x, y, z = ring.gyro_radps[slot, 0], ring.gyro_radps[slot, 1], ring.gyro_radps[slot, 2]
+        x, y, z = ring[slot].gyro_radps[0], ring[slot].gyro_radps[1], ring[slot].gyro_radps[2]
         rates += x * x + y * y + z * z
         count += 1
     mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
@@ -55,34 +53,32 @@ def motion_statistic(ring: Ring, k: int, stop: int, config: EskfConfig) -> float
 
 
 @njit()
-def stride_minimum(ring: Ring, progress: NDArray[Any], k: int, config: EskfConfig) -> float:
+def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
     """Return the smallest statistic from ``stride_past_s`` before to ``lookahead_s`` after ``k``.
 
     Called for every ``k`` in turn; ``progress`` keeps the sliding window.
     """
-    mask = len(ring.t_ns) - 1
-    now_s = ring.t_s[k & mask]
-    state = progress[0]
-    motion = ring.motion_m2ps4
-    at = state.minimum_at
-    to = state.minimum_to
-    stop = min(state.measured, reach(ring, k))
-    while to < stop and ring.t_s[to & mask] - now_s <= config.lookahead_s:
-        if to == 0 or motion[to & mask] <= motion[at & mask]:
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
+    at = progress.minimum_at
+    to = progress.minimum_to
+    stop = min(progress.measured, reach(ring, k))
+    while to < stop and ring[to & mask].t_s - now_s <= config.lookahead_s:
+        if to == 0 or ring[to & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
             at = to
         to += 1
-    begin = max(state.minimum_from, to - mask)
-    while now_s - ring.t_s[begin & mask] > config.stride_past_s:
+    begin = max(progress.minimum_from, to - mask)
+    while now_s - ring[begin & mask].t_s > config.stride_past_s:
         begin += 1
     if at < begin:
         at = begin
         for i in range(begin, to):
-            if motion[i & mask] <= motion[at & mask]:
+            if ring[i & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
                 at = i
-    state.minimum_at = at
-    state.minimum_from = begin
-    state.minimum_to = to
-    return float(motion[at & mask])
+    progress.minimum_at = at
+    progress.minimum_from = begin
+    progress.minimum_to = to
+    return float(ring[at & mask].motion_m2ps4)
 
 
 @njit()

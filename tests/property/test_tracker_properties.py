@@ -95,6 +95,6 @@ def test_the_filter_covariance_stays_symmetric_positive():
     tracker = EskfTracker(WALK.description)
     for first in range(0, len(WALK.imu), 100):
         tracker.push(part(WALK.imu, slice(first, first + 100)))
-        covariance = tracker._state.covariance
+        covariance = tracker._state["covariance"][0]
         np.testing.assert_allclose(covariance, covariance.T, rtol=1e-7, atol=1e-14)
         assert np.linalg.eigvalsh(0.5 * (covariance + covariance.T)).min() >= -1e-12
