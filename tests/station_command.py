@@ -130,10 +130,16 @@ class Unit:
     def __init__(self, port: int, unit_id: str, boot_id: int = 1) -> None:
         self.bus = ZenohBus(UnitEndpoint((f"tcp/127.0.0.1:{port}",)))
         self.stamper = Stamper(unit_id, boot_id, SystemClock())
+        self._heard = False
 
     def say(self, message: Message) -> None:
+        """The first time it waits for the link: what is said without one is gone."""
         channel = channel_of(message)
-        self.bus.publish(channel.key(self.stamper.unit_id), encode(message), channel.qos)
+        key = channel.key(self.stamper.unit_id)
+        if not self._heard:
+            wait_until("a station listens", lambda: self.bus.is_heard(key))
+            self._heard = True
+        self.bus.publish(key, encode(message), channel.qos)
 
     def close(self) -> None:
         self.bus.close()
