@@ -5,13 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from threading import Event
 
 import pytest
 
 from edge.app import run_agent
 from edge.config import EdgeConfig
 from shared.config import load_config
-from shared.errors import ConfigError
+from shared.errors import ConfigError, MusterError
 
 MAIN = """
 import sys
@@ -38,26 +39,33 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("flags", "said"),
     [
-        (("--source", WALK), "unit"),
-        (("--unit", "all", "--source", WALK), "unit id 'all' cannot be used"),
-        (("--unit", "a/b", "--source", WALK), "unit id 'a/b' cannot be used"),
-        (("--unit", "u1", "--source", "recording:nothing/here"), "nothing/here"),
-        (("--unit", "u1", "--source", "simulatd:x"), "did you mean simulated:"),
-        (("--unit", "u1", "--source", WALK, "--connect", "tcp/host"), "tcp/HOST:PORT"),
-        (("--unit", "u1", "--source", WALK, "--connect", "tcp/host:70000"), "tcp/HOST:PORT"),
-        (("--unit", "u1", "--source", WALK, "--tracker", "esfk"), "eskf"),
-        (("--unit", "u1", "--source", WALK, "--data", "/dev/null"), "/dev/null"),
-        (("--config", "nothing.toml"), "nothing.toml"),
+        ({}, "the unit has no name"),
+        ({"unit": "all"}, "unit id 'all' cannot be used"),
+        ({"unit": "a/b"}, "unit id 'a/b' cannot be used"),
+        ({"unit": "u1", "source": "recording:nothing/here"}, "nothing/here"),
+        ({"unit": "u1", "source": "simulatd:x"}, "did you mean simulated:"),
+        ({"unit": "u1", "connect": ["tcp/host"]}, "tcp/HOST:PORT"),
+        ({"unit": "u1", "connect": ["tcp/host:70000"]}, "tcp/HOST:PORT"),
+        ({"unit": "u1", "connect": ["tls/host:7447"]}, "needs the unit's enrolment"),
+        ({"unit": "u1", "tracker": "esfk"}, "eskf"),
+        ({"unit": "u1", "data": Path("/dev/null")}, "/dev/null"),
+        ({"enrolment": Path("nothing.toml")}, "there is no such enrolment file"),
     ],
 )
-def test_one_sentence_and_exit_code_2(arguments, said, tmp_path):
-    ended = muster_edge("run", *arguments, cwd=tmp_path)
+def test_settings_that_cannot_work_are_one_sentence(flags, said, tmp_path):
+    config = load_config(None, EdgeConfig, {"source": WALK, "data": tmp_path, **flags})
+    with pytest.raises(MusterError) as caught:
+        run_agent(config, Event(), for_s=0.0, paced=True)
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_sentence_goes_to_stderr_with_exit_code_2(tmp_path):
+    ended = muster_edge("run", "--config", "nothing.toml", cwd=tmp_path)
     assert ended.returncode == 2
-    assert said in ended.stderr
-    assert "Traceback" not in ended.stderr
-    assert len(ended.stderr.strip().splitlines()) == 1
+    assert ended.stderr.strip().splitlines() == ["muster: nothing.toml: there is no such file"]
 
 
 def test_lists_sources_and_trackers(tmp_path):
@@ -95,5 +103,5 @@ def test_a_wrong_key_is_named_with_the_right_one(line, said, tmp_path):
 def test_settings_that_cannot_work_leave_nothing_behind(tmp_path):
     config = EdgeConfig(unit="u1", source="simulated:nowhere", data=tmp_path / "data")
     with pytest.raises(ConfigError):
-        run_agent(config, None, for_s=0.0, paced=True)  # type: ignore[arg-type]
+        run_agent(config, Event(), for_s=0.0, paced=True)
     assert not (tmp_path / "data").exists()

@@ -1,0 +1,104 @@
+"""Samples pass through messages once with rounding, and then never change again."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from edge.raw_stream import RawStream, batch_of, sensor_of
+from edge.samples import (
+    AmbientSample,
+    BatterySample,
+    ButtonPress,
+    GpsSample,
+    ImuBatch,
+    SensorBatch,
+    SensorDescription,
+)
+from shared.channels import channel_of
+from shared.codec import decode, encode
+
+TIMES = st.integers(0, 2**62)
+ANY = st.floats(allow_nan=True, allow_infinity=True)
+MISSABLE = st.one_of(st.just(math.nan), st.floats(-1000.0, 1000.0))
+COUNT = st.integers(0, 6)
+
+
+@st.composite
+def imu_batches(draw) -> ImuBatch:
+    n = draw(COUNT)
+
+    def columns(*shape: int):
+        return draw(hnp.arrays(np.float64, shape, elements=MISSABLE))
+
+    t_ns = draw(hnp.arrays(np.int64, n, elements=st.integers(0, 10**15)))
+    with_extras = draw(st.booleans()) and n > 0
+    return ImuBatch(
+        t_ns,
+        columns(n, 3),
+        columns(n, 3),
+        mag_ut=columns(n, 3) if with_extras else None,
+        pressure_pa=columns(n) if with_extras else None,
+    )
+
+
+OTHERS = st.one_of(
+    st.builds(AmbientSample, TIMES, ANY),
+    st.builds(BatterySample, TIMES, ANY),
+    st.builds(ButtonPress, TIMES, st.sampled_from(["mayday", "cancel", "unknown"])),
+    st.builds(
+        GpsSample, TIMES, st.one_of(st.just(math.nan), st.floats(-90, 90)), st.floats(-180, 180),
+        ANY, ANY, ANY, st.integers(0, 4), st.integers(0, 60), ANY, ANY,
+    ),
+)  # fmt: skip
+BATCHES = st.builds(SensorBatch, imu_batches(), st.lists(OTHERS, max_size=4).map(tuple))
+
+
+def through(batch: SensorBatch) -> SensorBatch:
+    """As a black box gives it back: by way of bytes."""
+    raw = RawStream("u1", 1).messages(batch)
+    return batch_of(tuple(decode(channel_of(message), encode(message)) for message in raw))
+
+
+def text_of(batch: SensorBatch) -> str:
+    imu = batch.imu
+    return repr((imu.t_ns, imu.accel_mps2, imu.gyro_radps, imu.mag_ut, imu.pressure_pa)) + repr(
+        batch.others
+    )
+
+
+@given(BATCHES)
+def test_what_has_passed_once_passes_unchanged(batch):
+    once = through(batch)
+    assert text_of(through(once)) == text_of(once)
+
+
+@given(BATCHES)
+def test_the_agents_own_batch_is_the_one_in_the_black_box(batch):
+    own = batch_of(RawStream("u1", 1).messages(batch))
+    assert text_of(own) == text_of(through(batch))
+
+
+@given(BATCHES)
+def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
+    imu, kept = batch.imu, through(batch).imu
+    assert kept.t_ns.tolist() == imu.t_ns.tolist()
+    np.testing.assert_allclose(kept.accel_mps2, imu.accel_mps2, atol=0.51e-5)
+    np.testing.assert_allclose(kept.gyro_radps, imu.gyro_radps, atol=0.51e-6)
+
+
+@given(
+    st.floats(1.0, 4000.0),
+    st.one_of(st.none(), st.floats(1.0, 1000.0)),
+    st.booleans(),
+)
+def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag):
+    def passed(sensor: SensorDescription) -> SensorDescription:
+        return sensor_of(RawStream("u1", 1).description(0, sensor, source="", tracker=""))
+
+    once = passed(SensorDescription("s", rate_hz, full_scale, full_scale, mag))
+    assert passed(once) == once
