@@ -166,6 +166,7 @@ def test_everybody_can_use_it(page: Page, card: Locator, scheme: str) -> None:
 def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name="Close this incident").click()
+    dialog.get_by_role("button", name="Yes, close this incident").click()
     expect(dialog.get_by_label("Name of the new incident")).to_be_visible(timeout=SOON_MS)
     dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
     banner = page.get_by_role("region", name="Replay")

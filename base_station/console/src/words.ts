@@ -1,5 +1,5 @@
 /** Numbers as a tired person reads them.  Pure. */
-import type { AlarmView, Link, PositionView, UnitView } from "./wire";
+import type { AlarmView, HealthView, Link, PositionView, UnitView } from "./wire";
 
 /** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
 export function duration(ms: number): string {
@@ -104,6 +104,12 @@ export function heatWord(level: string): string {
 export function place(at: { north_m: number; east_m: number }): string {
   const along = `${Math.abs(at.north_m).toFixed(1)} m ${at.north_m < 0 ? "south" : "north"}`;
   return `${along}, ${Math.abs(at.east_m).toFixed(1)} m ${at.east_m < 0 ? "west" : "east"}`;
+}
+
+/** What is wrong with the station, sentence by sentence. */
+export function problemsOf(health: HealthView): string[] {
+  if (!health.insecure) return health.problems;
+  return [...health.problems, "Not encrypted: others on the network can listen and speak"];
 }
 
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */

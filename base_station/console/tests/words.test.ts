@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import * as words from "../src/words";
-import { alarm, position, STATUS, unit } from "./fixtures";
+import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
 describe("words", () => {
   it.each([
@@ -58,6 +58,13 @@ describe("words", () => {
     ["mayday", "mayday", "Mayday"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
+  });
+
+  it("count a link that is not encrypted among the problems", () => {
+    expect(words.problemsOf(HEALTH)).toEqual([]);
+    const both = words.problemsOf({ ...HEALTH, problems: ["The disk is full"], insecure: true });
+    expect(both[0]).toBe("The disk is full");
+    expect(both[1]).toContain("Not encrypted");
   });
 
   it("make initials of any name", () => {

@@ -17,7 +17,12 @@ interface Props {
 }
 
 const LOW_BATTERY = 0.1;
-const LINK_LEVEL: Record<Link, string> = { live: "", never: "", stale: "caution", lost: "critical" };
+const LINK_LEVEL: Record<Link, string> = {
+  live: "",
+  never: "",
+  stale: "caution",
+  lost: "critical",
+};
 
 export const Card = memo(({ unitId, urgency, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;

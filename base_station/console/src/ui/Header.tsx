@@ -1,7 +1,7 @@
 import { leave, mayAct, user } from "../sessions";
 import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
-import { clockTime, minutes } from "../words";
+import { clockTime, minutes, problemsOf } from "../words";
 import { Icon } from "./Icon";
 
 export function Header({ picture }: { picture: Picture }) {
@@ -74,7 +74,7 @@ function Clock({ picture }: { picture: Picture }) {
 function HealthLight({ picture }: { picture: Picture }) {
   const health = picture.health.value;
   if (health === null) return null;
-  const [first, ...more] = health.problems;
+  const [first, ...more] = problemsOf(health);
   const sentence =
     first === undefined
       ? "Station is well"

@@ -1,25 +1,21 @@
 import { picture } from "../sessions";
-import { bytes } from "../words";
+import { bytes, problemsOf } from "../words";
 import { Dialog } from "./Dialog";
 
 export function HealthDialog() {
   const health = picture.value?.health.value;
   if (!health) return null;
+  const problems = problemsOf(health);
   return (
     <Dialog title="Station health">
-      {health.problems.length === 0 ? (
+      {problems.length === 0 ? (
         <p>The station is well.</p>
       ) : (
         <ul class="problems">
-          {health.problems.map((problem) => (
+          {problems.map((problem) => (
             <li key={problem}>{problem}</li>
           ))}
         </ul>
-      )}
-      {health.insecure && (
-        <p class="problem">
-          The link to the units is not encrypted: anyone on the network can listen and speak.
-        </p>
       )}
       <dl class="figures">
         <Figure name="Messages received" value={health.messages.toLocaleString("en")} />

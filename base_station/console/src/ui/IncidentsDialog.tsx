@@ -1,6 +1,7 @@
 import { attempt, live, mayAct, watchReplay } from "../sessions";
 import * as api from "../api";
 import { dateAndTime, minutes } from "../words";
+import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { fields, useLoaded } from "./useLoaded";
 
@@ -16,13 +17,11 @@ export function IncidentsDialog() {
           <span>
             <strong>{running.name}</strong> is open.
           </span>
-          <button
-            type="button"
-            class="danger"
-            onClick={() => void attempt(api.closeIncident(running.incident_id)).then(again)}
-          >
-            Close this incident
-          </button>
+          <ConfirmButton
+            label="Close this incident"
+            question="It cannot be opened again."
+            onConfirm={() => void attempt(api.closeIncident(running.incident_id)).then(again)}
+          />
         </p>
       )}
       <table>
