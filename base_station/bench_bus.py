@@ -21,9 +21,11 @@ from base_station.bench.bare import BareFigures, bare_subscriber, measure_flood,
 from base_station.bench.console import Console, latencies_ms
 from base_station.bench.station import Recorded, StationProcess, free_port, station_process
 from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
+from shared.errors import StoreError
 
 _LINK_TIMEOUT_S = 60.0
 _SETTLE_S = 2.0
+_STEADY_S = 5.0
 _FLOOD_S = 2.0
 _LATENCY_P99_MS = 200.0  # to reach
 _CPU_SHARE = 1.0  # to reach
@@ -97,13 +99,14 @@ def measure(
 ) -> BusReport:
     """Bare Zenoh first, then the station, both on this machine."""
     total_hz = units * rate_hz
-    task = progress.add_task("bare Zenoh", total=seconds + 10.0)
+    steady_s, flood_s = min(_STEADY_S, seconds), min(_FLOOD_S, seconds)
+    task = progress.add_task("bare Zenoh", total=steady_s + flood_s + seconds)
     address = f"tcp/127.0.0.1:{free_port()}"
     with bare_subscriber(address) as far_end:
-        steady = measure_steady(address, far_end, total_hz, 5.0)
-        progress.advance(task, 5.0)
-        flood = measure_flood(address, far_end, _FLOOD_S)
-        progress.advance(task, 5.0)
+        steady = measure_steady(address, far_end, total_hz, steady_s)
+        progress.advance(task, steady_s)
+        flood = measure_flood(address, far_end, flood_s)
+        progress.advance(task, flood_s)
     progress.update(task, description=f"{units} units")
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
         station = closing.enter_context(station_process(Path(folder)))
@@ -127,9 +130,9 @@ def _run_station(
         station.api.post("/units", {"unit_id": name})
     units = [BenchUnit(name, station.bus_address, closing) for name in names]
     _wait_linked(units)
-    watching = [Console(station.api) for _ in range(console_count)]
-    for console in watching:
-        console.wait_ready(_LINK_TIMEOUT_S)
+    watching = [Console(station.api, closing) for _ in range(console_count)]
+    if not all(console.wait_ready(_LINK_TIMEOUT_S) for console in watching):
+        raise StoreError("the station to be measured shows nothing at its consoles")
     for unit in units:
         unit.introduce()
     time.sleep(_SETTLE_S)

@@ -7,6 +7,7 @@ import time
 import urllib.request
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from threading import Event, Thread
 from typing import Any
 
@@ -77,7 +78,8 @@ class Api:
 class Console:
     """Listens in a thread of its own and notes when each unit's position was shown."""
 
-    def __init__(self, api: Api) -> None:
+    def __init__(self, api: Api, closing: ExitStack) -> None:
+        """Closed by ``closing``, or before by ``close``."""
         self.shown: dict[str, dict[int, int]] = {}  # unit -> t_ms of a position -> first seen, ns
         self.messages_stepped = 0
         self.problems: tuple[str, ...] = ()
@@ -86,11 +88,13 @@ class Console:
         self.gaps = 0
         self._seq: int | None = None
         self._ready = Event()
-        self._socket: ClientConnection = connect(
-            api.live_url,
-            additional_headers={"Cookie": api.cookie, "Origin": api.origin},
-            max_size=None,
-            compression=None,
+        self._socket: ClientConnection = closing.enter_context(
+            connect(
+                api.live_url,
+                additional_headers={"Cookie": api.cookie, "Origin": api.origin},
+                max_size=None,
+                compression=None,
+            )
         )
         self._thread = Thread(target=self._listen, name="bench-console", daemon=True)
         self._thread.start()

@@ -99,12 +99,15 @@ def station_process(data: Path) -> Iterator[StationProcess]:
     command = "from base_station.cli import app; app()"
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
-    with subprocess.Popen(
-        [sys.executable, "-c", command, *arguments],
-        stdout=subprocess.PIPE,
-        stderr=(data / _SAID).open("w"),
-        text=True,
-    ) as process:
+    with (
+        (data / _SAID).open("w") as said,
+        subprocess.Popen(
+            [sys.executable, "-c", command, *arguments],
+            stdout=subprocess.PIPE,
+            stderr=said,
+            text=True,
+        ) as process,
+    ):
         try:
             yield StationProcess(data, bus_address, process)
         finally:

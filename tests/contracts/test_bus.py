@@ -346,3 +346,10 @@ def test_a_closed_bus_says_so(ends: Ends) -> None:
     with pytest.raises(BusError, match="closed"):
         ends.unit.publish(KEY, b"", Qos.LIVE)
     ends.unit.close()
+
+
+def test_a_linked_end_knows_it_until_it_closes(ends: Ends) -> None:
+    assert ends.unit.is_linked()
+    assert ends.station.is_linked()
+    ends.unit.close()
+    assert not ends.unit.is_linked()

@@ -1,0 +1,30 @@
+"""The measurement of the bus measures: a small run through a real station loses nothing."""
+
+from __future__ import annotations
+
+from rich.progress import Progress
+
+from base_station.bench.console import latencies_ms
+from base_station.bench_bus import measure
+
+MS = 1_000_000
+
+
+def test_a_small_run_accounts_for_every_message() -> None:
+    with Progress(disable=True) as progress:
+        report = measure(units=3, rate_hz=10.0, seconds=2.0, consoles=2, progress=progress)
+    assert report.sent == 3 * (10 * 2 + 1)
+    assert (report.lost, report.repeated) == (0, 0)
+    assert report.recorded == report.stepped == report.sent
+    assert report.track_points == report.track_points_due > 0
+    assert report.positions_sent == 3 * 16
+    assert 0 < report.positions_shown == report.latency.count <= report.positions_sent
+    assert 0.0 < report.latency.p50_ms <= report.latency.p99_ms <= report.latency.max_ms
+    assert report.cpu_share > 0.0
+    assert report.bare_lost == 0
+
+
+def test_a_shown_position_is_that_of_the_nearest_sensor_time() -> None:
+    sent = {"anna": [100 * MS, 200 * MS, 300 * MS], "ben": [100 * MS]}
+    shown = {"anna": {102: 150 * MS, 199: 250 * MS, 201: 260 * MS}}
+    assert latencies_ms(sent, shown) == [50.0, 50.0]
