@@ -1,0 +1,118 @@
+"""``muster base serve`` with its own authority: units enrolled and revoked while it runs."""
+
+from __future__ import annotations
+
+import ssl
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from datetime import timedelta
+from pathlib import Path
+
+import httpx
+import pytest
+
+from base_station.pki.folder import PkiFolder
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import POSITION, Qos
+from shared.codec import encode
+from shared.enrolment import Enrolment
+from shared.messages import Position
+from tests.station_command import Browser, Command, free_port, wait_until
+
+MakePosition = Callable[..., Position]
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    return tmp_path / "station"
+
+
+@pytest.fixture
+def pki(data: Path) -> PkiFolder:
+    folder = PkiFolder(data)
+    folder.create("Test", hosts=[], connect=[f"tls/127.0.0.1:{free_port()}"])
+    return folder
+
+
+@pytest.fixture
+def serve(tmp_path: Path, data: Path) -> Iterator[Callable[..., Command]]:
+    started: list[Command] = []
+
+    def start(*flags: str, http: str = "127.0.0.1:0") -> Command:
+        output = tmp_path / f"output-{len(started)}.txt"
+        started.append(Command(output, "serve", "--data", str(data), "--http", http, *flags))
+        return started[-1]
+
+    yield start
+    for command in started:
+        command.kill()
+
+
+def join(enrolment: Enrolment) -> ZenohBus:
+    return ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))
+
+
+def test_a_unit_is_enrolled_and_revoked_while_the_station_runs(
+    serve: Callable[..., Command], pki: PkiFolder, data: Path, make_position: MakePosition
+) -> None:
+    (listen,) = pki.registry().connect
+    station = serve("--listen", listen)
+    key = POSITION.key("FF-01")
+    with Browser(station.wait_ready(), data) as browser:
+        assert not browser.call("GET", "/health")["insecure"]
+        with closing(join(pki.enroll("FF-01"))) as unit:
+            wait_until("the unit is let in", lambda: unit.is_heard(key))
+            unit.publish(key, encode(make_position()), Qos.LIVE)
+            wait_until("it is heard", lambda: browser.call("GET", "/health")["messages"] == 1)
+            pki.revoke("FF-01")
+            wait_until("the unit is shut out", lambda: not unit.is_heard(key))
+            wait_until("its link is back all the same", unit.is_linked)
+            unit.publish(key, encode(make_position()), Qos.LIVE)
+        again = pki.enroll("FF-01", valid=timedelta(days=3))
+        with closing(join(again)) as unit:
+            wait_until("its successor is let in", lambda: unit.is_heard(key))
+            unit.publish(key, encode(make_position()), Qos.LIVE)
+            wait_until("it is heard", lambda: browser.call("GET", "/health")["messages"] >= 2)
+        assert browser.call("GET", "/health")["messages"] == 2  # not what was said in between
+    assert station.stop() == 0
+
+
+def test_what_ends_soon_is_among_the_problems(
+    serve: Callable[..., Command], pki: PkiFolder, data: Path
+) -> None:
+    pki.enroll("FF-01", valid=timedelta(days=3))
+    (listen,) = pki.registry().connect
+    station = serve("--listen", listen)
+    with Browser(station.wait_ready(), data) as browser:
+        wait_until(
+            "the expiry is shown",
+            lambda: any(
+                problem == "The certificate of unit FF-01 expires in 2 days: muster pki renew FF-01"
+                for problem in browser.call("GET", "/health")["problems"]
+            ),
+        )
+
+
+def test_without_an_authority_the_station_says_how_to_make_one(
+    serve: Callable[..., Command],
+) -> None:
+    station = serve()
+    assert station.wait() == 2
+    assert "make one with `muster pki init`" in station.said()
+    assert "Traceback" not in station.said()
+
+
+def test_the_console_can_be_served_with_the_stations_certificate(
+    serve: Callable[..., Command], pki: PkiFolder, tmp_path: Path
+) -> None:
+    (listen,) = pki.registry().connect
+    settings = tmp_path / "station.toml"
+    settings.write_text(
+        f'[http]\ncertificate = "{pki.path}/station.pem"\nprivate_key = "{pki.path}/station.key"\n'
+    )
+    address = serve("--listen", listen, "--config", str(settings)).wait_ready()
+    assert address.startswith("https://")
+    trusting = ssl.create_default_context(cafile=str(pki.path / "authority.pem"))
+    assert httpx.get(address, verify=trusting).status_code == 200
+    with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
+        httpx.get(address)
