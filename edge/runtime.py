@@ -8,6 +8,7 @@ link have threads of their own: none of them keeps the unit from the rest.
 from __future__ import annotations
 
 import logging
+from contextlib import ExitStack
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from threading import Event
@@ -26,7 +27,7 @@ from shared.channels import COMMAND
 from shared.clock import NS_PER_S, Clock
 from shared.codec import decode
 from shared.envelope import Stamper
-from shared.errors import WireError
+from shared.errors import RecordingError, WireError
 from shared.messages import Command, EventKind, Heartbeat, UnitEvent
 
 logger = logging.getLogger(__name__)
@@ -67,7 +68,10 @@ class Agent:
         self.commands_not_understood = 0
 
     def run(self, stop: Event, *, for_s: float | None = None) -> None:
-        """Until the source ends, ``stop`` is set or ``for_s`` is over; says why at the end."""
+        """Until the source ends, ``stop`` is set or ``for_s`` is over; says why at the end.
+
+        Raises RecordingError, when everything is closed, where the source failed.
+        """
         parts = self._parts
         started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
         end_ns = None if for_s is None else started_ns + round(for_s * NS_PER_S)
@@ -83,6 +87,8 @@ class Agent:
             reason = "told to stop" if stop.is_set() else "the source ended"
         finally:
             self._end(reason)
+        if parts.reader.failure is not None:
+            raise RecordingError(f"the source has failed: {parts.reader.failure}")
 
     def _turn(self) -> None:
         placed = self._parts.reader.take(_TURN_S)
@@ -147,16 +153,16 @@ class Agent:
         """Send what is left, in order, and let go of everything."""
         parts = self._parts
         ended = parts.reader.ended
-        parts.reader.close()
-        parts.outbox.put(parts.pipeline.finish(self._timeline))
-        if ended:
-            self._say(EventKind.SOURCE_ENDED, parts.reader.failure or "the source has no more")
-        self._say(EventKind.STOPPED, reason)
-        parts.outbox.close()
-        parts.black_box.close()
-        parts.link.close()
-        parts.spool.close()
-        logger.info("stopped: %s", parts.reader.failure or reason)
+        with ExitStack() as last:  # each is closed, whatever the others do
+            last.callback(parts.spool.close)
+            last.callback(parts.link.close)
+            last.callback(parts.black_box.close)
+            last.callback(parts.outbox.close)
+            parts.reader.close()
+            parts.outbox.put(parts.pipeline.finish(self._timeline))
+            if ended:
+                self._say(EventKind.SOURCE_ENDED, parts.reader.failure or "the source has no more")
+            self._say(EventKind.STOPPED, reason)
 
     def _say(self, kind: EventKind, detail: str) -> None:
         logger.info("%s: %s", kind.name, detail)

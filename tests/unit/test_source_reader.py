@@ -1,0 +1,119 @@
+"""A source is read in the background: paced, bounded, and free to fail or hang."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch, SensorBatch, SensorDescription
+from edge.source_reader import PlacedBatch, SourceReader
+from edge.sources.port import Outage
+from shared.clock import NS_PER_S, SystemClock
+from shared.errors import RecordingError
+
+
+class Scripted:
+    """A source that does what a test wants, batch by batch."""
+
+    def __init__(self, script: Callable[[], Iterator[SensorBatch]], *, live: bool = False) -> None:
+        self._script = script
+        self._live = live
+        self.closed = False
+
+    @property
+    def description(self) -> SensorDescription:
+        return SensorDescription("scripted", 100.0)
+
+    @property
+    def is_live(self) -> bool:
+        return self._live
+
+    @property
+    def radio_outages(self) -> tuple[Outage, ...]:
+        return ()
+
+    def batches(self) -> Iterator[SensorBatch]:
+        return self._script()
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def batch(t_s: float) -> SensorBatch:
+    t_ns = np.array([round(t_s * NS_PER_S)])
+    return SensorBatch(ImuBatch(t_ns, np.zeros((1, 3)), np.zeros((1, 3))))
+
+
+def everything(reader: SourceReader) -> list[PlacedBatch]:
+    reader.start()
+    taken = []
+    while not reader.ended:
+        placed = reader.take(0.05)
+        if placed is not None:
+            taken.append(placed)
+    reader.close()
+    return taken
+
+
+def test_a_recording_is_handed_out_when_it_is_due():
+    source = Scripted(lambda: (batch(5.0 + tenth / 10) for tenth in range(5)))
+    began_ns = time.monotonic_ns()
+    reader = SourceReader(source, SystemClock(), 1.0)
+    reader.start()
+    for number in range(5):
+        placed = reader.take(30.0)
+        assert placed is not None
+        t_ns = int(placed.batch.imu.t_ns[-1])
+        assert time.monotonic_ns() >= placed.timeline.to_mono_ns(t_ns) >= began_ns
+        assert placed.since_start_s == pytest.approx(number / 10)
+    reader.close()
+    assert source.closed
+
+
+def test_without_pacing_nothing_waits_and_nothing_is_missed():
+    source = Scripted(lambda: (batch(float(second)) for second in range(500)))
+    taken = everything(SourceReader(source, SystemClock(), None))
+    assert [placed.since_start_s for placed in taken] == [float(second) for second in range(500)]
+
+
+def test_a_live_source_keeps_its_own_times():
+    source = Scripted(lambda: iter([batch(1000.0), batch(2000.0)]), live=True)
+    taken = everything(SourceReader(source, SystemClock(), 1.0))
+    assert [placed.timeline.to_mono_ns(7) for placed in taken] == [7, 7]
+
+
+@pytest.mark.parametrize("error", [RecordingError("it is torn"), OSError("no such device")])
+def test_a_source_that_fails_ends_with_the_reason(error):
+    def script() -> Iterator[SensorBatch]:
+        yield batch(0.0)
+        raise error
+
+    reader = SourceReader(Scripted(script), SystemClock(), None)
+    assert len(everything(reader)) == 1
+    assert reader.failure is not None
+    assert str(error) in reader.failure
+
+
+def test_a_source_that_hangs_holds_up_nobody():
+    release = threading.Event()
+
+    def script() -> Iterator[SensorBatch]:
+        release.wait()
+        yield batch(0.0)
+
+    reader = SourceReader(Scripted(script, live=True), SystemClock(), 1.0)
+    reader.start()
+    assert reader.take(0.01) is None
+    assert not reader.ended
+    reader.close()
+    release.set()
+
+
+def test_an_empty_batch_is_passed_over():
+    empty = SensorBatch(ImuBatch(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3))))
+    source = Scripted(lambda: iter([empty, batch(1.0), empty]))
+    assert len(everything(SourceReader(source, SystemClock(), None))) == 1
