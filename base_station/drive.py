@@ -289,6 +289,8 @@ class StationDrive:
         self._picture.flush(health)
 
     def _save_checkpoint(self) -> None:
+        if not self._around.log.flush():
+            return  # it must not know what a crash would take from the log
         try:
             self._around.checkpoints.save(
                 self._pipeline.state.t_ns, self._events_at_t, self._pipeline.checkpoint()
