@@ -5,14 +5,10 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-import signal
-import socket
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
-
-from fastapi import FastAPI
 
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
@@ -21,10 +17,10 @@ from base_station.api.replays import Replays, StartReplay
 from base_station.api.services import Services
 from base_station.backfill import Backfill
 from base_station.checkpoints import Checkpoints
-from base_station.config import HttpConfig, StationConfig, host_and_port
+from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
-from base_station.db.models import Incident, LogSegment
+from base_station.db.models import Incident
 from base_station.db.projecting import project_into
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
@@ -44,16 +40,15 @@ from base_station.recorder import Recorder
 from base_station.replay import ReplaySession, Window
 from base_station.router import station_endpoint
 from base_station.router_process import RouterProcess
-from base_station.server import ConsoleServer, bind
+from base_station.segment_index import SegmentIndex
+from base_station.server import ConsoleServer, bind, serve_until_stopped
 from base_station.sinks import Projection
 from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT
 from shared.clock import Clock, SystemClock
-from shared.errors import StoreError, UserError
-from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentReader, segment_paths
-
-SEGMENT_INDEX_S = 5.0
+from shared.errors import UserError
+from shared.mcap_log import SegmentPolicy, SegmentReader, segment_paths
 
 Announce = Callable[[str], None]
 _log = logging.getLogger(__name__)
@@ -125,14 +120,12 @@ def run_station(config: StationConfig, announce: Announce) -> None:
             secure=config.http.certificate is not None,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
-        notes = {recovery.path: str(recovery) for recovery in recorder.recoveries}
+        index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
         asyncio.run(
-            _serve(
-                app,
-                listening,
-                config.http,
+            serve_until_stopped(
+                ConsoleServer(app, listening, config.http.certificate, config.http.private_key),
                 announce,
-                lambda: records.put_segments(_rows(recorder.segments(), notes)),
+                lambda: index.update(recorder.segments()),
             )
         )
 
@@ -177,7 +170,8 @@ def run_replay_station(
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, hub))
         )
-        asyncio.run(_serve(app, listening, config.http, announce, lambda: None))
+        server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
+        asyncio.run(serve_until_stopped(server, announce))
 
 
 def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
@@ -279,60 +273,8 @@ def _project_log(store: Store, log: Path, on_progress: Callable[[float], None]) 
         write,
         lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
     )
-    Records(store, SystemClock()).put_segments(_rows(segments, {}))
+    SegmentIndex(Records(store, SystemClock()), {}).update(segments)
     return count
-
-
-def _rows(segments: Iterable[SegmentInfo], notes: dict[Path, str]) -> list[LogSegment]:
-    return [
-        LogSegment(
-            name=one.path.name,
-            first_ns=one.start_ns,
-            last_ns=one.end_ns,
-            messages=one.messages,
-            size_bytes=one.size_bytes,
-            note=notes.get(one.path, ""),
-        )
-        for one in segments
-    ]
-
-
-async def _serve(
-    app: FastAPI,
-    listening: socket.socket,
-    http: HttpConfig,
-    announce: Announce,
-    index_segments: Callable[[], None],
-) -> None:
-    """Until a signal comes."""
-    server = ConsoleServer(app, listening, http.certificate, http.private_key)
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, server.stop)
-    serving = asyncio.create_task(server.serve())
-    await asyncio.wait(
-        {serving, starting := asyncio.create_task(server.wait_started())},
-        return_when=asyncio.FIRST_COMPLETED,
-    )
-    if starting.done():
-        host, port = listening.getsockname()[:2]
-        scheme = "http" if http.certificate is None else "https"
-        announce(f"ready {scheme}://{f'[{host}]' if ':' in host else host}:{port}")
-    starting.cancel()
-    indexing = asyncio.create_task(_every(SEGMENT_INDEX_S, index_segments))
-    try:
-        await serving
-    finally:
-        indexing.cancel()
-
-
-async def _every(period_s: float, action: Callable[[], None]) -> None:
-    while True:
-        try:
-            await asyncio.to_thread(action)
-        except StoreError:
-            _log.exception("the list of segments was not brought up to date")
-        await asyncio.sleep(period_s)
 
 
 def _ignore(_: object) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import signal
 import socket
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from pathlib import Path
 
 import uvicorn
@@ -15,6 +16,7 @@ from starlette.types import ASGIApp
 from shared.errors import ConfigError
 
 _GRACE_S = 5
+_HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
 _LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
 
@@ -36,7 +38,9 @@ class ConsoleServer:
         certificate: Path | None = None,
         private_key: Path | None = None,
     ) -> None:
+        """Raises ConfigError where the certificate or its key cannot be used."""
         self._socket = listening
+        self._scheme = "http" if certificate is None else "https"
         config = uvicorn.Config(
             app,
             ssl_certfile=certificate,
@@ -50,7 +54,20 @@ class ConsoleServer:
             ws_max_size=_LARGEST_REQUEST_BYTES,
             timeout_graceful_shutdown=_GRACE_S,
         )
+        try:
+            config.load()
+        except OSError as error:  # ssl.SSLError is one
+            raise ConfigError(
+                f"the console's certificate {certificate} with the key {private_key} cannot be "
+                f"used: {error}"
+            ) from error
         self._server = _Server(config)
+
+    @property
+    def address(self) -> str:
+        """As a browser on this machine writes it."""
+        host, port = self._socket.getsockname()[:2]
+        return f"{self._scheme}://{f'[{host}]' if ':' in host else host}:{port}"
 
     async def serve(self) -> None:
         """Until ``stop``."""
@@ -66,6 +83,30 @@ class ConsoleServer:
     def stop(self) -> None:
         """From the loop's thread."""
         self._server.should_exit = True
+
+
+async def serve_until_stopped(
+    server: ConsoleServer,
+    announce: Callable[[str], None],
+    housekeeping: Callable[[], None] = lambda: None,
+) -> None:
+    """Serve until SIGINT or SIGTERM, and say ``ready ADDRESS`` once consoles can connect.
+
+    ``housekeeping`` is called now and then, in a thread.
+    """
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, server.stop)
+    serving = asyncio.create_task(server.serve())
+    starting = asyncio.create_task(server.wait_started())
+    await asyncio.wait({serving, starting}, return_when=asyncio.FIRST_COMPLETED)
+    if starting.done():
+        announce(f"ready {server.address}")
+    starting.cancel()
+    while not serving.done():
+        await asyncio.to_thread(housekeeping)
+        await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
+    await serving
 
 
 def bind(host: str, port: int) -> socket.socket:

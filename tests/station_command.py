@@ -99,9 +99,7 @@ class Browser:
 
     def __init__(self, address: str, data: Path) -> None:
         self.address = address
-        self._client = httpx.Client(
-            base_url=f"{address}/api/v1", headers={"Origin": address}, verify=False
-        )
+        self._client = httpx.Client(base_url=f"{address}/api/v1", headers={"Origin": address})
         text = (data / "first-login.txt").read_text()
         credentials = dict(line.split(": ", 1) for line in text.splitlines())
         self.call("POST", "/login", json=credentials)

@@ -7,7 +7,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 from base_station.api.hub import Hub
@@ -47,14 +47,17 @@ class OpenReplay:
     hub: Hub
     player: ReplayPlayer
     lasting: bool  # stays though nobody looks
-    watched_s: float = field(default_factory=time.monotonic)
+    watched_s: float  # when somebody last looked
 
 
 class Replays:
     """Thread-safe."""
 
-    def __init__(self, start: StartReplay) -> None:
+    def __init__(
+        self, start: StartReplay, monotonic_s: Callable[[], float] = time.monotonic
+    ) -> None:
         self._start = start
+        self._monotonic_s = monotonic_s
         self._open: dict[str, OpenReplay] = {}
         self._lock = threading.Lock()
 
@@ -71,7 +74,9 @@ class Replays:
                 raise UserError(f"{MOST_REPLAYS} replays are open already; close one of them")
             hub = lasting or Hub()
             player = self._start(incident, speed, hub)
-            opened = OpenReplay(secrets.token_hex(8), hub, player, lasting is not None)
+            opened = OpenReplay(
+                secrets.token_hex(8), hub, player, lasting is not None, self._monotonic_s()
+            )
             self._open[opened.replay_id] = opened
         loop.call_soon_threadsafe(hub.connect, loop, player)
         return opened
@@ -93,7 +98,7 @@ class Replays:
 
     def close_unwatched(self) -> None:
         """End those that nobody has looked at for a while; called now and then."""
-        now_s = time.monotonic()
+        now_s = self._monotonic_s()
         for replay in self.all():
             if replay.hub.watchers or replay.lasting:
                 replay.watched_s = now_s

@@ -5,15 +5,20 @@ from __future__ import annotations
 import json
 import shutil
 import socket
+import ssl
 import time
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
+from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
+from shared.enrolment import Holder
 from shared.mcap_log import SegmentReader, segment_paths
 from shared.messages import EventKind, Position, Status, UnitEvent
 from shared.messages.status import Activity
@@ -58,6 +63,16 @@ def unit(port: int) -> Iterator[Unit]:
     unit.close()
 
 
+def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
+    """Until the unit is linked, what it says is lost."""
+
+    def is_heard() -> bool:
+        unit.say(make_position(header=unit.stamper.header()))
+        return bool(browser.call("GET", "/health")["messages"])
+
+    wait_until("the unit is heard", is_heard)
+
+
 def walk(unit: Unit, make_position: MakePosition, from_m: int, to_m: int) -> None:
     for north_m in range(from_m, to_m):
         unit.say(make_position(header=unit.stamper.header(), north_m=float(north_m)))
@@ -91,8 +106,7 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
     station = serve()
     with Browser(station.wait_ready(), data) as browser:
         prepare(browser)
-        unit.say(make_position(header=unit.stamper.header()))
-        wait_until("the unit is heard", lambda: browser.call("GET", "/health")["messages"])
+        greet(browser, unit, make_position)
         walk(unit, make_position, 0, 20)
         unit.say(Status(unit.stamper.header(), Activity.LYING, 3.0, 0.5, True, 7, 0.0, 0, 0, 0))
         unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
@@ -125,6 +139,7 @@ def test_a_station_that_is_asked_to_stop_leaves_everything_in_order(
     station = serve()
     with Browser(station.wait_ready(), data) as browser:
         prepare(browser)
+        greet(browser, unit, make_position)
         walk(unit, make_position, 0, 10)
         with watch(browser):  # a console that stays connected holds nothing up
             assert station.stop() == 0
@@ -178,8 +193,7 @@ def test_what_cannot_be_read_is_counted_and_kept(
 ) -> None:
     station = serve()
     with Browser(station.wait_ready(), data) as browser:
-        unit.say(make_position(header=unit.stamper.header()))
-        wait_until("the unit is heard", lambda: browser.call("GET", "/health")["messages"])
+        greet(browser, unit, make_position)
         for key in ("FF-01/up/position", "FF-01/up/nonsense", "FF-02/up/status"):
             unit.bus.publish(f"{ROOT}/{key}", b"\xff\xff\xff", Qos.LIVE)
         wait_until("they are counted", lambda: browser.call("GET", "/health")["undecodable"] == 3)
@@ -201,6 +215,7 @@ def play_incident(
 ) -> tuple[str, list[dict[str, Any]]]:
     """A short incident with a mayday, from beginning to end: its id and its alarms."""
     incident_id = prepare(browser)
+    greet(browser, unit, make_position)
     walk(unit, make_position, 0, 15)
     unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
     wait_until("mayday is raised", lambda: browser.call("GET", "/alarms"))
@@ -333,3 +348,34 @@ def test_users_are_added_while_the_station_runs(
         credentials = {"username": "mia", "password": "a long password"}
         assert browser.call("POST", "/login", json=credentials)["role"] == "viewer"
     assert station.stop() == 0
+
+
+def test_over_tls_the_cookie_never_leaves_it(
+    serve: Callable[..., Command], tmp_path: Path, data: Path
+) -> None:
+    now, day = datetime.now(UTC), timedelta(days=1)
+    authority = make_authority("Test", now, 2 * day)
+    issued = issue(authority, "station", Holder.STATION, now, day, ("127.0.0.1",))
+    certificate, key = tmp_path / "station.pem", tmp_path / "station.key"
+    certificate.write_bytes(issued.certificate_pem())
+    key.write_bytes(issued.key_pem())
+    settings = tmp_path / "station.toml"
+    settings.write_text('[http]\ncertificate = "station.pem"\nprivate_key = "station.key"\n')
+    station = serve("--config", str(settings))
+    address = station.wait_ready()
+    assert address.startswith("https://")
+    trusting = ssl.create_default_context(cadata=authority.certificate_pem().decode())
+    with httpx.Client(base_url=address, verify=trusting) as client:
+        credentials = {"username": "nobody", "password": "x"}
+        refused = client.post("/api/v1/login", json=credentials)
+        assert "max-age" in refused.headers["strict-transport-security"]
+        note = (data / "first-login.txt").read_text()
+        login = dict(line.split(": ", 1) for line in note.splitlines())
+        cookie = client.post("/api/v1/login", json=login).headers["set-cookie"].lower()
+    assert "secure" in cookie.split("; ")
+    assert station.stop() == 0
+
+    certificate.write_text("no certificate")
+    broken = serve("--config", str(settings))
+    assert broken.wait() == 2
+    assert "cannot be used" in broken.said()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, Response
+from pydantic import BaseModel
 
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
@@ -13,6 +14,19 @@ from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
 
 router = APIRouter(tags=["exports"])
+
+
+class Format(BaseModel):
+    name: str
+    suffix: str
+    needs_anchor: bool
+
+
+@router.get("/export-formats")
+def list_formats(_: Viewer) -> list[Format]:
+    return [
+        Format(name=one.name, suffix=one.suffix, needs_anchor=one.needs_anchor) for one in EXPORTERS
+    ]
 
 
 @router.get("/incidents/{incident_id}/export/{format_name}", response_class=Response)

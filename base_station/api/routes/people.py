@@ -91,6 +91,8 @@ def set_photo(
     who: Commander,
 ) -> None:
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
+    if station.roster.person(person_id) is None:
+        raise Problem(404, _NO_PERSON)
     jpeg, photo_hash = clean_photo(photo)
     person = station.roster.set_photo(person_id, jpeg, photo_hash)
     if person is None:

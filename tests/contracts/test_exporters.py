@@ -1,0 +1,121 @@
+"""What every exporter keeps."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Callable
+from xml.etree import ElementTree as ET
+
+import msgspec
+import pytest
+
+from base_station.exporters import EXPORTERS
+from base_station.exporters.csv_tracks import CSV
+from base_station.exporters.geojson import GEOJSON
+from base_station.exporters.gpx import GPX
+from base_station.exporters.port import Exporter, ExportPoint, IncidentTracks, WornTrack
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.geo import Anchor
+
+GPX_NAMESPACE = "http://www.topografix.com/GPX/1/1"
+T0_NS = 1_700_000_000 * NS_PER_S
+HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692'
+
+anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exporter.name)
+
+
+def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
+    """Two wearers, of whom one went north."""
+    walked = tuple(
+        ExportPoint(T0_NS + n * NS_PER_S, float(n), 0.5, -1.5, 0.1, 0.1, 0.2, None, "good")
+        for n in range(points)
+    )
+    tracks = (
+        WornTrack("FF-01", HOSTILE, "A", walked),
+        WornTrack("FF-02", "", "", walked[:1]),
+    )
+    return IncidentTracks("i-1", HOSTILE, anchor, tracks)
+
+
+ANCHOR = Anchor(52.0, 13.0, 40.0)
+
+
+@anyone
+def test_names_can_stand_in_an_address_and_are_taken_once(exporter: Exporter) -> None:
+    assert re.fullmatch(r"[a-z0-9_-]+", exporter.name)
+    assert re.fullmatch(r"[a-z0-9.]+", exporter.suffix)
+    assert "/" in exporter.media_type
+    assert sum(other.name == exporter.name for other in EXPORTERS) == 1
+
+
+@anyone
+def test_the_same_incident_gives_the_same_bytes(exporter: Exporter) -> None:
+    assert exporter.export(incident(ANCHOR)) == exporter.export(incident(ANCHOR)) != b""
+
+
+@anyone
+def test_nothing_is_written_at_zero_zero_for_want_of_an_anchor(exporter: Exporter) -> None:
+    if exporter.needs_anchor:
+        with pytest.raises(UserError, match="anchor"):
+            exporter.export(incident())
+    else:
+        assert exporter.export(incident())
+
+
+@anyone
+def test_every_unit_is_in_it_and_every_point_counts(exporter: Exporter) -> None:
+    written = exporter.export(incident(ANCHOR))
+    assert b"FF-01" in written
+    assert b"FF-02" in written
+    assert len(exporter.export(incident(ANCHOR, points=50))) > len(written) + 47 * 10
+
+
+@anyone
+def test_an_incident_without_tracks_can_be_written(exporter: Exporter) -> None:
+    empty = msgspec.structs.replace(incident(ANCHOR), tracks=())
+    assert exporter.export(empty)
+
+
+# By the file's suffix, who can tell whether it is well formed.
+READERS: dict[str, Callable[[str], object]] = {
+    "gpx": ET.fromstring,
+    "kml": ET.fromstring,
+    "geojson": msgspec.json.decode,
+    "csv": lambda text: list(csv.reader(io.StringIO(text), strict=True)),
+}
+
+
+@anyone
+def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
+    text = exporter.export(incident(ANCHOR)).decode()
+    read = READERS.get(exporter.suffix)
+    if read is None:
+        pytest.skip(f"nobody here reads {exporter.suffix}")
+    assert read(text)
+
+
+def test_a_name_does_not_become_a_formula() -> None:
+    tracks = (msgspec.structs.replace(incident().tracks[0], person_name="=1+1"),)
+    table = CSV.export(msgspec.structs.replace(incident(), tracks=tracks)).decode()
+    rows = list(csv.reader(io.StringIO(table)))
+    assert rows[1][1] == "'=1+1"
+
+
+def test_gpx_goes_north_with_the_wearer() -> None:
+    points = list(ET.fromstring(GPX.export(incident(ANCHOR))).iter(f"{{{GPX_NAMESPACE}}}trkpt"))
+    assert len(points) == 4
+    assert float(points[2].get("lat", "")) > float(points[0].get("lat", ""))
+    assert [child.tag.rpartition("}")[2] for child in points[0]] == ["ele", "time"]
+    assert points[0][0].text == "41.50"
+    assert points[0][1].text == "2023-11-14T22:13:20.000Z"
+
+
+def test_geojson_is_longitude_first() -> None:
+    collection = msgspec.json.decode(GEOJSON.export(incident(ANCHOR)))
+    line, point = collection["features"]
+    assert line["geometry"]["coordinates"][0] == pytest.approx([13.0, 52.0, 41.5], abs=1e-4)
+    assert point["geometry"]["type"] == "Point"
+    assert line["properties"]["times_ms"][1] - line["properties"]["times_ms"][0] == 1000
