@@ -48,7 +48,8 @@ export class Session {
     batch(() => {
       if (this.picture.link.peek().kind !== "up") this.picture.link.value = { kind: "up" };
       this.picture.show(state);
-      this.tick();
+      // Everything that shows an age renders with the clock, so deltas do not drive it.
+      if (message.type === "snapshot") this.tick();
     });
   }
 

@@ -9,7 +9,7 @@ export function People({ picture }: { picture: Picture }) {
   const places = useSignal<readonly Place[]>([]);
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
   useSignalEffect(() => {
-    void [picture.unitsChanged.value, picture.alarms.value, second.value, held.value];
+    void [picture.unitIds.value, picture.alarms.value, second.value, held.value];
     untracked(() => {
       const next = arrange(
         places.value,
