@@ -1,29 +1,33 @@
-"""What the wearer does, in few words: still, walking, running, lying, falling.
+"""What the wearer does: still, walking, running, on stairs, crawling, lying, falling.
 
-Strides come from the tracker, stillness and posture from the accelerometer.  Lying is told
-by the foot: its tilt while it rests is compared with the tilt it has between strides.
+The tracker's strides say how one moves, by their speed, their rise and the tilt of the foot
+as it comes down; the accelerometer alone says whether one moves at all and how the foot is
+held.  Rows come up to a second after their samples, so what ends is told by the samples.
 """
 
 from __future__ import annotations
 
 from collections import deque
 
-import numpy as np
-
-from edge.body_motion import BodyMotion, MotionWindow, cosine
+from edge.body_motion import BodyMotion, MotionWindow
 from edge.falls import FallDetector
-from edge.samples import Floats, ImuBatch
+from edge.posture import Posture
+from edge.samples import ImuBatch
+from edge.strides import Stride, StrideCutter
 from edge.tracker.port import TrackBatch
 from shared.clock import NS_PER_S
 from shared.messages import Activity
 
 _CADENCE_OVER_NS = 4 * NS_PER_S
-_WALKS_FOR_NS = 5 * NS_PER_S // 2  # after the last stride
-_RUNNING_STEPS_HZ = 2.4
-_LYING_COS = 0.6  # the foot rests 53 degrees or more from where it stands
-_LYING_AFTER_S = 2.0
-_COLLAPSE_NS = 2 * NS_PER_S  # from the last stride to rest
-_STANCE_SHARE = 0.1  # of a new window in the learned tilt
+_GOES_ON_NS = 5 * NS_PER_S // 2  # after the last footfall that is known
+_AT_REST_S = 1.0  # longer than a foot stands still in any stride
+_STIRRING_S = 1.0  # of motion before the first stride of a walk is known
+_RUNNING_MPS = 2.0  # people change from walking to running here (Hreljac 1995)
+_RUNNING_PERIOD_S = 0.8
+_RUNNING_STRIDE_M = 0.9
+_STAIR_RISE_M = 0.11
+_STAIR_SLOPE = 0.25  # steeper than ramps, flatter than stairs
+_COLLAPSED_S = 4.0  # motionless after going down suddenly
 
 
 class ActivityMonitor:
@@ -32,11 +36,14 @@ class ActivityMonitor:
     def __init__(self) -> None:
         self._motion = BodyMotion()
         self._falls = FallDetector()
-        self._strides: deque[tuple[int, int]] = deque()  # (time, strides so far) as they rise
-        self._stride_count = 0
-        self._standing_force_mps2: Floats | None = None
-        self._resting_force_mps2: Floats | None = None
-        self._collapse_told = False
+        self._posture = Posture()
+        self._cutter = StrideCutter()
+        self._strides: deque[Stride] = deque()
+        self._doing = Activity.STILL
+        self._steps = 0
+        self._stirring_s = 0.0
+        self._window_ns = 0
+        self._fall_told = False
         self._seen = False
 
     @property
@@ -46,82 +53,80 @@ class ActivityMonitor:
     @property
     def steps(self) -> int:
         """Of both feet; the unit counts the strides of one."""
-        return 2 * self._stride_count
+        return self._steps
 
     def push(self, imu: ImuBatch, track: TrackBatch) -> int:
         """Take one batch and the rows that came out of it; return the falls confirmed."""
-        self._take_strides(track)
+        for stride in self._cutter.push(track):
+            self._take_stride(stride)
+        if len(track):
+            self._steps = 2 * int(track.steps[-1])
         if not len(imu):
             return 0
         self._falls.push(imu)
-        falls = 0
-        for window in self._motion.push(imu):
-            self._seen = True
-            self._learn_posture(window)
-            falls += self._falls.confirm(window.end_ns, self._motion.motionless_s)
-            falls += self._has_collapsed(window.end_ns)
-        return falls
+        return sum(self._take_window(window) for window in self._motion.push(imu))
 
     def cadence_hz(self, t_ns: int) -> float:
         """Steps a second over the last strides; 0 once the wearer has stopped."""
         if not self._is_striding(t_ns):
             return 0.0
-        (first_ns, first), (last_ns, last) = self._strides[0], self._strides[-1]
-        if last_ns <= first_ns:
-            return 0.0
-        return 2.0 * (last - first) * NS_PER_S / (last_ns - first_ns)
+        return 2.0 * len(self._strides) / sum(stride.period_s for stride in self._strides)
 
     def activity(self, t_ns: int) -> Activity:
         if not self._seen:
             return Activity.UNKNOWN
         if self._falls.falling:
             return Activity.FALLING
-        if self._is_lying():
+        if self._posture.lying:
             return Activity.LYING
-        if self._is_striding(t_ns):
-            running = self.cadence_hz(t_ns) > _RUNNING_STEPS_HZ
-            return Activity.RUNNING if running else Activity.WALKING
-        return Activity.STILL
+        if self._posture.collapsed:
+            return Activity.FALLING
+        return self._upright_or_crawling(t_ns)
 
-    def _take_strides(self, track: TrackBatch) -> None:
-        rises = np.flatnonzero(np.diff(track.steps, prepend=self._stride_count) > 0)
-        for row in rises.tolist():
-            self._stride_count = int(track.steps[row])
-            self._strides.append((int(track.t_ns[row]), self._stride_count))
-        while self._strides and len(self._strides) > 1:
-            if self._strides[-1][0] - self._strides[0][0] <= _CADENCE_OVER_NS:
-                break
+    def _upright_or_crawling(self, t_ns: int) -> Activity:
+        resting = self._motion.motionless_s >= _AT_REST_S
+        # On hands and knees one goes on crawling after a rest.
+        if self._posture.tipped and (self._posture.crawling or not resting):
+            return Activity.CRAWLING
+        if self._is_striding(t_ns):
+            return self._doing
+        return Activity.WALKING if self._stirring_s >= _STIRRING_S else Activity.STILL
+
+    def _take_stride(self, stride: Stride) -> None:
+        self._posture.take_stride(stride)
+        self._doing = self._kind(stride)
+        self._strides.append(stride)
+        while self._strides[0].end_ns < stride.end_ns - _CADENCE_OVER_NS:
             self._strides.popleft()
 
+    def _kind(self, stride: Stride) -> Activity:
+        if self._posture.crawling:
+            return Activity.CRAWLING
+        if self._posture.tipped_step:  # says nothing yet: a stumble, or someone who lies down
+            return self._doing
+        steep = abs(stride.rise_m) > _STAIR_SLOPE * stride.length_m
+        if steep and abs(stride.rise_m) > _STAIR_RISE_M:
+            return Activity.STAIRS_UP if stride.rise_m > 0.0 else Activity.STAIRS_DOWN
+        quick = stride.period_s < _RUNNING_PERIOD_S and stride.length_m > _RUNNING_STRIDE_M
+        return Activity.RUNNING if quick or stride.speed_mps > _RUNNING_MPS else Activity.WALKING
+
+    def _take_window(self, window: MotionWindow) -> bool:
+        """Return whether it confirms a fall."""
+        lasted_s = (window.end_ns - self._window_ns) / NS_PER_S if self._seen else 0.0
+        self._seen = True
+        self._window_ns = window.end_ns
+        self._stirring_s = self._stirring_s + max(lasted_s, 0.0) if window.moving else 0.0
+        motionless_s = self._motion.motionless_s
+        self._posture.take_window(window, motionless_s)
+        struck = self._falls.confirm(window.end_ns, motionless_s)
+        collapsed = self._posture.collapsed and motionless_s >= _COLLAPSED_S
+        if not (struck or collapsed):
+            self._fall_told = self._fall_told and not window.moving
+            return False
+        told, self._fall_told = self._fall_told, True
+        return not told
+
     def _is_striding(self, t_ns: int) -> bool:
-        return bool(self._strides) and abs(t_ns - self._strides[-1][0]) <= _WALKS_FOR_NS
-
-    def _learn_posture(self, window: MotionWindow) -> None:
-        """While the wearer walks, the foot's mean tilt is that of standing."""
-        self._resting_force_mps2 = None if window.moving else window.force_mps2
-        standing = self._standing_force_mps2
-        if standing is None:
-            if not window.moving:
-                self._standing_force_mps2 = window.force_mps2
-        elif window.moving and self._is_striding(window.end_ns):
-            self._standing_force_mps2 = standing + _STANCE_SHARE * (window.force_mps2 - standing)
-
-    def _has_collapsed(self, t_ns: int) -> bool:
-        """From walking to lying without motion, faster than anyone lies down: True once."""
-        if not self._is_lying():
-            self._collapse_told = False
+        if not self._strides or self._motion.motionless_s >= _AT_REST_S:
             return False
-        if self._collapse_told or not self._strides:
-            return False
-        self._collapse_told = True
-        took_ns = t_ns - self._strides[-1][0] - round(self._motion.motionless_s * NS_PER_S)
-        return took_ns <= _COLLAPSE_NS
-
-    def _is_lying(self) -> bool:
-        resting, standing = self._resting_force_mps2, self._standing_force_mps2
-        return (
-            resting is not None
-            and standing is not None
-            and self._motion.motionless_s >= _LYING_AFTER_S
-            and cosine(resting, standing) < _LYING_COS
-        )
+        return abs(t_ns - self._strides[-1].end_ns) <= _GOES_ON_NS

@@ -15,7 +15,7 @@ import numpy as np
 from edge.samples import Floats, ImuBatch
 from shared.clock import NS_PER_S
 
-_WINDOW_NS = NS_PER_S // 2
+WINDOW_NS = NS_PER_S // 2
 _ENOUGH_SAMPLES = 5
 
 # Spread within a window, root of the summed variances of three axes: several times what
@@ -32,6 +32,7 @@ class MotionWindow:
     end_ns: int
     moving: bool
     force_mps2: Floats  # (3,) mean specific force, sensor axes
+    peak_rate_radps: float
 
 
 class BodyMotion:
@@ -51,7 +52,7 @@ class BodyMotion:
     def push(self, imu: ImuBatch) -> list[MotionWindow]:
         """Take samples; return the windows that they complete."""
         samples = np.hstack((imu.accel_mps2, imu.gyro_radps))
-        cells = imu.t_ns // _WINDOW_NS
+        cells = imu.t_ns // WINDOW_NS
         starts = [0, *(np.flatnonzero(np.diff(cells)) + 1).tolist(), len(cells)]
         windows = []
         for start, stop in pairwise(starts):
@@ -82,8 +83,9 @@ class BodyMotion:
             or self._has_turned(force_mps2)
         )
         self._force_before_mps2 = force_mps2
-        self._still_ns = 0 if moving else self._still_ns + _WINDOW_NS
-        return MotionWindow((self._cell + 1) * _WINDOW_NS, moving, force_mps2)
+        self._still_ns = 0 if moving else self._still_ns + WINDOW_NS
+        peak_radps = float(np.linalg.norm(samples[:, 3:], axis=1).max())
+        return MotionWindow((self._cell + 1) * WINDOW_NS, moving, force_mps2, peak_radps)
 
     def _has_turned(self, force_mps2: Floats) -> bool:
         before = self._force_before_mps2

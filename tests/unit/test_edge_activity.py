@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from edge.activity import ActivityMonitor
+from edge.activity_scoring import ActivityScore, recorded_label, score_activity
 from edge.body_motion import BodyMotion
 from edge.falls import FallDetector
 from edge.samples import ImuBatch
+from edge.simulation import open_simulation
 from edge.sources import open_source
-from edge.sources.recording import RecordingSource
+from edge.sources.recording import RecordedTruth, RecordingSource
+from edge.strides import StrideCutter
 from edge.tracker import make_tracker
 from edge.tracker.rows import empty_rows
 from shared.clock import NS_PER_S
@@ -85,6 +91,82 @@ def test_a_blow_without_a_drop_is_no_fall():
     assert not falls.falling
 
 
+def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity]:
+    """What the unit says from ``after_s`` into each time in which the wearer does ``kind``."""
+    score = ActivityScore()
+
+    def label(t_s: float) -> Activity | None:
+        done = simulation.activity(t_s)
+        same = simulation.activity(max(t_s - after_s, 0.0)) is done
+        return kind if done is kind and same else None
+
+    score_activity(simulation.batches(), simulation.description, label, 600.0, score)
+    said = Counter[Activity]()
+    for (_, answer), count in score.every.counts.items():
+        said[answer] += count
+    return said
+
+
+@pytest.mark.parametrize(
+    ("scenario", "kind", "share"),
+    [
+        ("gaits?seed=31", Activity.RUNNING, 0.95),
+        ("gaits?seed=32", Activity.CRAWLING, 0.85),
+        ("gaits?seed=32", Activity.LYING, 0.7),  # the rest is getting up
+        ("stairs?seed=33", Activity.STAIRS_UP, 0.95),
+        ("stairs?seed=34", Activity.STAIRS_DOWN, 0.95),
+        ("stairs?seed=34", Activity.WALKING, 0.95),
+    ],
+)
+def test_a_simulated_wearer_is_seen_at_what_he_does(scenario, kind, share):
+    said = during(open_simulation(scenario), kind)
+    assert said[kind] > share * said.total() > 0
+
+
+def test_lying_down_and_kneeling_are_no_falls():
+    _, falls = activities(open_source("simulated:gaits?seed=35"), 600.0)
+    assert falls == 0
+
+
+def footsteps(rows: list[tuple[float, float, float, bool]]):
+    """Rows of a tracker at given times: (time, north, height, standing)."""
+    n = len(rows)
+    t_s, north_m, height_m, standing = (np.array(column) for column in zip(*rows, strict=True))
+    zero = np.zeros(n)
+    return replace(
+        empty_rows(),
+        t_ns=np.rint(t_s * NS_PER_S).astype(np.int64),
+        position_n_m=np.column_stack((north_m, zero, -height_m)),
+        quaternion_nb=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
+        stationary=standing.astype(bool),
+        steps=np.zeros(n, np.int64),
+    )
+
+
+def test_a_stride_goes_from_lifting_the_foot_to_the_next_footfall():
+    rows = footsteps([(0.0, 0, 0, True), (0.5, 0, 0, True), (0.8, 0.7, 0.2, False)])
+    cutter = StrideCutter()
+    assert cutter.push(rows) == []
+    (stride,) = cutter.push(footsteps([(1.1, 1.2, 0.1, True)]))
+    assert (stride.length_m, stride.rise_m) == pytest.approx((1.2, 0.1))
+    assert stride.period_s == pytest.approx(0.6 / 0.75)
+    assert stride.up_b.tolist() == [0.0, 0.0, -1.0]
+
+
+def test_a_footfall_in_mid_swing_is_none():
+    rows = footsteps(
+        [
+            (0.0, 0, 0, True),
+            (0.2, 0.3, 0.1, False),
+            (0.3, 0.5, 0.2, True),
+            (0.32, 0.6, 0.2, False),
+            (0.8, 1.4, 0.0, True),
+        ]
+    )
+    (stride,) = StrideCutter().push(rows)
+    assert (stride.length_m, stride.rise_m) == pytest.approx((1.4, 0.0))
+
+
 def activities(source, until_s: float) -> tuple[list[Activity], int]:
     """Each second's activity, and the falls told."""
     tracker = make_tracker("eskf", source.description)
@@ -123,3 +205,18 @@ def test_recorded_walks_hold_walking_and_no_falls(walks):
         assert Activity.LYING not in each, folder
         walked = sum(each.count(kind) for kind in (Activity.WALKING, Activity.RUNNING))
         assert walked > 0.5 * len(each), folder
+
+
+@pytest.mark.parametrize(
+    ("speed_mps", "kind"),
+    [(0.0, Activity.STILL), (1.3, Activity.WALKING), (2.0, None), (3.0, Activity.RUNNING)],
+)
+def test_a_reference_labels_by_its_speed_or_not_at_all(speed_mps, kind):
+    t_s = np.arange(0.0, 10.0, 0.05)
+    truth = RecordedTruth(t_s, np.column_stack((speed_mps * t_s, 0.0 * t_s, 0.0 * t_s)))
+    label = recorded_label(truth, sampled=True)
+    assert label(5.0) is kind
+    assert label(0.5) is None
+    strides = RecordedTruth(t_s[::20], truth.position_n_m[::20])
+    expected = None if kind is Activity.STILL else kind
+    assert recorded_label(strides, sampled=False)(5.0) is expected

@@ -57,7 +57,7 @@ class StraightAhead:
             quaternion_nb=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
             position_cov_m2=np.tile(np.diag([0.04, 0.01, 0.09]), (n, 1, 1)),
             heading_std_rad=np.full(n, 0.1),
-            stationary=np.zeros(n, bool),
+            stationary=t_s % 1.0 < 0.4,
             distance_m=t_s,
             steps=np.floor(t_s).astype(np.int64),
             quality=np.full(n, Quality.DEGRADED, np.uint8),
