@@ -82,7 +82,6 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         bus = ZenohBus(station_endpoint(folder.path, config.bus.listen))
         closing.callback(bus.close)
         hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
-        closing.callback(hearing.close)
         backfill = Backfill(bus, feed.deliver, clock)
 
         checkpoints = Checkpoints(folder.checkpoints)
@@ -104,6 +103,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
             ),
         )
         closing.callback(drive.stop)
+        closing.callback(hearing.close)  # first: what still comes is stepped before the end
         backfill.start()
         closing.callback(backfill.close)
         closing.callback(feed.close)

@@ -33,6 +33,24 @@ class Window(msgspec.Struct, frozen=True):
     until_ns: int
 
 
+class TrackSample(msgspec.Struct, frozen=True):
+    """One point of a track, NED metres about the site anchor; a long track has many."""
+
+    t_ns: int
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    heading_rad: float
+    floor: int | None
+    quality: str
+
+
+_TRACK_COLUMNS = tuple(getattr(TrackPoint, name) for name in TrackSample.__struct_fields__)
+
+
 class Records:
     """Thread-safe; every method is one transaction."""
 
@@ -63,24 +81,19 @@ class Records:
                 .order_by(TrackPoint.unit_id)
             ).all()
 
-    def track(self, unit_id: str, window: Window, every_s: int = 1) -> Sequence[TrackPoint]:
+    def track(self, unit_id: str, window: Window, every_s: int = 1) -> list[TrackSample]:
         """By time; of every ``every_s`` seconds the first point."""
-        slot = TrackPoint.t_s // every_s
-        firsts = (
-            select(func.min(TrackPoint.t_s))
-            .where(
-                TrackPoint.unit_id == unit_id,
-                TrackPoint.t_ns >= window.from_ns,
-                TrackPoint.t_ns < window.until_ns,
-            )
-            .group_by(slot)
+        inside = (
+            TrackPoint.unit_id == unit_id,
+            TrackPoint.t_ns >= window.from_ns,
+            TrackPoint.t_ns < window.until_ns,
         )
+        wanted = select(*_TRACK_COLUMNS).where(*inside).order_by(TrackPoint.t_s)
+        if every_s > 1:
+            first = select(func.min(TrackPoint.t_s)).where(*inside)
+            wanted = wanted.where(TrackPoint.t_s.in_(first.group_by(TrackPoint.t_s // every_s)))
         with self._store.read() as session:
-            return session.scalars(
-                select(TrackPoint)
-                .where(TrackPoint.unit_id == unit_id, TrackPoint.t_s.in_(firsts))
-                .order_by(TrackPoint.t_s)
-            ).all()
+            return [TrackSample(*row) for row in session.execute(wanted)]
 
     def alarms(self, window: Window) -> Sequence[Alarm]:
         """Those raised in the window, oldest first."""

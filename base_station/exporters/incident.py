@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from base_station.db.models import Assignment, Incident, TrackPoint
-from base_station.db.records import FOREVER_NS, Records, Window
+from base_station.db.models import Assignment, Incident
+from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.exporters.port import ExportPoint, IncidentTracks, WornTrack
 from shared.geo import Anchor
@@ -37,7 +37,7 @@ def incident_tracks(records: Records, roster: Roster, incident: Incident) -> Inc
 
 
 def _split(
-    unit_id: str, points: Sequence[TrackPoint], assignments: Sequence[Assignment]
+    unit_id: str, points: Sequence[TrackSample], assignments: Sequence[Assignment]
 ) -> Iterable[WornTrack]:
     """Consecutive points with the same wearer make one track."""
     run: list[ExportPoint] = []
@@ -65,6 +65,6 @@ def _worn(unit_id: str, wearer: Assignment | None, run: Sequence[ExportPoint]) -
     return WornTrack(unit_id, name, crew, tuple(run))
 
 
-def _export_point(point: TrackPoint) -> ExportPoint:
+def _export_point(point: TrackSample) -> ExportPoint:
     names = ExportPoint.__struct_fields__
     return ExportPoint(**{name: getattr(point, name) for name in names})
