@@ -21,6 +21,7 @@ from base_station.api.wire import Snapshot
 from base_station.backfill import Held, Report
 from base_station.checkpoints import Checkpoints
 from base_station.events import Output, Refused, StationEvent, event_of
+from base_station.foxglove_topics import FoxgloveTopics
 from base_station.picture import Picture
 from base_station.pipeline import StationPipeline
 from base_station.playback import is_decision
@@ -108,6 +109,7 @@ class StationDrive:
         self._stamper = Stamper(STATION_ID, surroundings.boot_id, surroundings.clock)
         self._picture = Picture(pipeline, surroundings.live, surroundings.photo_urls)
         self._projector = Projector()
+        self._foxglove = FoxgloveTopics()
         self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
         self._asked: deque[Callable[[Snapshot], None]] = deque()
         self._stopping = threading.Event()
@@ -268,9 +270,11 @@ class StationDrive:
 
     def _keep_output(self, output: FusedPosition | AlarmChange) -> None:
         self._urgent = self._urgent or isinstance(output, AlarmChange)
-        self._around.log.write(
-            output.header.t_utc_ns, channel_of(output).key(STATION_ID), encode(output)
-        )
+        t_ns = output.header.t_utc_ns
+        self._around.log.write(t_ns, channel_of(output).key(STATION_ID), encode(output))
+        shown = self._foxglove.of(output, self._pipeline.state.anchor)
+        if shown is not None:
+            self._around.log.write(t_ns, *shown)
 
     def _settle(self) -> None:
         """What is urgent reaches the disk before anybody hears of it."""

@@ -15,7 +15,7 @@ from mcap.writer import CompressionType, Writer
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
-from shared.mcap_log.schemas import descriptor_set, sender_time_and_sequence, wire_type_of
+from shared.mcap_log.schemas import DERIVED, descriptor_set, sender_time_and_sequence, wire_type_of
 
 _PROFILE = "muster"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
@@ -79,10 +79,10 @@ class Segment:
         self._writer.add_message(topic, t_ns, payload, utc_ns or t_ns, sequence)
         if self.file.tell() != self._chunk_start:
             self._count_chunk()
-        if self.messages == 0:
-            self.start_ns = t_ns
+        self.start_ns = self.start_ns or t_ns
         self.end_ns = max(self.end_ns, t_ns)
-        self.messages += 1
+        if not key.startswith(DERIVED):
+            self.messages += 1
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""

@@ -148,6 +148,9 @@ def test_topics_made_for_foxglove_are_there_for_others_only(tmp_path: Path) -> N
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"ours")
     writer.write(T0_NS, location_topic("anna"), b"")
+    info = writer.current()
+    assert info is not None
+    assert info.messages == 1
     writer.close()
     assert on_disk(tmp_path) == [b"ours"]
     [path] = segment_paths(tmp_path)
