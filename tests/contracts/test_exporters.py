@@ -15,11 +15,13 @@ from base_station.exporters import EXPORTERS
 from base_station.exporters.csv_tracks import CSV
 from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
+from base_station.exporters.kml import KML
 from base_station.exporters.port import Exporter, ExportPoint, IncidentTracks, WornTrack
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import Anchor
 
+GX_NAMESPACE = "http://www.google.com/kml/ext/2.2"
 GPX_NAMESPACE = "http://www.topografix.com/GPX/1/1"
 T0_NS = 1_700_000_000 * NS_PER_S
 HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692'
@@ -111,6 +113,17 @@ def test_gpx_goes_north_with_the_wearer() -> None:
     assert [child.tag.rpartition("}")[2] for child in points[0]] == ["ele", "time"]
     assert points[0][0].text == "41.50"
     assert points[0][1].text == "2023-11-14T22:13:20.000Z"
+
+
+def test_kml_has_a_time_for_every_place() -> None:
+    tracks = list(ET.fromstring(KML.export(incident(ANCHOR))).iter(f"{{{GX_NAMESPACE}}}Track"))
+    assert len(tracks) == 2
+    tags = [child.tag.rpartition("}")[2] for child in tracks[0]]
+    assert tags == ["altitudeMode", *["when"] * 3, *["coord"] * 3]
+    assert tracks[0][1].text == "2023-11-14T22:13:20.000Z"
+    assert [float(part) for part in (tracks[0][4].text or "").split()] == pytest.approx(
+        [13.0, 52.0, 41.5], abs=1e-4
+    )
 
 
 def test_geojson_is_longitude_first() -> None:

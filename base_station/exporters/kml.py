@@ -1,0 +1,43 @@
+"""KML 2.2 with ``gx:Track``: a track that Google Earth and its like play by time."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from xml.etree import ElementTree as ET
+
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from shared.clock import NS_PER_S
+from shared.geo import Anchor
+
+_GX = "http://www.google.com/kml/ext/2.2"
+
+
+def export_kml(incident: IncidentTracks) -> bytes:
+    anchor = incident.anchor_or_refuse()
+    kml = ET.Element("kml", {"xmlns": "http://www.opengis.net/kml/2.2", "xmlns:gx": _GX})
+    document = ET.SubElement(kml, "Document")
+    ET.SubElement(document, "name").text = incident.name
+    for track in incident.tracks:
+        _add_track(document, track, anchor)
+    written: bytes = ET.tostring(kml, encoding="utf-8", xml_declaration=True)
+    return written
+
+
+def _add_track(document: ET.Element, worn: WornTrack, anchor: Anchor) -> None:
+    placemark = ET.SubElement(document, "Placemark")
+    ET.SubElement(placemark, "name").text = worn.title
+    if worn.crew:
+        ET.SubElement(placemark, "description").text = worn.crew
+    track = ET.SubElement(placemark, "gx:Track")
+    # Heights are those of the floors, not of the ground below them.
+    ET.SubElement(track, "altitudeMode").text = "absolute"
+    for point in worn.points:
+        at = datetime.fromtimestamp(point.t_ns / NS_PER_S, UTC)
+        ET.SubElement(track, "when").text = f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
+    for point in worn.points:
+        lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)
+        coord = f"{lon_deg:.8f} {lat_deg:.8f} {height_m:.2f}"
+        ET.SubElement(track, "gx:coord").text = coord
+
+
+KML = Exporter("kml", "kml", "application/vnd.google-earth.kml+xml", True, export_kml)

@@ -1,0 +1,68 @@
+"""The station's settings: what is refused, and what is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from base_station.config import StationConfig, host_and_port
+from shared.config import load_config
+from shared.errors import ConfigError
+
+
+def written(tmp_path: Path, toml: str) -> Path:
+    path = tmp_path / "station.toml"
+    path.write_text(toml)
+    return path
+
+
+def test_the_defaults_open_nothing_plain_to_the_network() -> None:
+    config = StationConfig()
+    assert config.plain_endpoints() == ()
+    config.refuse_plain()
+
+
+@pytest.mark.parametrize(
+    ("toml", "said"),
+    [
+        ("[http]\nlistne = '127.0.0.1:80'\n", "did you mean"),
+        ("[log]\nsegment_min = 15\n", "segment_s"),
+        ("[log]\nsegment_s = 0.1\n", "1.0"),
+        ("[http]\nlisten = '8080'\n", "HOST:PORT"),
+        ("[http]\nlisten = 'localhost:80800'\n", "HOST:PORT"),
+        ("[http]\ncertificate = 'a.pem'\n", "give both or neither"),
+    ],
+)
+def test_a_wrong_setting_is_named_with_the_right_one(tmp_path: Path, toml: str, said: str) -> None:
+    with pytest.raises(ConfigError) as error:
+        load_config(written(tmp_path, toml), StationConfig)
+    assert said in str(error.value)
+    assert "station.toml" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("bus", "http", "plain"),
+    [
+        ("tcp/127.0.0.1:7447", "127.0.0.1:8080", ()),
+        ("tcp/[::1]:7447", "localhost:8080", ()),
+        ("tls/0.0.0.0:7447", "[::]:8080", ("[::]:8080",)),
+        ("tcp/0.0.0.0:7447", "127.0.0.1:8080", ("tcp/0.0.0.0:7447",)),
+        ("tcp/station.local:7447", "10.0.0.1:80", ("tcp/station.local:7447", "10.0.0.1:80")),
+    ],
+)
+def test_plain_connections_from_elsewhere_need_a_word(
+    tmp_path: Path, bus: str, http: str, plain: tuple[str, ...]
+) -> None:
+    toml = f"[bus]\nlisten = ['{bus}']\n[http]\nlisten = '{http}'\n"
+    config = load_config(written(tmp_path, toml), StationConfig)
+    assert config.plain_endpoints() == plain
+    if plain:
+        with pytest.raises(ConfigError, match="--insecure"):
+            config.refuse_plain()
+    load_config(written(tmp_path, "insecure = true\n" + toml), StationConfig).refuse_plain()
+
+
+def test_an_address_is_taken_apart() -> None:
+    assert host_and_port("[::1]:80") == ("::1", 80)
+    assert host_and_port("station.local:8080") == ("station.local", 8080)
