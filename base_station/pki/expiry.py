@@ -54,7 +54,7 @@ def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tup
 
 def _expiry_sentence(entry: Entry, now: datetime) -> str:
     if entry.holder is Holder.STATION:
-        who, command = "this station", "muster pki renew-station"
+        who, command = "this station", "muster pki renew-station, then start the station again"
     elif entry.holder is Holder.OPERATOR:
         who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
     else:

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from cryptography import x509
 
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
@@ -131,34 +132,36 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     unit, other = site.unit(anna), site.unit(bert)
-    overheard: list[str] = []
+    overheard: list[tuple[str, bytes]] = []
     commanded: list[bytes] = []
     for name in ("bert", EVERY_UNIT):
         other.subscribe(COMMAND.key(name), lambda _, p: commanded.append(p))
     journal = other.serve("muster/v1/bert/journal/**", lambda *_: [b"entry"])
     for expression in ("muster/v1/**", "muster/v1/bert/**", "muster/v1/*/command/**"):
-        unit.subscribe(expression, lambda key, _: overheard.append(key))
+        unit.subscribe(expression, lambda key, payload: overheard.append((key, payload)))
     token = unit.declare_alive(alive_key("bert"))
     publish_until_heard(site, unit, "anna")
     publish_until_heard(site, other, "bert")
     until(lambda: site.station.is_heard(COMMAND.key("bert")), "bert's interest")
-    overheard.clear()
-    for key in (
+    forged = (
         POSITION.key("bert"),
         COMMAND.key("bert"),
         COMMAND.key("anna"),
         COMMAND.key(EVERY_UNIT),
         "muster/v1/station/tick",
-    ):
+    )
+    for key in forged:
         unit.publish(key, b"forged", Qos.ALERT)
     site.station.publish(COMMAND.key("bert"), b"true", Qos.ALERT)
     until(lambda: commanded == [b"true"], "the true command")
-    own = set(overheard)  # a session hears what it publishes itself
     publish_until_heard(site, other, "bert")
     assert b"forged" not in {payload for _, payload in site.heard}
     assert commanded == [b"true"]
     assert alive_key("bert") not in site.alive
-    assert set(overheard) == own
+    # A session hears what it publishes itself; the rest would be the other's.
+    assert set(overheard) - {(POSITION.key("anna"), b"here")} == {
+        (key, b"forged") for key in forged
+    }
     assert list(unit.query("muster/v1/bert/journal/range", b"", QUIET_S)) == []
     journal.close()
     unit.serve("muster/v1/bert/journal/**", lambda *_: [b"forged"])
@@ -238,6 +241,19 @@ def test_a_certificate_that_has_ended_is_refused(site: Site, tmp_path: Path) -> 
     assert_never_linked(site, UnitEndpoint(expired.connect, expired.identity))
 
 
+def test_a_link_ends_with_its_certificate(site: Site) -> None:
+    enrolment = site.pki.enroll("anna", valid=timedelta(seconds=4))
+    site.open()
+    unit = site.unit(enrolment)
+    publish_until_heard(site, unit, "anna")
+    until(lambda: datetime.now(UTC) > ends(enrolment), "the end of the certificate")
+    until(lambda: not unit.is_linked(), "the end of the link")
+    site.heard.clear()
+    unit.publish(POSITION.key("anna"), b"late", Qos.LIVE)
+    time.sleep(QUIET_S)
+    assert site.heard == []
+
+
 def test_a_certificate_of_another_authority_is_refused(site: Site, tmp_path: Path) -> None:
     elsewhere = PkiFolder(tmp_path / "elsewhere")
     elsewhere.create("Test", hosts=[], connect=[f"tls/{site.address}"])
@@ -296,6 +312,11 @@ def test_a_station_whose_router_is_away_says_where_it_looked(site: Site) -> None
     endpoint = ClientEndpoint((f"tls/{site.address}",), site.pki.station_identity(), patience_s=0.3)
     with pytest.raises(BusError, match=site.address):
         ZenohBus(endpoint)
+
+
+def ends(enrolment: Enrolment) -> datetime:
+    certificate = x509.load_pem_x509_certificate(enrolment.identity.certificate)
+    return certificate.not_valid_after_utc
 
 
 def assert_powerless(site: Site, enrolment: Enrolment) -> None:
