@@ -131,7 +131,7 @@ def test_what_is_no_black_box_is_explained(tmp_path):
         BlackBoxSource(tmp_path / "nothing")
     with pytest.raises(RecordingError, match="holds no segments"):
         BlackBoxSource(tmp_path)
-    (tmp_path / "000001-x.mcap").write_bytes(b"no mcap at all")
+    (tmp_path / "000001-20260301T100000Z.mcap").write_bytes(b"no mcap at all")
     with pytest.raises(RecordingError, match="is no black box"):
         BlackBoxSource(tmp_path)
     record(tmp_path / "box")
