@@ -1,0 +1,178 @@
+"""Where a path of unknown heading may lead: one hypothesis a direction, all the way round.
+
+Given the heading, a path and fixes with a slow error are a linear problem in
+``[north, east, b_n, b_e]``.  Every hypothesis has the same covariance, because neither the
+path's noise nor a fix's depends on the direction; so there is one gain for all, and only means
+and weights differ (a Rao-Blackwellised grid: Doucet et al. 2000, section 3).
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+HYPOTHESES = 72
+SPACING_RAD = 2.0 * math.pi / HYPOTHESES
+_PLAUSIBLE = 1e-3  # of the best hypothesis' weight
+
+
+class Sighting(msgspec.Struct, frozen=True):
+    """A fix as an observation of the present state."""
+
+    north_m: float
+    east_m: float
+    since_north_m: float  # own path walked since it was valid
+    since_east_m: float
+    slow_m: float  # weight of the fixes' slow error, which has unit variance
+    white_m2: float  # variance of the rest, each axis
+
+
+class SavedBank(msgspec.Struct, frozen=True):
+    means: list[list[float]]
+    covariance: list[list[float]]
+    turns_rad: list[float]
+    weights: list[float]
+
+
+class HeadingBank:
+    """Hypotheses of the heading correction, each with its own place."""
+
+    def __init__(
+        self, means: Floats, covariance: Floats, turns_rad: Floats, weights: Floats
+    ) -> None:
+        self._means = means  # (n, 4) north, east, and the fixes' slow error
+        self._covariance = covariance  # (4, 4), of every hypothesis
+        self._turns_rad = turns_rad  # (n,)
+        self._cosine, self._sine = np.cos(turns_rad), np.sin(turns_rad)
+        self._weights = weights  # (n,), their sum is 1
+
+    @staticmethod
+    def about(
+        mean: Floats, covariance: Floats, heading_rad: float, heading_std_rad: float
+    ) -> HeadingBank:
+        """``mean`` (4,) and ``covariance`` (4, 4) for every heading, weighted by a normal
+        distribution about one; a standard deviation of pi and above: any heading is as likely.
+        """
+        offsets_rad = SPACING_RAD * np.arange(-HYPOTHESES // 2, HYPOTHESES // 2, dtype=np.float64)
+        flat = heading_std_rad >= math.pi
+        weights = np.exp(-0.5 * (offsets_rad / (math.inf if flat else heading_std_rad)) ** 2)
+        weights /= weights.sum()
+        means = np.tile(mean, (HYPOTHESES, 1))
+        return HeadingBank(means, covariance.copy(), heading_rad + offsets_rad, weights)
+
+    @staticmethod
+    def restore(saved: SavedBank) -> HeadingBank:
+        return HeadingBank(
+            np.array(saved.means),
+            np.array(saved.covariance),
+            np.array(saved.turns_rad),
+            np.array(saved.weights),
+        )
+
+    def save(self) -> SavedBank:
+        return SavedBank(
+            self._means.tolist(),
+            self._covariance.tolist(),
+            self._turns_rad.tolist(),
+            self._weights.tolist(),
+        )
+
+    def walk(self, north_m: float, east_m: float, place_var_m2: float, turn_var: float) -> None:
+        """The own path went on by this much; its heading may have wandered."""
+        self._means[:, :2] += self._turned(north_m, east_m)
+        self.spread(place_var_m2)
+        share = 0.5 * min(turn_var / SPACING_RAD**2, 0.5)
+        around = np.roll(self._weights, 1) + np.roll(self._weights, -1)
+        self._weights = (1.0 - 2.0 * share) * self._weights + share * around
+
+    def spread(self, variance_m2: float) -> None:
+        self._covariance[0, 0] += variance_m2
+        self._covariance[1, 1] += variance_m2
+
+    def fade(self, keep: float) -> None:
+        """Time went by for the fixes' slow error, of unit variance."""
+        self._means[:, 2:] *= keep
+        self._covariance[2:, :] *= keep
+        self._covariance[:, 2:] *= keep
+        self._covariance[[2, 3], [2, 3]] += 1.0 - keep**2
+
+    def forget_place(self, variance_m2: float) -> None:
+        self._covariance[:2, :] = 0.0
+        self._covariance[:, :2] = 0.0
+        self.spread(variance_m2)
+
+    def distance2(self, sighting: Sighting) -> float:
+        """Squared distance to the nearest plausible hypothesis, chi-square of two degrees."""
+        innovations, inverse = self._innovations(sighting)
+        distances2 = _squares(innovations, inverse)
+        plausible = self._weights > _PLAUSIBLE * self._weights.max()
+        return float(distances2[plausible].min())
+
+    def update(self, sighting: Sighting) -> None:
+        innovations, inverse = self._innovations(sighting)
+        distances2 = _squares(innovations, inverse)
+        observe = _observe(sighting)
+        gain = self._covariance @ observe.T @ inverse
+        self._means += innovations @ gain.T
+        keep = np.eye(4) - gain @ observe
+        noise = sighting.white_m2 * gain @ gain.T
+        self._covariance = keep @ self._covariance @ keep.T + noise
+        weights = self._weights * np.exp(-0.5 * (distances2 - distances2.min()))
+        self._weights = weights / weights.sum()
+
+    def _innovations(self, sighting: Sighting) -> tuple[Floats, Floats]:
+        """By hypothesis (n, 2), and the inverse of their covariance (2, 2)."""
+        observe = _observe(sighting)
+        spread = observe @ self._covariance @ observe.T + sighting.white_m2 * np.eye(2)
+        innovations = self._turned(sighting.since_north_m, sighting.since_east_m)
+        innovations += (sighting.north_m, sighting.east_m)
+        innovations -= self._means @ observe.T
+        return innovations, np.linalg.inv(spread)
+
+    def reframe(self, turn_rad: float, turn: Floats, shift_m: Floats) -> None:
+        """``turn`` (2, 2) is the rotation by ``turn_rad``."""
+        self._turns_rad = self._turns_rad + turn_rad
+        self._cosine, self._sine = np.cos(self._turns_rad), np.sin(self._turns_rad)
+        self._means[:, :2] = self._means[:, :2] @ turn.T + shift_m
+        self._means[:, 2:] = self._means[:, 2:] @ turn.T
+        both = np.kron(np.eye(2), turn)
+        self._covariance = both @ self._covariance @ both.T
+
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean (6,) and covariance (6, 6) of ``[north, east, cos, sin, b_n, b_e]``."""
+        weights, cosine, sine = self._weights, self._cosine, self._sine
+        states = np.column_stack([self._means[:, :2], cosine, sine, self._means[:, 2:]])
+        mean: Floats = weights @ states
+        apart = states - mean
+        covariance = np.zeros((6, 6))
+        covariance += (apart * weights[:, None]).T @ apart
+        own = [0, 1, 4, 5]
+        covariance[np.ix_(own, own)] += self._covariance
+        between = SPACING_RAD**2 / 12.0  # a hypothesis stands for the headings next to it
+        covariance[2, 2] += between * float(weights @ sine**2)
+        covariance[3, 3] += between * float(weights @ cosine**2)
+        crossed = between * float(weights @ (sine * cosine))
+        covariance[2, 3] -= crossed
+        covariance[3, 2] -= crossed
+        return mean, covariance
+
+    def _turned(self, north_m: float, east_m: float) -> Floats:
+        """The own-frame vector in the incident frame, by every hypothesis (n, 2)."""
+        turned = np.empty((len(self._cosine), 2))
+        turned[:, 0] = self._cosine * north_m - self._sine * east_m
+        turned[:, 1] = self._sine * north_m + self._cosine * east_m
+        return turned
+
+
+def _observe(sighting: Sighting) -> Floats:
+    return np.hstack([np.eye(2), sighting.slow_m * np.eye(2)])
+
+
+def _squares(innovations: Floats, inverse: Floats) -> Floats:
+    squares: Floats = ((innovations @ inverse) * innovations).sum(axis=1)
+    return squares

@@ -1,0 +1,226 @@
+"""North and east of one unit: a linear filter in turn and scale, and while the heading is open a
+bank of headings all the way round.
+
+The unit's path is known up to a turn, a scale and a shift.  With the complex number
+``c + i s = k exp(i psi)`` (scale k, heading correction psi) an increment ``(dn, de)`` of the
+unit's own path moves the wearer by
+
+    north += c dn - s de        east += s dn + c de
+
+which is *linear* in the state ``[north, east, c, s, b_n, b_e]``.  ``b`` is the slowly wandering
+part of the fixes' error in units of their stated standard deviation (first-order Gauss-Markov),
+so that a minute of fixes is not believed to average it away.  A fix that comes late is an
+observation of the present state less the path walked since.
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from numpy.typing import NDArray
+
+from base_station.fusion.heading_bank import HeadingBank, SavedBank, Sighting
+
+Floats = NDArray[np.float64]
+
+_UNKNOWN_VAR_M2 = 1e8
+_PLACE_AND_SLOW = [0, 1, 4, 5]
+
+
+class SavedHorizontal(msgspec.Struct, frozen=True):
+    x: list[float]
+    covariance: list[list[float]]
+    bank: SavedBank | None
+
+
+class HorizontalFilter:
+    """Begins at the origin with the own frame's heading taken for the incident frame's."""
+
+    def __init__(self, scale_std: float, linear_rad: float) -> None:
+        """``linear_rad``: heading standard deviation from which one hypothesis will do."""
+        self._scale_std = scale_std
+        self._linear_rad = linear_rad
+        self._filter = KalmanFilter(dim_x=6, dim_z=2)
+        self._filter.x = np.array([[0.0], [0.0], [1.0], [0.0], [0.0], [0.0]])
+        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0])
+        self._bank: HeadingBank | None = None  # where it is, the filter mirrors its moments
+        self._stale = False  # and is behind it
+
+    def save(self) -> SavedHorizontal:
+        bank = None if self._bank is None else self._bank.save()
+        now = self._current()
+        return SavedHorizontal(now.x.ravel().tolist(), now.P.tolist(), bank)
+
+    def load(self, saved: SavedHorizontal) -> None:
+        self._filter.x = np.array(saved.x).reshape(6, 1)
+        self._filter.P = np.array(saved.covariance)
+        self._bank = None if saved.bank is None else HeadingBank.restore(saved.bank)
+
+    @property
+    def place_m(self) -> Floats:
+        """North and east (2,)."""
+        place: Floats = self._current().x[:2, 0]
+        return place
+
+    @property
+    def place_var_m2(self) -> Floats:
+        """Their covariance (2, 2)."""
+        covariance: Floats = self._current().P[:2, :2]
+        return covariance
+
+    def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
+        """Place and covariance before this much of own path was walked, as it looks now."""
+        back = np.array(
+            [[1.0, 0.0, -north_m, east_m, 0.0, 0.0], [0.0, 1.0, -east_m, -north_m, 0.0, 0.0]]
+        )
+        now = self._current()
+        return (back @ now.x)[:, 0], back @ now.P @ back.T
+
+    def turn(self) -> tuple[float, float]:
+        """Heading correction and its standard deviation, pi where it is not known."""
+        now = self._current()
+        c, s = float(now.x[2, 0]), float(now.x[3, 0])
+        scale2 = c * c + s * s
+        if scale2 < 0.05:
+            return 0.0, math.pi
+        across = np.array([-s, c]) / scale2
+        variance = float(across @ now.P[2:4, 2:4] @ across)
+        return math.atan2(s, c), min(math.sqrt(max(variance, 0.0)), math.pi)
+
+    def begin(
+        self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float
+    ) -> None:
+        """The own frame's origin and the heading of its north."""
+        self._current()
+        self._bank = None
+        self._filter.x[:2, 0] = place_m
+        self._reset_place_var(std_m**2)
+        if heading_std_rad > self._linear_rad:
+            self.forget_heading(heading_rad, heading_std_rad)
+            return
+        along = np.array([math.cos(heading_rad), math.sin(heading_rad)])
+        across = np.array([-along[1], along[0]])
+        self._filter.x[2:4, 0] = along
+        self._reset_heading_var(
+            self._scale_std**2 * np.outer(along, along)
+            + heading_std_rad**2 * np.outer(across, across)
+        )
+
+    def forget_heading(self, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> None:
+        own = np.ix_(_PLACE_AND_SLOW, _PLACE_AND_SLOW)
+        now = self._current()
+        self._bank = HeadingBank.about(
+            now.x[_PLACE_AND_SLOW, 0], now.P[own], heading_rad, heading_std_rad
+        )
+        self._stale = True
+
+    def forget_place(self) -> None:
+        if self._bank is not None:
+            self._bank.forget_place(_UNKNOWN_VAR_M2)
+            self._stale = True
+        else:
+            self._reset_place_var(_UNKNOWN_VAR_M2)
+
+    def walk(self, north_m: float, east_m: float, place_var_m2: float, turn_var: float) -> None:
+        """The own path went on by this much."""
+        if self._bank is not None:
+            self._bank.walk(north_m, east_m, place_var_m2, turn_var)
+            self._stale = True
+            return
+        move = np.eye(6)
+        move[0, 2], move[0, 3] = north_m, -east_m
+        move[1, 2], move[1, 3] = east_m, north_m
+        noise = np.zeros((6, 6))
+        noise[0, 0] = noise[1, 1] = place_var_m2
+        c, s = float(self._filter.x[2, 0]), float(self._filter.x[3, 0])
+        noise[2, 2], noise[3, 3] = turn_var * s * s, turn_var * c * c
+        noise[2, 3] = noise[3, 2] = -turn_var * c * s
+        self._filter.predict(F=move, Q=noise)
+
+    def spread(self, variance_m2: float) -> None:
+        """The wearer may have got away from the path by so much."""
+        if self._bank is not None:
+            self._bank.spread(variance_m2)
+            self._stale = True
+        else:
+            self._filter.P[0, 0] += variance_m2
+            self._filter.P[1, 1] += variance_m2
+
+    def fade(self, keep: float) -> None:
+        """Time went by for the fixes' slow error."""
+        if self._bank is not None:
+            self._bank.fade(keep)
+            self._stale = True
+            return
+        self._filter.x[4:] *= keep
+        self._filter.P[4:, :] *= keep
+        self._filter.P[:, 4:] *= keep
+        self._filter.P[[4, 5], [4, 5]] += 1.0 - keep**2
+
+    def distance2(self, sighting: Sighting) -> float:
+        """How far a fix lies from what is believed, chi-square of two degrees of freedom."""
+        if self._bank is not None:
+            return self._bank.distance2(sighting)
+        place, observe, noise = _linear(sighting)
+        innovation = place - observe @ self._filter.x
+        spread = observe @ self._filter.P @ observe.T + noise
+        return float((innovation.T @ np.linalg.solve(spread, innovation))[0, 0])
+
+    def update(self, sighting: Sighting) -> None:
+        if self._bank is None:
+            place, observe, noise = _linear(sighting)
+            self._filter.update(place, R=noise, H=observe)
+            return
+        self._bank.update(sighting)
+        self._stale = True
+        if self.turn()[1] < self._linear_rad:
+            self._bank = None
+            along = self._filter.x[2:4, 0] / np.linalg.norm(self._filter.x[2:4, 0])
+            self._filter.P[2:4, 2:4] += self._scale_std**2 * np.outer(along, along)
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
+        cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        if self._bank is not None:
+            self._bank.reframe(turn_rad, turn, np.array([north_m, east_m]))
+            self._stale = True
+            return
+        whole = np.kron(np.eye(3), turn)
+        self._filter.x = whole @ self._filter.x
+        self._filter.x[:2, 0] += north_m, east_m
+        self._filter.P = whole @ self._filter.P @ whole.T
+
+    def _current(self) -> KalmanFilter:
+        """The filter, abreast of the bank."""
+        if self._stale and self._bank is not None:
+            mean, self._filter.P = self._bank.moments()
+            self._filter.x = mean.reshape(6, 1)
+        self._stale = False
+        return self._filter
+
+    def _reset_place_var(self, variance_m2: float) -> None:
+        covariance = self._filter.P
+        covariance[:2, :] = 0.0
+        covariance[:, :2] = 0.0
+        covariance[0, 0] = covariance[1, 1] = variance_m2
+
+    def _reset_heading_var(self, covariance: Floats) -> None:
+        self._filter.P[2:4, :] = 0.0
+        self._filter.P[:, 2:4] = 0.0
+        self._filter.P[2:4, 2:4] = covariance
+
+
+def _linear(sighting: Sighting) -> tuple[Floats, Floats, Floats]:
+    """Measurement (2, 1), its matrix (2, 6) and its covariance (2, 2)."""
+    north_m, east_m, slow_m = sighting.since_north_m, sighting.since_east_m, sighting.slow_m
+    observe = np.array(
+        [
+            [1.0, 0.0, -north_m, east_m, slow_m, 0.0],
+            [0.0, 1.0, -east_m, -north_m, 0.0, slow_m],
+        ]
+    )
+    place = np.array([[sighting.north_m], [sighting.east_m]])
+    return place, observe, sighting.white_m2 * np.eye(2)
