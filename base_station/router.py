@@ -95,13 +95,18 @@ def run_router(data: Path, listen: tuple[str, ...]) -> int:
         signal.signal(number, lambda *_: stop.set())
     Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
     try:
-        with closing(Router(data, listen)) as router:
-            print(READY, flush=True)
-            while not stop.wait(_LOOK_EVERY_S):
-                router.refresh()
+        router = Router(data, listen)
     except MusterError as error:
         print(f"{FAILED}{error}", flush=True)
         return 2
+    print(READY, flush=True)
+    with closing(router):
+        try:
+            while not stop.wait(_LOOK_EVERY_S):
+                router.refresh()
+        except MusterError as error:
+            logger.error("%s", error)
+            return 2
     return 0
 
 
