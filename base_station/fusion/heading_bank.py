@@ -132,7 +132,8 @@ class HeadingBank:
         innovations = self._turned(sighting.since_north_m, sighting.since_east_m)
         innovations += (sighting.north_m, sighting.east_m)
         innovations -= self._means @ observe.T
-        return innovations, np.linalg.inv(spread)
+        inverse = np.asarray(np.linalg.inv(spread), dtype=np.float64)
+        return innovations, inverse
 
     def reframe(self, turn_rad: float, turn: Floats, shift_m: Floats) -> None:
         """``turn`` (2, 2) is the rotation by ``turn_rad``."""
@@ -149,8 +150,7 @@ class HeadingBank:
         states = np.column_stack([self._means[:, :2], cosine, sine, self._means[:, 2:]])
         mean: Floats = weights @ states
         apart = states - mean
-        covariance = np.zeros((6, 6))
-        covariance += (apart * weights[:, None]).T @ apart
+        covariance: Floats = (apart * weights[:, None]).T @ apart
         own = [0, 1, 4, 5]
         covariance[np.ix_(own, own)] += self._covariance
         between = SPACING_RAD**2 / 12.0  # a hypothesis stands for the headings next to it
