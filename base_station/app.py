@@ -33,6 +33,7 @@ from base_station.fusion import FUSERS
 from base_station.pipeline import Checkpoint, StationPipeline
 from base_station.pki.expiry import ExpiryWatch
 from base_station.pki.folder import PkiFolder
+from base_station.pki.members import EnrolledUnits
 from base_station.playback import Archive
 from base_station.read_only import ReadOnlyGate
 from base_station.rebuild import project_log
@@ -86,7 +87,8 @@ def run_station(config: StationConfig, announce: Announce) -> None:
 
         checkpoints = Checkpoints(folder.checkpoints)
         insecure = bool(config.plain_endpoints())
-        expiry = ExpiryWatch(PkiFolder(folder.path), clock)
+        pki = PkiFolder(folder.path)
+        expiry = ExpiryWatch(pki, clock)
         drive = _start_drive(
             LogFeed(folder.log, recorder.flush),
             Surroundings(
@@ -121,11 +123,17 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
         index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
+        enrolled = EnrolledUnits(pki, drive, roster.registered_units)
+
+        def keep_house() -> None:
+            index.update(recorder.segments())
+            enrolled.update()
+
         asyncio.run(
             serve_until_stopped(
                 ConsoleServer(app, listening, config.http.certificate, config.http.private_key),
                 announce,
-                lambda: index.update(recorder.segments()),
+                keep_house,
             )
         )
 

@@ -88,6 +88,13 @@ class Roster:
         photo_hash = self._photo_hashes.get(person_id)
         return None if photo_hash is None else f"/api/v1/people/{person_id}/photo?v={photo_hash}"
 
+    def registered_units(self) -> Sequence[str]:
+        """Ids of the units that are ours."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Unit.unit_id).where(Unit.registered_ns.is_not(None))
+            ).all()
+
     def units(self) -> Sequence[tuple[Unit, Assignment | None]]:
         """Every unit with who wears it now."""
         with self._store.read() as session:
