@@ -50,6 +50,18 @@ def test_a_revoked_unit_is_not_registered(pki):
     assert gate.registered == []
 
 
+def test_a_damaged_registry_is_read_again_later(pki):
+    pki.enroll("FF-01")
+    written = pki.registry_path.read_bytes()
+    pki.registry_path.write_bytes(b"rubbish")
+    gate = Gate()
+    units = EnrolledUnits(pki, gate, list)
+    units.update()
+    pki.registry_path.write_bytes(written)
+    units.update()
+    assert gate.registered == ["FF-01"]
+
+
 def test_a_station_without_an_authority_registers_nobody(tmp_path):
     gate = Gate()
     EnrolledUnits(PkiFolder(tmp_path), gate, list).update()
