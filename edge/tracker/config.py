@@ -25,6 +25,9 @@ class EskfConfig(NamedTuple):
     # Stance detection (zero_velocity.py).
     half_window_s: float = 0.025
     rate_weight_m2ps2: float = 50.0  # weight of (rad/s)^2 against (m/s^2)^2
+    rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
+    rest_off_mps2: float = 1.2  # further off is no rest
+    rest_weight: float = 0.03  # of one sample
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
     threshold_min_m2ps4: float = 1.0
@@ -33,12 +36,13 @@ class EskfConfig(NamedTuple):
     # Pseudo-measurements in stance.
     # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.
     stance_velocity_mps_rthz: float = 7.1e-4
-    stance_velocity_per_motion: float = 0.002  # m/s/sqrt(Hz) for each m/s^2 of motion
+    stance_velocity_per_motion: float = 0.0014  # m/s/sqrt(Hz) for each m/s^2 of motion
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
-    stance_rate_radps_rthz: float = 3.5e-4
-    stance_rate_per_motion: float = 1.4  # grows with the statistic to the power 1.5
-
+    # Noise density of the rate: base plus per_unrest * unrest^1.5.
+    stance_rate_radps_rthz: float = 5e-4
+    stance_rate_per_unrest: float = 1.0
+    unrest_half_window_s: float = 0.3  # over which the foot must rest to tell the gyroscope bias
     stance_rate_worth: float = 1e-4  # an update that tells less of the bias's variance is left out
 
     # The floor (floor.py).
@@ -50,8 +54,8 @@ class EskfConfig(NamedTuple):
 
     # Process noise.
     accel_noise_mps2_rthz: float = 0.15
-    gyro_noise_radps_rthz: float = 6.2e-4
-    gyro_bias_walk_radps2_rthz: float = 1e-5
+    gyro_noise_radps_rthz: float = 2.5e-3
+    gyro_bias_walk_radps2_rthz: float = 3e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
 
     # What a clipped gyroscope hides (clipping.py).

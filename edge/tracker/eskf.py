@@ -41,6 +41,7 @@ class EskfTracker:
         self._progress = new_progress()
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._progress["gyro_clip_radps"] = self._limits.gyro_clip_radps
+        self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._gate = np.zeros(1, GATE)
         self._gate["period_s"] = 1.0 / description.rate_hz
         self._state = new_filter_state()
@@ -118,7 +119,9 @@ def work(
             break
         slot = k & (len(ring) - 1)
         stop = min(memory.timed, reach(ring, k))
-        ring[slot].motion_m2ps4 = motion_statistic(ring, k, stop, config)
+        ring[slot].motion_m2ps4 = motion_statistic(ring, memory, k, stop, config)
+        before = ring[(k - 1) & (len(ring) - 1)].motion_sum_m2ps4
+        ring[slot].motion_sum_m2ps4 = before + ring[slot].motion_m2ps4
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered

@@ -25,7 +25,7 @@ from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.strapdown import advance, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
-from edge.tracker.zero_velocity import stance_threshold
+from edge.tracker.zero_velocity import stance_threshold, unrest
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
 
@@ -48,6 +48,7 @@ def filter_sample(
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
     if still:
+        ring[slot].unrest_m2ps4 = unrest(ring, progress, k, config)
         stand(ring, state, slot, config)
         if motion <= ring[slot].stride_minimum_m2ps4:
             settle(ring, progress, state, slot, config)

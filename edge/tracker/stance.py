@@ -42,7 +42,7 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     for i in range(3):
         _measure_velocity(ring, state, slot, i, velocity_variance)
     rate_noise = config.stance_rate_radps_rthz**2
-    rate_noise += config.stance_rate_per_motion**2 * motion**3
+    rate_noise += config.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
     if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
         for i in range(3):

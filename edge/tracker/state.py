@@ -44,6 +44,8 @@ RING = np.dtype(
         ("stationary", np.bool_),
         ("quality", np.uint8),
         ("reasons", np.uint32),
+        ("motion_sum_m2ps4", np.float64),  # of this and all samples before
+        ("unrest_m2ps4", np.float64),  # mean statistic over a longer time around
         # What the smoother needs to go back over this sample.
         ("interval_s", np.float64),  # since the sample before; negative after a gap
         ("force_n_mps2", np.float64, 3),  # over that interval
@@ -90,6 +92,7 @@ PROGRESS = np.dtype(
         ("minimum_from", np.int64),  # first sample of the stride around
         ("minimum_to", np.int64),  # one past its last
         ("steps", np.int64),
+        ("rest_norm_mps2", np.float64),  # what the accelerometer shows at rest
         ("gyro_clip_radps", np.float64),  # from the description
         ("in_stance", np.bool_),
         ("aligned", np.bool_),
