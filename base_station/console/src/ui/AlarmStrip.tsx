@@ -62,10 +62,16 @@ function AlarmRow({ alarm, picture }: RowProps) {
       <span class="for" aria-live="off">
         for {duration(picture.nowMs.value - alarm.raised_ms)}
       </span>
-      <span class="state">{taken ? `acknowledged by ${alarm.by}` : "not acknowledged"}</span>
+      <span class="state">{stateOf(alarm, mayAct.value)}</span>
       {mayAct.value && <AlarmAction alarm={alarm} />}
     </li>
   );
+}
+
+/** Where there is a button to acknowledge, it says that nobody has. */
+function stateOf(alarm: AlarmView, hasButton: boolean): string {
+  if (alarm.state === "acknowledged") return `acknowledged by ${alarm.by}`;
+  return hasButton ? "" : "not acknowledged";
 }
 
 function AlarmAction({ alarm }: { alarm: AlarmView }) {
