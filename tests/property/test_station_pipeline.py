@@ -1,0 +1,150 @@
+"""Whatever is said to a station, in whatever order, it goes on, and goes on the same."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from base_station.pipeline import read_checkpoint
+from shared.messages import AlarmChange, AlarmState, EventKind
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    CloseIncident,
+    OpenIncident,
+    RegisterUnit,
+    ReportProblem,
+    ResolveAlarm,
+    SetAnchor,
+    SetPlan,
+    SetStart,
+    Unassign,
+)
+from shared.quality import Quality
+from tests.live_station import make_pipeline
+from tests.station_script import Script
+
+UNITS = st.sampled_from(["FF-01", "FF-02", "stranger"])
+METRES = st.floats(-1e4, 1e4)
+ANY = st.floats(allow_nan=True, allow_infinity=True, width=32)
+ANGLES = st.floats(0.0, 6.28)
+
+Deed = Callable[[Script], object]
+
+
+def _resolve_some(script: Script) -> object:
+    return [script.act(ResolveAlarm(alarm.alarm_id, "")) for alarm in script.alarms[-2:]]
+
+
+DEEDS: st.SearchStrategy[Deed] = st.one_of(
+    st.builds(lambda u, n, e: lambda s: s.position(u, n, e), UNITS, METRES, METRES),
+    st.builds(
+        lambda u, q: lambda s: s.position(u, 0.0, 0.0, quality=q),
+        UNITS,
+        st.sampled_from(list(Quality)),
+    ),
+    st.builds(
+        lambda u, lat, lon, std: lambda s: s.gps(u, lat, lon, horizontal_std_m=std),
+        UNITS,
+        st.floats(-91.0, 91.0),
+        st.floats(-181.0, 181.0),
+        st.floats(0.0, 500.0),
+    ),
+    st.builds(
+        lambda u, n, e: lambda s: s.gps(u, 52.0 + n * 1e-5, 4.0 + e * 1e-5),
+        UNITS,
+        st.floats(-20.0, 20.0),
+        st.floats(-20.0, 20.0),
+    ),
+    st.builds(
+        lambda u, m, b, p: lambda s: s.status(u, motionless_s=m, battery=b, mayday=p),
+        UNITS,
+        st.floats(0.0, 60.0),
+        st.none() | st.floats(0.0, 1.0),
+        st.booleans(),
+    ),
+    st.builds(lambda u, t: lambda s: s.temperature(u, t), UNITS, st.floats(-50.0, 900.0)),
+    st.builds(lambda u, k: lambda s: s.event(u, k), UNITS, st.sampled_from(list(EventKind))),
+    st.builds(lambda d: lambda s: s.wait(d), st.integers(1, 40)),
+    st.builds(
+        lambda key, payload: lambda s: s.record(key, payload),
+        st.sampled_from(
+            ["muster/v1/FF-01/up/position", "muster/v1/FF-01/what", "", "muster/v1/station/tick"]
+        ),
+        st.binary(max_size=40),
+    ),
+    st.builds(lambda u: lambda s: s.act(RegisterUnit(u, u)), UNITS),
+    st.builds(lambda u, p: lambda s: s.act(Assign(u, p, p, "", "")), UNITS, st.text(max_size=3)),
+    st.builds(lambda u: lambda s: s.act(Unassign(u)), UNITS),
+    st.builds(lambda i: lambda s: s.act(OpenIncident(i, i)), st.sampled_from(["a", "b"])),
+    st.builds(lambda i: lambda s: s.act(CloseIncident(i)), st.sampled_from(["a", "b"])),
+    st.builds(lambda a, b, c, d: lambda s: s.act(SetAnchor(a, b, c, d)), ANY, ANY, ANY, ANY),
+    st.builds(
+        lambda u, n, h, p, q: lambda s: s.act(SetStart(u, n, 0.0, 0.0, h, p, q)),
+        UNITS,
+        METRES,
+        ANGLES,
+        ANY,
+        ANY,
+    ),
+    st.builds(lambda g: lambda s: s.act(SetPlan(g)), st.binary(max_size=20)),
+    st.builds(lambda t: lambda s: s.act(ReportProblem("log", t)), st.sampled_from(["", "full"])),
+    st.builds(lambda i: lambda s: s.act(AcknowledgeAlarm(i)), st.text(max_size=5)),
+    st.just(_resolve_some),
+)
+
+
+def _restart(script: Script, unit_id: str) -> None:
+    script.boot_ids[unit_id] = script.boot_ids.get(unit_id, 7) + 1
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(DEEDS, max_size=40), st.integers(0, 40))
+def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut: int) -> None:
+    script = Script()
+    script.register("FF-01", "FF-02")
+    resumed: Script | None = None
+    for number, deed in enumerate(deeds):
+        if number == cut:
+            saved = read_checkpoint(script.pipeline.checkpoint())
+            assert saved is not None
+            resumed = Script(make_pipeline(saved))
+            begin = len(script.records), len(script.outputs)
+        script.now_s += 0.3
+        deed(script)
+        if number % 13 == 12:
+            _restart(script, "FF-01")
+    if resumed is not None:
+        for t_ns, key, payload in script.records[begin[0] :]:
+            resumed.now_s = (t_ns - script.records[0][0]) / 1e9
+            resumed.record(key, payload)
+        assert resumed.outputs == script.outputs[begin[1] :]
+    for fused in script.fused:
+        assert all(map(math.isfinite, (fused.north_m, fused.east_m, fused.down_m)))
+        assert fused.std_north_m >= 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(DEEDS, max_size=60))
+def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
+    """Raised first, resolved last and for good; acknowledged and worse in between."""
+    script = Script()
+    script.register("FF-01", "FF-02")
+    for deed in deeds:
+        script.now_s += 0.3
+        deed(script)
+    lives: dict[str, list[AlarmChange]] = {}
+    for change in script.alarms:
+        lives.setdefault(change.alarm_id, []).append(change)
+    for life in lives.values():
+        assert life[0].state is AlarmState.RAISED
+        assert all(change.state is not AlarmState.RESOLVED for change in life[:-1])
+        assert len({change.raised_ns for change in life}) == 1
+        assert all(change.priority in {1, 2, 3} and change.text for change in life)
+    latched = {"mayday", "fall", "unit-fault"}
+    for life in lives.values():
+        if life[0].rule in latched and life[-1].state is AlarmState.RESOLVED:
+            assert life[-1].by.startswith("chief")
