@@ -1,0 +1,102 @@
+"""An agent and a station that are killed by turns: in the end the log has every message once."""
+
+from __future__ import annotations
+
+import random
+import sqlite3
+import subprocess
+import sys
+import time
+from collections import Counter
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from shared.channels import is_backfilled, parse_key
+from shared.codec import decode
+from shared.mcap_log import read_log
+from tests.station_command import Browser, Command, free_port, wait_until
+
+UNIT = "anna"
+COMPILING_S = 200.0  # the first agent on a machine compiles its tracker
+RUN = "from edge.cli import app; app()"
+Message = tuple[int, int]  # boot id, sequence number
+
+
+class Agent:
+    """``muster edge run`` with a simulated wearer; it goes on in the same folder."""
+
+    def __init__(self, folder: Path, bus: str) -> None:
+        self._journal = folder / UNIT / "journal.sqlite"
+        self._arguments = ["run", "--unit", UNIT, "--source", "simulated:search-ground-floor"]
+        self._arguments += ["--connect", bus, "--data", str(folder)]
+        self._output = folder.with_suffix(".txt")
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        with self._output.open("ab") as output:
+            command = [sys.executable, "-c", RUN, *self._arguments]
+            self._process = subprocess.Popen(command, stdout=output, stderr=output)
+
+    def kill(self) -> None:
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+
+    def journalled(self) -> set[Message]:
+        """What the agent has ever said, by its journal."""
+        with closing(sqlite3.connect(f"file:{self._journal}?mode=ro", uri=True)) as journal:
+            rows = journal.execute(
+                "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
+            ).fetchall()
+        return {(boot_id % 2**64, seq) for boot_id, seq in rows}
+
+
+def logged(data: Path) -> tuple[Counter[Message], int]:
+    """How often the log has each of the unit's messages, and how many came from its journal."""
+    messages: Counter[Message] = Counter()
+    fetched = 0
+    for _, key, payload in read_log(data / "log"):
+        unit_id, channel = parse_key(key)
+        if unit_id == UNIT:
+            header = decode(channel, payload).header
+            messages[header.boot_id, header.seq] += 1
+            fetched += is_backfilled(key)
+    return messages, fetched
+
+
+def has_logged(data: Path, count: int) -> bool:
+    return len(logged(data)[0]) >= count
+
+
+@pytest.mark.timeout(400)
+def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> None:
+    chance = random.Random(11)
+    data, bus = tmp_path / "station", f"tcp/127.0.0.1:{free_port()}"
+    serve = ["serve", "--data", str(data), "--listen", bus, "--insecure"]
+    serve += ["--http", f"127.0.0.1:{free_port()}"]
+    agent = Agent(tmp_path / "agent", bus)
+    try:
+        for count in (20, 40):
+            with Command(tmp_path / f"station-{count}.txt", *serve) as station:
+                with Browser(station.wait_ready(), data) as browser:
+                    browser.call("POST", "/units", json={"unit_id": UNIT})
+                agent.kill()  # nothing the first time
+                agent.start()
+                wait_until("the unit is heard", partial(has_logged, data, count), COMPILING_S)
+                time.sleep(chance.random())
+                station.kill()
+            time.sleep(1.0 + chance.random())  # the unit goes on alone
+
+        with Command(tmp_path / "station-last.txt", *serve) as station:
+            station.wait_ready()
+            said = agent.journalled()
+            assert len({boot_id for boot_id, _ in said}) == 2
+            wait_until("the log has all", lambda: said <= logged(data)[0].keys())
+            messages, fetched = logged(data)
+            assert fetched > 0
+            assert [message for message, count in messages.items() if count != 1] == []
+    finally:
+        agent.kill()
