@@ -38,7 +38,7 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
     _begin_updates(state)
-    velocity_variance = _velocity_noise(ring, slot, motion, config) / interval_s
+    velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
         _measure_velocity(ring, state, slot, i, velocity_variance)
     rate_noise = config.stance_rate_radps_rthz**2
@@ -51,7 +51,8 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
 
 
 @njit()
-def _velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
+def stance_velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
+    """Return the density (m^2/s) of how far a stance sample is from the rolling foot's model."""
     noise = config.stance_velocity_mps_rthz**2
     noise += config.stance_velocity_per_motion**2 * motion
     stillest = max(ring[slot].stride_minimum_m2ps4, config.stance_excess_floor_m2ps4)

@@ -1,0 +1,66 @@
+"""The compiled filter against the same filter in plain NumPy."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from edge.plain_filter import PlainFilter
+from edge.samples import SensorDescription
+from edge.tracker.alignment import level
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import ACCEL_BIAS, ATTITUDE, GYRO_BIAS, LEVER, SIZE, VELOCITY
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.stance import MIN_INTERVAL_S, stance_velocity_noise
+from edge.tracker.strapdown import rotation_matrix
+from tests.walking import walk
+
+# Without the floor's correction, and with every rate update used.
+CONFIG = EskfConfig(floor_gate_m=0.0, stance_rate_worth=0.0)
+WALK = walk(strides=4, gyro_bias_radps=(0.002, -0.003, 0.001), accel_bias_mps2=(0.05, 0.1, -0.1))
+
+
+def start(ring):
+    """The plain filter as the tracker starts its own."""
+    quaternion, rotation = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros((3, 3))
+    ahead_s = CONFIG.lookahead_s + CONFIG.lag_s
+    tilt_std_rad = level(ring, 0, len(WALK.imu), ahead_s, CONFIG, quaternion)
+    rotation_matrix(quaternion, rotation)
+    std = np.zeros(SIZE)
+    std[VELOCITY : VELOCITY + 3] = CONFIG.start_still_std_mps
+    std[ATTITUDE : ATTITUDE + 2] = tilt_std_rad
+    std[GYRO_BIAS : GYRO_BIAS + 3] = CONFIG.start_gyro_bias_std_radps
+    std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start_accel_bias_std_mps2
+    std[LEVER : LEVER + 3] = CONFIG.start_lever_std_m
+    return PlainFilter(rotation, np.diag(std**2), CONFIG)
+
+
+def stance_variances(ring, k):
+    interval_s = max(ring[k]["interval_s"], MIN_INTERVAL_S)
+    rate_noise = CONFIG.stance_rate_radps_rthz**2
+    rate_noise += CONFIG.stance_rate_per_unrest**2 * ring[k]["unrest_m2ps4"] ** 3
+    velocity_noise = stance_velocity_noise(ring, k, ring[k]["motion_m2ps4"], CONFIG)
+    return velocity_noise / interval_s, rate_noise / interval_s
+
+
+def test_both_come_to_the_same_state():
+    # A ring for ten times the rate still holds every sample at the end.
+    tracker = EskfTracker(SensorDescription("plain", 2000.0), CONFIG)
+    tracker.push(WALK.imu)
+    tracker.finish()
+    ring, state = tracker._ring, tracker._state[0]
+    plain = start(ring)
+    for k in range(len(WALK.imu)):
+        if k:
+            accel = 0.5 * (ring[k]["accel_mps2"] + ring[k - 1]["accel_mps2"])
+            gyro = 0.5 * (ring[k]["gyro_radps"] + ring[k - 1]["gyro_radps"])
+            plain.predict(accel, gyro, ring[k]["interval_s"])
+        if ring[k]["stationary"]:
+            plain.stand(ring[k]["gyro_radps"], *stance_variances(ring, k))
+    assert np.linalg.norm(plain.position_n_m[:2]) > 5.0
+    np.testing.assert_allclose(state["position_n_m"], plain.position_n_m, atol=1e-6)
+    np.testing.assert_allclose(state["velocity_n_mps"], plain.velocity_n_mps, atol=1e-6)
+    np.testing.assert_allclose(state["rotation_nb"], plain.rotation_nb, atol=1e-6)
+    np.testing.assert_allclose(state["gyro_bias_radps"], plain.gyro_bias_radps, atol=1e-8)
+    np.testing.assert_allclose(state["accel_bias_mps2"], plain.accel_bias_mps2, atol=1e-6)
+    np.testing.assert_allclose(state["lever_b_m"], plain.lever_b_m, atol=1e-6)
+    np.testing.assert_allclose(state["covariance"], plain.covariance, rtol=1e-4, atol=1e-9)
