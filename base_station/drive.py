@@ -66,6 +66,11 @@ class Log(Protocol):
         """Why records are not kept, as a sentence for a person; empty: they are."""
         ...
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether records of a second ago may not be on the disk yet."""
+        ...
+
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         """Keep a record, soon on the disk; False: it is lost."""
         ...
@@ -241,7 +246,8 @@ class StationDrive:
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
         self._keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
         self._report_problems()
-        self._around.report(self._held())
+        if not self._around.log.is_behind:  # what is reported may be acknowledged to its unit
+            self._around.report(self._held())
         messages = self._pipeline.state.counts.messages
         self._picture.facts = msgspec.structs.replace(
             self._around.facts(), messages_per_s=float(messages - self._messages_before)

@@ -32,6 +32,7 @@ _TURN_S = 0.05
 _LONGEST_WAIT_S = 2.0  # for the disk, by whoever writes something urgent
 _QUEUED_BYTES_MAX = 64 * 1024 * 1024
 _LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
+_STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
 
 SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
@@ -77,13 +78,12 @@ class Recorder:
         self._news = Condition()
         self._queue: list[LogRecord] = []
         self._queued_bytes = 0
-        self._accepted = 0  # records since the start
-        self._written = 0  # how many of them the writer has
-        self._flushed = 0  # how many of them a flush that was asked for has dealt with
-        self._flush_asked = False
+        self._flushes_asked = 0
+        self._flushes_done = 0
         self._closing = False
         self._refused = 0
         self._failure = ""
+        self._turned_ns = clock.monotonic_ns()
         self._disk_free_bytes = shutil.disk_usage(self.folder).free
         self._thread = Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
@@ -102,7 +102,6 @@ class Recorder:
                 return False
             self._queue.append((t_ns, key, payload))
             self._queued_bytes += len(payload)
-            self._accepted += 1
         if urgent:
             self.flush()
         return True
@@ -110,11 +109,11 @@ class Recorder:
     def flush(self) -> bool:
         """Bring to the disk what was written so far; whether it is there now."""
         with self._news:
-            goal = self._accepted
-            self._flush_asked = True
+            self._flushes_asked += 1
+            mine = self._flushes_asked
             self._news.notify_all()
             done = self._news.wait_for(
-                lambda: self._flushed >= goal or bool(self._failure), _LONGEST_WAIT_S
+                lambda: self._flushes_done >= mine or bool(self._failure), _LONGEST_WAIT_S
             )
         return done and not self._failure and not self._writer.problem
 
@@ -131,6 +130,12 @@ class Recorder:
             free_mb = self._disk_free_bytes / 1e6
             return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
         return ""
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether records of a second ago may not be on the disk yet."""
+        stuck = self._clock.monotonic_ns() - self._turned_ns > _STUCK_NS
+        return stuck or bool(self._failure or self._refused or self._writer.problem)
 
     @property
     def lost(self) -> int:
@@ -174,36 +179,35 @@ class Recorder:
         seen_ns = looked_ns = self._clock.monotonic_ns()
         closing = False
         while not closing:
-            records, flush, closing = self._take()
-            now_ns = self._clock.monotonic_ns()
+            records, flushes, closing = self._take()
+            now_ns = self._turned_ns = self._clock.monotonic_ns()
             for t_ns, key, payload in records:
                 self._writer.write(t_ns, key, payload)
                 last_t_ns, seen_ns = t_ns, now_ns
-            if flush:
+            if flushes > self._flushes_done:
                 self._writer.flush()
+                self._tell_flushed(flushes)
             else:  # log time goes on although nothing comes
                 self._writer.advance(last_t_ns + now_ns - seen_ns)
-            self._settle(len(records), flush)
             if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
                 looked_ns = now_ns
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
         self._writer.close()
 
-    def _take(self) -> tuple[list[LogRecord], bool, bool]:
-        """What came, whether it is to be flushed, and whether it is the last."""
+    def _take(self) -> tuple[list[LogRecord], int, bool]:
+        """What came, up to which flush was asked for, and whether it is the last."""
         with self._news:
-            self._news.wait_for(lambda: self._flush_asked or self._closing, _TURN_S)
+            self._news.wait_for(
+                lambda: self._flushes_asked > self._flushes_done or self._closing, _TURN_S
+            )
             records, self._queue = self._queue, []
             self._queued_bytes = 0
-            flush, self._flush_asked = self._flush_asked, False
-            return records, flush, self._closing
+            return records, self._flushes_asked, self._closing
 
-    def _settle(self, count: int, flushed: bool) -> None:
+    def _tell_flushed(self, flushes: int) -> None:
         with self._news:
-            self._written += count
-            if flushed:
-                self._flushed = self._written
-                self._news.notify_all()
+            self._flushes_done = flushes
+            self._news.notify_all()
 
     def _segment_closed(self, info: SegmentInfo) -> None:
         self._segments = (*self._segments, info)

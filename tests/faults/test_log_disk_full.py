@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from base_station.recorder import Recorder
 from shared.channels import POSITION
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_S, SystemClock
 from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentWriter, read_log, segment_paths
 
 KEY = POSITION.key("anna")
@@ -95,3 +96,14 @@ def test_closing_on_a_full_disk_says_what_is_left_behind(tmp_path: Path) -> None
         write_seconds(writer, range(3))
         writer.close()
     assert writer.problem
+
+
+def test_a_recorder_on_a_full_disk_is_behind_until_there_is_room(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path, SystemClock())
+    with files_of_at_most(0):
+        assert recorder.write(T0_NS, KEY, b"1", urgent=True)
+        assert (recorder.flush(), recorder.is_behind) == (False, True)
+        assert "cannot be written" in recorder.problem
+    assert (recorder.flush(), recorder.is_behind) == (True, False)
+    recorder.close()
+    assert payloads(tmp_path / "log") == [b"1"]
