@@ -48,7 +48,7 @@ from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT
 from shared.clock import Clock, SystemClock
-from shared.errors import UserError
+from shared.errors import StoreError, UserError
 from shared.mcap_log import SegmentPolicy, SegmentReader, segment_paths
 
 Announce = Callable[[str], None]
@@ -200,8 +200,13 @@ def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
 
 def open_accounts(data: Path, closing: ExitStack) -> Accounts:
     """The accounts of a folder's database, beside a running station or without one."""
-    data.mkdir(parents=True, exist_ok=True)
-    store = closing.enter_context(Store(DataFolder(data).database))
+    database = DataFolder(data).database
+    if not database.exists():
+        raise StoreError(
+            f"there is no station's database in {data}; give the folder with --data, or start the "
+            "station there once"
+        )
+    store = closing.enter_context(Store(database))
     return Accounts(store, SystemClock())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import socket
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
@@ -49,21 +50,21 @@ def token_of(station: DeskStation, role: Role = Role.VIEWER) -> dict[str, str]:
     return {"Authorization": f"Bearer {secret}"}
 
 
-async def heard(socket: ClientConnection) -> dict[str, Any]:
-    message: dict[str, Any] = json.loads(await asyncio.wait_for(socket.recv(), 5.0))
+async def heard(console: ClientConnection) -> dict[str, Any]:
+    message: dict[str, Any] = json.loads(await asyncio.wait_for(console.recv(), 5.0))
     return message
 
 
-async def close_code(socket: ClientConnection) -> int:
+async def close_code(console: ClientConnection) -> int:
     with pytest.raises(ConnectionClosed) as closed:
-        await asyncio.wait_for(_drain(socket), 15.0)
+        await asyncio.wait_for(_drain(console), 15.0)
     assert closed.value.rcvd is not None
     return closed.value.rcvd.code
 
 
-async def _drain(socket: ClientConnection) -> None:
+async def _drain(console: ClientConnection) -> None:
     while True:
-        await socket.recv()
+        await console.recv()
 
 
 async def act(station: DeskStation, name: str) -> None:
@@ -74,14 +75,14 @@ async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
     station: DeskStation, address: str
 ) -> None:
     headers = token_of(station)
-    async with connect(f"ws://{address}/api/v1/live", additional_headers=headers) as socket:
-        first = await heard(socket)
+    async with connect(f"ws://{address}/api/v1/live", additional_headers=headers) as console:
+        first = await heard(console)
         assert first["type"] == "snapshot"
         await act(station, "kitchen")
-        delta = await heard(socket)
+        delta = await heard(console)
         assert (delta["type"], delta["seq"]) == ("delta", first["seq"] + 1)
-        await socket.send('{"type": "snapshot"}')
-        again = await heard(socket)
+        await console.send('{"type": "snapshot"}')
+        again = await heard(console)
         assert (again["type"], again["seq"]) == ("snapshot", delta["seq"])
         assert again["incident"]["name"] == "kitchen"
 
@@ -94,22 +95,22 @@ async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: s
         headers = {"Cookie": f"{COOKIE}={browser.cookies[COOKIE]}"}
     url = f"ws://{address}/api/v1/live"
     own, foreign = f"http://{address}", "http://evil.example"
-    async with connect(url, additional_headers=headers, origin=own) as socket:  # type: ignore[arg-type]  # a str will do
-        assert (await heard(socket))["type"] == "snapshot"
+    async with connect(url, additional_headers=headers, origin=own) as console:  # type: ignore[arg-type]  # a str will do
+        assert (await heard(console))["type"] == "snapshot"
     with pytest.raises(InvalidStatus):
         async with connect(url, additional_headers=headers, origin=foreign):  # type: ignore[arg-type]  # a str will do
             pass
 
 
 async def test_without_a_login_there_is_a_code_for_it(address: str) -> None:
-    async with connect(f"ws://{address}/api/v1/live") as socket:
-        assert await close_code(socket) == live.NOT_LOGGED_IN
+    async with connect(f"ws://{address}/api/v1/live") as console:
+        assert await close_code(console) == live.NOT_LOGGED_IN
 
 
 async def test_a_replay_that_is_not_there(station: DeskStation, address: str) -> None:
     url = f"ws://{address}/api/v1/replays/none/live"
-    async with connect(url, additional_headers=token_of(station)) as socket:
-        assert await close_code(socket) == live.NOT_FOUND
+    async with connect(url, additional_headers=token_of(station)) as console:
+        assert await close_code(console) == live.NOT_FOUND
 
 
 @pytest.mark.parametrize("message", ["hello", '{"type": "delta"}', "[]", "{", b"\x00\x01"])
@@ -117,10 +118,10 @@ async def test_what_is_no_request_ends_the_connection(
     station: DeskStation, address: str, message: str | bytes
 ) -> None:
     url = f"ws://{address}/api/v1/live"
-    async with connect(url, additional_headers=token_of(station)) as socket:
-        await heard(socket)
-        await socket.send(message)
-        assert await close_code(socket) == live.NOT_UNDERSTOOD
+    async with connect(url, additional_headers=token_of(station)) as console:
+        await heard(console)
+        await console.send(message)
+        assert await close_code(console) == live.NOT_UNDERSTOOD
 
 
 async def test_the_end_of_a_session_ends_its_socket(
@@ -129,11 +130,11 @@ async def test_the_end_of_a_session_ends_its_socket(
     monkeypatch.setattr(live, "CHECK_LOGIN_S", 0.1)
     headers = token_of(station)
     url = f"ws://{address}/api/v1/live"
-    async with connect(url, additional_headers=headers) as socket:
-        await heard(socket)
+    async with connect(url, additional_headers=headers) as console:
+        await heard(console)
         (token,) = station.services.accounts.tokens("viewer")
         station.services.accounts.remove_token("viewer", token.token_id)
-        assert await close_code(socket) == live.NOT_LOGGED_IN
+        assert await close_code(console) == live.NOT_LOGGED_IN
 
 
 async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
@@ -142,13 +143,19 @@ async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
     monkeypatch.setattr(live, "SEND_TIMEOUT_S", 0.5)
     headers = token_of(station)
     url = f"ws://{address}/api/v1/live"
+    # A small buffer, and big messages, so that it is soon full.
+    host, _, port = address.rpartition(":")
+    narrow = socket.socket()
+    narrow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    narrow.connect((host, int(port)))
     async with (
-        connect(url, additional_headers=headers, max_queue=1) as stuck,
+        connect(
+            url, additional_headers=headers, max_queue=1, sock=narrow, close_timeout=0.5
+        ) as stuck,
         connect(url, additional_headers=headers, max_queue=100_000) as reading,
     ):
         await heard(stuck)
         last = (await heard(reading))["seq"]
-        # Big messages, so that the buffers of the kernel are soon full.
         name = "x" * 60_000
         for _ in range(20 * QUEUE):
             await act(station, name)
@@ -169,8 +176,8 @@ async def test_the_server_stops_with_consoles_connected(station: DeskStation) ->
     task = asyncio.create_task(server.serve())
     await server.wait_started()
     url = f"ws://127.0.0.1:{port}/api/v1/live"
-    async with connect(url, additional_headers=token_of(station)) as socket:
-        await heard(socket)
+    async with connect(url, additional_headers=token_of(station)) as console:
+        await heard(console)
         server.stop()
         await asyncio.wait_for(task, 10.0)
-        assert await close_code(socket) in (1001, 1012)
+        assert await close_code(console) in (1001, 1012)

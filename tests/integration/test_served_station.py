@@ -344,6 +344,10 @@ def test_users_are_added_while_the_station_runs(
     with Command(tmp_path / "again.txt", *flags, stdin="a long password\n") as adding:
         assert adding.wait() == 2
         assert "already" in adding.said()
+    elsewhere = ("users", "list", "--data", str(tmp_path / "typo"))
+    with Command(tmp_path / "typo.txt", *elsewhere) as listing:
+        assert listing.wait() == 2
+    assert not (tmp_path / "typo").exists()
     with Browser(address, data) as browser:
         credentials = {"username": "mia", "password": "a long password"}
         assert browser.call("POST", "/login", json=credentials)["role"] == "viewer"
