@@ -1,0 +1,111 @@
+"""What a station does when its own parts fail: it says so, and tracking goes on."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from base_station import drive as drive_module
+from base_station.alarms import ALARMS
+from base_station.alarms.port import Verdict
+from base_station.events import Output, Received, StationEvent
+from base_station.fusion import FUSERS
+from base_station.live_state import UnitState
+from base_station.pipeline import StationPipeline
+from base_station.recorder import Recorder
+from shared.messages import Position
+from shared.messages.station import RegisterUnit
+from tests.live_station import LiveStation, until
+from tests.station_script import Script
+
+MakePosition = Callable[..., Position]
+U = "FF-01"
+
+
+def follows(station: LiveStation, make_position: MakePosition, north_m: float) -> None:
+    """A position still reaches the console."""
+    station.say(make_position(north_m=north_m))
+
+    def shown() -> bool:
+        position = station.snapshot().units[0].position
+        return position is not None and abs(position.north_m - north_m) < 0.01
+
+    until(shown)
+
+
+def test_a_log_that_cannot_be_written_is_an_alarm(
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trouble = {"now": ""}
+    monkeypatch.setattr(Recorder, "problem", property(lambda _: trouble["now"]))
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        trouble["now"] = "the log cannot be written: the disk is full"
+        until(lambda: "log" in station.pipeline.state.problems)
+        follows(station, make_position, 4.0)
+        shown = station.snapshot()
+        assert [alarm.text for alarm in shown.alarms] == [trouble["now"]]
+        assert trouble["now"] in shown.health.problems
+        trouble["now"] = ""
+        until(lambda: not station.pipeline.state.problems)
+        assert [alarm.state for alarm in station.snapshot().alarms] == ["resolved"]
+
+
+def test_a_checkpoint_that_cannot_be_saved_is_reported(
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drive_module, "CHECKPOINT_NS", 10**8)
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        shutil.rmtree(tmp_path / "checkpoints")
+        (tmp_path / "checkpoints").write_text("in the way")
+        until(lambda: "checkpoint" in station.pipeline.state.problems)
+        follows(station, make_position, 4.0)
+
+
+def test_a_mistake_in_the_pipeline_costs_one_message(
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        step = station.pipeline.step
+        failures = iter([True])
+
+        def sometimes(event: StationEvent) -> list[Output]:
+            is_position = isinstance(event, Received) and isinstance(event.message, Position)
+            if is_position and next(failures, False):
+                raise ArithmeticError("a mistake")
+            return step(event)
+
+        monkeypatch.setattr(station.pipeline, "step", sometimes)
+        station.say(make_position(north_m=1.0))
+        until(lambda: "pipeline" in station.pipeline.state.problems)
+        follows(station, make_position, 4.0)
+
+
+@dataclass(frozen=True)
+class FailsFor:
+    """A rule that cannot cope with one unit."""
+
+    unit_id: str
+    name: str = "fails"
+    levels: tuple[str, ...] = ("x",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
+        if unit.unit_id == self.unit_id:
+            raise KeyError(level)
+        return None
+
+
+def test_a_failing_rule_is_one_alarm_however_often_it_fails() -> None:
+    script = Script(StationPipeline((FailsFor(U), *ALARMS), FUSERS[0]))
+    script.register(U, "FF-02")
+    script.wait(60, lambda: [script.status(U), script.status("FF-02")])
+    assert [alarm.rule for alarm in script.alarms] == ["station"]
