@@ -6,6 +6,7 @@ transaction every half second or when someone asks for them (``flush``).
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import deque
 from collections.abc import Sequence
@@ -18,6 +19,8 @@ from shared.errors import StoreError
 PERIOD_S = 0.5
 BATCH = 2_000
 MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
+
+logger = logging.getLogger(__name__)
 
 
 class SqlProjection:
@@ -33,6 +36,8 @@ class SqlProjection:
         self._wanted = False  # somebody waits in ``flush``
         self._stopping = False
         self._failure = ""
+        self._drop_reason = ""
+        self._failed_tries = 0
         self._thread = threading.Thread(target=self._run, name="sql-projection", daemon=True)
         self._thread.start()
 
@@ -43,24 +48,33 @@ class SqlProjection:
             if len(self._pending) > MAX_PENDING:
                 self._pending.popleft()
                 self._dropped += 1
+                self._drop_reason = self._failure
                 self._settled += 1
 
     def problem(self) -> str:
         with self._changed:
             if self._dropped:
                 return (
-                    f"{self._dropped} changes did not get into the database ({self._failure}); the "
-                    "log has them: run 'muster base rebuild' once the cause is gone"
+                    f"{self._dropped} changes did not get into the database "
+                    f"({self._drop_reason}); the log has them: run 'muster base rebuild' once the "
+                    "cause is gone"
                 )
             return self._failure
 
     def flush(self, timeout_s: float = 5.0) -> bool:
-        """Wait until all that was projected before this call is in the tables."""
+        """Wait until all that was projected before this call is in the tables; False where the
+        store does not take it.
+        """
         with self._changed:
             goal = self._taken
+            # A try that is under way may have begun before this call: two tell.
+            given_up = self._failed_tries + 2
             self._wanted = True
             self._changed.notify_all()
-            return self._changed.wait_for(lambda: self._settled >= goal, timeout_s)
+            self._changed.wait_for(
+                lambda: self._settled >= goal or self._failed_tries >= given_up, timeout_s
+            )
+            return self._settled >= goal
 
     def close(self) -> None:
         """Write what is left and end the thread."""
@@ -89,15 +103,26 @@ class SqlProjection:
         try:
             with self._store.write() as session:
                 project_into(session, batch)
-        except StoreError as error:
+        except StoreError as error:  # it may take it later
             with self._changed:
                 self._failure = str(error)
-            return
+                self._failed_tries += 1
+                self._changed.notify_all()
+        except Exception as error:
+            logger.exception("%d projections cannot be written", len(batch))
+            self._settle(batch, f"a mistake of this program, please report it: {error!r}")
+        else:
+            self._settle(batch)
+
+    def _settle(self, batch: Sequence[Projection], given_up: str = "") -> None:
+        """Done with the batch: written, or given up for a reason."""
         with self._changed:
             self._failure = ""
+            self._drop_reason = given_up or self._drop_reason
             # The oldest may have been dropped meanwhile.
-            written = {id(projection) for projection in batch}
-            while self._pending and id(self._pending[0]) in written:
+            settled = {id(projection) for projection in batch}
+            while self._pending and id(self._pending[0]) in settled:
                 self._pending.popleft()
                 self._settled += 1
+                self._dropped += bool(given_up)
             self._changed.notify_all()

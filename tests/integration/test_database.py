@@ -210,10 +210,29 @@ def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualCl
     _limit_pages(store)
     long_names = acted(20, *(RegisterUnit(f"U-{n}", "x" * 4000) for n in range(50)))
     projection.project(long_names)
-    assert not projection.flush(timeout_s=1.0)
+    assert not projection.flush()
     assert "full" in projection.problem()
     _limit_pages(store, 1_000_000)
     assert projection.flush()
     assert projection.problem() == ""
     assert len(Roster(store, clock).units()) == 52
     projection.close()
+
+
+def test_a_projection_that_cannot_be_written_is_said_and_holds_up_no_other(
+    store: Store, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    projection = SqlProjection(store)
+    with monkeypatch.context() as broken:
+        broken.setattr("base_station.db.projection.project_into", _break)
+        projection.project(STORY[0])
+        assert projection.flush()
+    projection.project(STORY[1])
+    assert projection.flush()
+    assert "muster base rebuild" in projection.problem()
+    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
+    projection.close()
+
+
+def _break(*_: object) -> None:
+    raise ZeroDivisionError
