@@ -15,6 +15,7 @@ from shared.clock import Clock
 from shared.errors import UnknownChannelError
 from shared.mcap_log import LogRecord, read_log
 
+_GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
 
@@ -88,6 +89,8 @@ class LiveFeed:
         """Everything that came, in order; waits until something comes, ``wake`` or the timeout."""
         with self._changed:
             self._changed.wait_for(lambda: self._queue or self._woken, timeout_s)
+            if self._queue:  # what comes in quick succession is taken together
+                self._changed.wait_for(lambda: self._woken, min(_GATHER_S, timeout_s))
             self._woken = False
             records, self._queue = self._queue, []
             self._bytes = 0
