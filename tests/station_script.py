@@ -44,7 +44,7 @@ def new_pipeline() -> StationPipeline:
 class Script:
     """A pipeline, the records that stepped it, and what came out.
 
-    Units are as far from the station as ``delay_s``; their monotonic clocks begin at 1000 s.
+    Messages arrive at once; the units' monotonic clocks stand 1000 s ahead of the script's time.
     """
 
     def __init__(self, pipeline: StationPipeline | None = None) -> None:
