@@ -21,6 +21,7 @@ from edge.tracker.error_model import (
     propagate,
 )
 from edge.tracker.floor import settle
+from edge.tracker.intervals import mean_readings
 from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.strapdown import advance, rotation_matrix
@@ -92,13 +93,7 @@ def _predict(
         return
     if dt_s == 0.0:
         return
-    rate_square = 0.0
-    for i in range(3):
-        state.accel_mps2[i] = 0.5 * (ring[slot].accel_mps2[i] + ring[before].accel_mps2[i])
-        state.accel_mps2[i] -= state.accel_bias_mps2[i]
-        rate = 0.5 * (ring[slot].gyro_radps[i] + ring[before].gyro_radps[i])
-        state.gyro_radps[i] = rate - state.gyro_bias_radps[i]
-        rate_square += state.gyro_radps[i] ** 2
+    mean_readings(ring, progress, state, k)
     advance(
         state.position_n_m,
         state.velocity_n_mps,

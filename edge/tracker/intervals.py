@@ -1,0 +1,55 @@
+"""What happened between two samples: mean rate and mean force over the interval.
+
+A foot turns by several degrees within an interval of a slow sensor.  Two effects
+count there: readings bend between samples (so the means are taken over the cubic
+through two samples before and two after) and the axis of rotation moves (coning,
+for a rate that changes evenly; Savage, "Strapdown inertial navigation integration
+algorithm design", 1998).
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.state import FilterState, Progress, Ring
+
+BEND = 1.0 / 12.0  # of the cubic through four evenly spaced samples
+
+
+@njit()
+def mean_readings(ring: Ring, progress: Progress, state: FilterState, k: int) -> None:
+    """Write mean rate and force, sensor axes, free of bias, of the interval ending at ``k``."""
+    mask = len(ring) - 1
+    last, first = k & mask, (k - 1) & mask
+    dt_s = ring[last].t_s - ring[first].t_s
+    bend = _bend(ring, progress, k, dt_s)
+    before, after = (k - 2) & mask, (k + 1) & mask
+    for i in range(3):
+        mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
+        outer = 0.5 * (ring[before].gyro_radps[i] + ring[after].gyro_radps[i])
+        state.gyro_radps[i] = mean + bend * (mean - outer) - state.gyro_bias_radps[i]
+        mean = 0.5 * (ring[first].accel_mps2[i] + ring[last].accel_mps2[i])
+        outer = 0.5 * (ring[before].accel_mps2[i] + ring[after].accel_mps2[i])
+        state.accel_mps2[i] = mean + bend * (mean - outer) - state.accel_bias_mps2[i]
+    _add_cross(state.gyro_radps, ring[first].gyro_radps, ring[last].gyro_radps, dt_s / 12.0)
+
+
+@njit()
+def _bend(ring: Ring, progress: Progress, k: int, dt_s: float) -> float:
+    """Return the weight of the outer samples; 0 where they are missing or unevenly spaced."""
+    if k < 2 or k + 1 >= progress.measured:
+        return 0.0
+    mask = len(ring) - 1
+    before_s = ring[(k - 1) & mask].t_s - ring[(k - 2) & mask].t_s
+    after_s = ring[(k + 1) & mask].t_s - ring[k & mask].t_s
+    even = 0.7 * dt_s < before_s < 1.4 * dt_s and 0.7 * dt_s < after_s < 1.4 * dt_s
+    return BEND if even else 0.0
+
+
+@njit()
+def _add_cross(total: Floats, a: Floats, b: Floats, weight: float) -> None:
+    """Add ``weight`` times ``a x b``."""
+    total[0] += weight * (a[1] * b[2] - a[2] * b[1])
+    total[1] += weight * (a[2] * b[0] - a[0] * b[2])
+    total[2] += weight * (a[0] * b[1] - a[1] * b[0])

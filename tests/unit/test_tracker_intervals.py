@@ -1,0 +1,55 @@
+"""Means over an interval against exact motions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.plain_filter import turn
+from edge.tracker.intervals import mean_readings
+from edge.tracker.state import RING, new_filter_state, new_progress
+
+
+def means_of(t_s, gyro, accel, k):
+    ring = np.zeros(8, RING)
+    ring["t_s"][: len(t_s)] = t_s
+    ring["gyro_radps"][: len(t_s)] = gyro
+    ring["accel_mps2"][: len(t_s)] = accel
+    progress = new_progress()
+    progress["measured"] = len(t_s)
+    state = new_filter_state()[0]
+    mean_readings(ring, progress[0], state, k)
+    return state["gyro_radps"], state["accel_mps2"]
+
+
+def test_a_cubic_is_averaged_exactly():
+    t_s = np.array([0.0, 0.1, 0.2, 0.3])
+    cubic = np.poly1d([40.0, -9.0, 3.0, 1.0])
+    readings = np.column_stack((cubic(t_s), np.zeros(4), np.zeros(4)))
+    gyro, accel = means_of(t_s, readings, readings, 2)
+    expected = (cubic.integ()(0.2) - cubic.integ()(0.1)) / 0.1
+    assert gyro[0] == pytest.approx(expected)
+    assert accel[0] == pytest.approx(expected)
+
+
+def test_uneven_or_missing_neighbours_leave_the_trapezoid():
+    t_s = np.array([0.0, 0.1, 0.2, 0.5])
+    readings = np.column_stack(([1.0, 2.0, 5.0, 9.0], np.zeros(4), np.zeros(4)))
+    for count in (4, 3):
+        gyro, _ = means_of(t_s[:count], readings[:count], readings[:count], 2)
+        assert gyro[0] == pytest.approx(3.5)
+
+
+def test_a_moving_axis_turns_further_than_its_mean():
+    """Coning: many small turns of a rate that changes evenly, against one."""
+    first, last = np.array([3.0, 0.0, 1.0]), np.array([0.0, 4.0, 1.5])
+    t_s = 0.02 * np.arange(4)
+    # Evenly changing over all four samples; the interval lies between the inner two.
+    gyro = first + (last - first) * (np.arange(4) - 1)[:, None]
+    exact = np.eye(3)
+    for u in (np.arange(2000) + 0.5) / 2000:
+        exact = exact @ turn((first + u * (last - first)) * 0.02 / 2000)
+    rate, _ = means_of(t_s, gyro, np.zeros((4, 3)), 2)
+    with_coning = np.abs(turn(rate * 0.02) - exact).max()
+    without = np.abs(turn(0.5 * (first + last) * 0.02) - exact).max()
+    assert with_coning < 0.05 * without
