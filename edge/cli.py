@@ -9,9 +9,12 @@ from typing import Annotated
 
 import typer
 
+from edge.calibrate_command import calibrate
+
 app = typer.Typer(
     help="One agent for each wearable.", no_args_is_help=True, pretty_exceptions_enable=False
 )
+app.command()(calibrate)
 
 
 @app.command()

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from edge.sources.bench import BenchSource
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
@@ -26,6 +27,7 @@ SOURCES: tuple[SourceKind, ...] = (
     SourceKind("recording", RecordingSource, "PATH"),
     SourceKind("simulated", SimulatedSource, "SCENARIO"),
     SourceKind("mcap", BlackBoxSource, "PATH"),
+    SourceKind("bench", BenchSource, "SEED"),
 )
 
 

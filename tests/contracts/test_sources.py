@@ -43,10 +43,15 @@ def _mcap(folder: Path) -> str:
     return f"mcap:{boot}"
 
 
+def _bench(_: Path) -> str:
+    return "bench:5"
+
+
 EXAMPLES: dict[str, Example] = {
     "recording": _recording,
     "simulated": _simulated,
     "mcap": _mcap,
+    "bench": _bench,
 }
 
 

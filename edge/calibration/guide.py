@@ -1,0 +1,87 @@
+"""Takes samples through the steps, and makes a calibration of what they gathered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from datetime import datetime
+
+from edge.calibration.model import Calibration
+from edge.calibration.solve import (
+    solve_accelerometer,
+    solve_gyroscope,
+    solve_magnetometer,
+    solve_warmth,
+)
+from edge.calibration.steps import PosesStep, Step, StillStep, TurningStep, WarmUpStep
+from edge.samples import SensorBatch
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+
+_ASKED_EVERY_NS = NS_PER_S // 2
+
+
+def guide(
+    step: Step, batches: Iterator[SensorBatch], limit_s: float, tell: Callable[[str], None]
+) -> None:
+    """Take samples until the step has enough, or for ``limit_s`` of their time.
+
+    ``tell`` hears twice a second how far it is.  Raises UserError where the step cannot be
+    determined by what came.
+    """
+    begin_ns: int | None = None
+    asked_ns = 0
+    for batch in batches:
+        if not len(batch.imu):
+            continue
+        step.push(batch.imu)
+        t_ns = int(batch.imu.t_ns[-1])
+        if begin_ns is None:
+            begin_ns = asked_ns = t_ns
+        if t_ns - asked_ns < _ASKED_EVERY_NS:
+            continue
+        asked_ns = t_ns
+        wanted = step.wanted()
+        tell(step.progress() if wanted is None else f"{step.progress()}: {wanted}")
+        if wanted is None:
+            return
+        if t_ns - begin_ns > limit_s * NS_PER_S:
+            break
+    check(step)
+
+
+def take(step: Step, batches: Iterator[SensorBatch]) -> None:
+    """Take a whole recording of one step; raises UserError where it does not do."""
+    for batch in batches:
+        if len(batch.imu):
+            step.push(batch.imu)
+    check(step)
+
+
+def check(step: Step) -> None:
+    missing = step.missing()
+    if missing is not None:
+        raise UserError(f"the {step.name} step cannot be used: {missing}")
+
+
+def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Calibration:
+    """The calibration that complete steps determine."""
+    warm_up = next((step for step in steps if isinstance(step, WarmUpStep)), None)
+    warmth = None if warm_up is None else solve_warmth(warm_up.windows())
+    accelerometer = gyroscope = magnetometer = None
+    for step in steps:
+        match step:
+            case StillStep():
+                gyroscope = solve_gyroscope(step.windows(), warmth)
+            case PosesStep():
+                accelerometer = solve_accelerometer(step.poses(), warmth)
+            case TurningStep():
+                magnetometer = solve_magnetometer(step.fields_ut())
+    return Calibration(
+        unit=unit,
+        sensor=sensor,
+        made=made,
+        accelerometer=accelerometer,
+        gyroscope=gyroscope,
+        magnetometer=magnetometer,
+        warmth=warmth,
+    )

@@ -1,0 +1,146 @@
+"""What is known of one unit's sensor errors, and how samples are rid of them.
+
+    force = gain (reading - bias - bias_per_degc (temperature - at_degc))
+    rate  = reading - bias - bias_per_degc (temperature - at_degc)
+    field = gain (reading - hard_iron)
+
+Beyond the temperatures of the warm-up the bias is taken to stay as it was at the nearest.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+
+import msgspec
+import numpy as np
+
+from edge.samples import Floats, ImuBatch, SensorDescription
+
+OLD_AFTER = timedelta(days=180)
+
+_POOR_FORCE_MPS2 = 0.05
+_POOR_RATE_RADPS = 5e-4  # 0.03 degrees a second
+_POOR_FIELD_SHARE = 0.03
+_CLIPPED_SHARE = 0.98  # of full scale: from here on a reading says no more than "too much"
+
+Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]
+
+
+class Accelerometer(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    gain: Matrix
+    gain_std: Matrix  # 0 where it was not looked for
+    bias_mps2: Vector
+    bias_std_mps2: Vector
+    at_degc: float | None = None  # None: the unit does not tell its temperature
+    poses: int
+    residual_mps2: float  # root mean square over the poses
+
+
+class Gyroscope(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    bias_radps: Vector
+    bias_std_radps: Vector
+    at_degc: float | None = None
+    residual_radps: float  # root mean square of half-second means
+
+
+class Magnetometer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    gain: Matrix  # against soft iron; its determinant is 1
+    gain_std: Matrix
+    hard_iron_ut: Vector
+    hard_iron_std_ut: Vector
+    field_ut: float  # of the earth, as it was measured
+    residual_ut: float
+
+
+class Warmth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How the biases follow the sensor's temperature."""
+
+    accel_bias_per_degc_mps2: Vector
+    accel_std_mps2: Vector  # of the line above, for one degree
+    gyro_bias_per_degc_radps: Vector
+    gyro_std_radps: Vector
+    from_degc: float
+    to_degc: float
+    residual_mps2: float
+    residual_radps: float
+
+
+class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``apply`` gives samples rid of the errors that were found; parts may be missing."""
+
+    unit: str
+    sensor: str
+    made: datetime  # UTC
+    accelerometer: Accelerometer | None = None
+    gyroscope: Gyroscope | None = None
+    magnetometer: Magnetometer | None = None
+    warmth: Warmth | None = None
+
+    def apply(self, imu: ImuBatch, sensor: SensorDescription) -> ImuBatch:
+        """Correct readings; those at the end of ``sensor``'s range are left as they are."""
+        return ImuBatch(
+            t_ns=imu.t_ns,
+            accel_mps2=_unless_clipped(
+                imu.accel_mps2, self._force(imu), sensor.accel_full_scale_mps2
+            ),
+            gyro_radps=_unless_clipped(
+                imu.gyro_radps, self._rate(imu), sensor.gyro_full_scale_radps
+            ),
+            mag_ut=self._field(imu.mag_ut),
+            pressure_pa=imu.pressure_pa,
+            imu_temperature_degc=imu.imu_temperature_degc,
+        )
+
+    def faults(self) -> tuple[str, ...]:
+        """What is poor about it, in words; empty where all residuals are as they should be."""
+        found = []
+        if self.accelerometer and self.accelerometer.residual_mps2 > _POOR_FORCE_MPS2:
+            found.append(f"accelerometer off by {self.accelerometer.residual_mps2:.3f} m/s2")
+        if self.gyroscope and self.gyroscope.residual_radps > _POOR_RATE_RADPS:
+            found.append(f"gyroscope off by {np.degrees(self.gyroscope.residual_radps):.3f} deg/s")
+        magnetometer = self.magnetometer
+        if magnetometer and magnetometer.residual_ut > _POOR_FIELD_SHARE * magnetometer.field_ut:
+            found.append(f"magnetometer off by {magnetometer.residual_ut:.1f} uT")
+        return tuple(found)
+
+    def is_old(self, now: datetime) -> bool:
+        return now - self.made > OLD_AFTER
+
+    def _force(self, imu: ImuBatch) -> Floats:
+        part, warmth = self.accelerometer, self.warmth
+        if part is None:
+            return imu.accel_mps2
+        slope = None if warmth is None else warmth.accel_bias_per_degc_mps2
+        biased = imu.accel_mps2 - np.array(part.bias_mps2)
+        return np.asarray((biased - self._drift(imu, slope, part.at_degc)) @ np.array(part.gain).T)
+
+    def _rate(self, imu: ImuBatch) -> Floats:
+        part, warmth = self.gyroscope, self.warmth
+        if part is None:
+            return imu.gyro_radps
+        slope = None if warmth is None else warmth.gyro_bias_per_degc_radps
+        drift = self._drift(imu, slope, part.at_degc)
+        return np.asarray(imu.gyro_radps - np.array(part.bias_radps) - drift)
+
+    def _field(self, mag_ut: Floats | None) -> Floats | None:
+        part = self.magnetometer
+        if part is None or mag_ut is None:
+            return mag_ut
+        return np.asarray((mag_ut - np.array(part.hard_iron_ut)) @ np.array(part.gain).T)
+
+    def _drift(self, imu: ImuBatch, slope: Vector | None, at_degc: float | None) -> Floats:
+        """What warmth adds to the bias (n, 3); nothing where the temperature is not known."""
+        degc = imu.imu_temperature_degc
+        if slope is None or at_degc is None or degc is None or self.warmth is None:
+            return np.zeros(3)
+        low, high = min(self.warmth.from_degc, at_degc), max(self.warmth.to_degc, at_degc)
+        within = np.clip(degc, low, high)
+        return np.asarray(np.nan_to_num(within - at_degc)[:, None] * np.array(slope))
+
+
+def _unless_clipped(reading: Floats, corrected: Floats, full_scale: float | None) -> Floats:
+    """A tracker must still see that the sensor had come to its end."""
+    if full_scale is None:
+        return corrected
+    return np.where(np.abs(reading) >= _CLIPPED_SHARE * full_scale, reading, corrected)
