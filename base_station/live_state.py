@@ -11,6 +11,7 @@ from typing import Literal
 
 import msgspec
 
+from base_station.command_state import SentCommand
 from base_station.plan import Plan
 from shared.channels import GPS, Channel
 from shared.clock import NS_PER_S
@@ -105,6 +106,7 @@ class UnitState(msgspec.Struct):
     degraded_since_ns: int | None = None
     description: UnitDescription | None = None
     fused: FusedPosition | None = None
+    unplaced_since_ns: int | None = None  # the fused position is lost
     trail: list[TrailStep] = msgspec.field(default_factory=list)
     mayday_ns: int | None = None  # when the button was last pressed
     mayday_cancelled_ns: int | None = None
@@ -236,6 +238,7 @@ class StationState(msgspec.Struct):
     units: dict[str, UnitState] = msgspec.field(default_factory=dict)
     alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)  # newest of each rule and unit
     history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
+    commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first
     incident: Incident | None = None
     plan: Plan | None = None
     anchor: Anchor | None = None

@@ -16,6 +16,7 @@ from base_station.live_state import StationState, TrailStep, UnitState
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position
+from shared.quality import Quality
 
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
 WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
@@ -64,6 +65,10 @@ class Positioning:
             floor = state.plan.floor_at(estimate.down_m, held)
         unit.fused = _as_message(estimate, unit, self._kind.name, floor, header)
         unit.extend_trail(unit.fused)
+        if unit.fused.quality is not Quality.LOST:
+            unit.unplaced_since_ns = None
+        elif unit.unplaced_since_ns is None:
+            unit.unplaced_since_ns = state.t_ns
         _note_inside(state, unit)
         return unit.fused
 

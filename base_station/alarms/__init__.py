@@ -10,12 +10,14 @@ acknowledging, resolving, latching and hysteresis in time are the ``AlarmBook``'
 from __future__ import annotations
 
 from base_station.alarms.battery import Battery
+from base_station.alarms.calibration import Calibration
 from base_station.alarms.fall import Fall
 from base_station.alarms.heat import Heat
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.mayday import Mayday
 from base_station.alarms.no_motion import NoMotion
 from base_station.alarms.port import AlarmRule
+from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.tracker_degraded import TrackerDegraded
 from base_station.alarms.unit_fault import UnitFault
 from base_station.alarms.unknown_unit import UnknownUnit
@@ -28,6 +30,8 @@ ALARMS: tuple[AlarmRule, ...] = (
     Battery(),
     LinkLost(),
     TrackerDegraded(),
+    PositionLost(),
     UnitFault(),
     UnknownUnit(),
+    Calibration(),
 )

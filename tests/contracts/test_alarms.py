@@ -11,7 +11,15 @@ from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
 from base_station.live_state import Fault, UnitState
 from shared.clock import NS_PER_S
-from shared.messages import Activity, Header, Position, Status, Temperature
+from shared.messages import (
+    Activity,
+    FusedPosition,
+    Header,
+    Position,
+    Status,
+    Temperature,
+    UnitDescription,
+)
 from shared.quality import Quality, Reason
 
 HEADER = Header("FF-01", 1, 1, 0)
@@ -38,6 +46,28 @@ def calm(seen_ns: int = T_NS) -> UnitState:
     )
 
 
+def lost_place(seen_ns: int) -> FusedPosition:
+    return FusedPosition(
+        header=Header("station", 1, 1, seen_ns, t_utc_ns=seen_ns),
+        unit_id="FF-01",
+        t_meas_ns=seen_ns,
+        north_m=0.0,
+        east_m=0.0,
+        down_m=0.0,
+        std_north_m=40.0,
+        std_east_m=40.0,
+        std_down_m=1.0,
+        correlation_ne=0.0,
+        heading_rad=0.0,
+        heading_std_rad=0.1,
+        floor=None,
+        quality=Quality.LOST,
+        quality_reason="within 113 m",
+        fuser="gps-inertial",
+        since_gps_s=None,
+    )
+
+
 def in_trouble(seen_ns: int = T_NS) -> UnitState:
     """A unit of which everything is the matter at once."""
     unit = calm(seen_ns)
@@ -50,7 +80,13 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
     unit.position = msgspec.structs.replace(unit.position, quality=Quality.LOST)
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
     unit.mayday_ns = unit.fall_ns = seen_ns
+    unit.fused = lost_place(seen_ns)
+    unit.unplaced_since_ns = seen_ns - 60 * NS_PER_S
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
+    unit.description = UnitDescription(
+        HEADER, "1", "", "sensor", 200.0, None, None, "eskf", "c1", False, False, False,
+        calibrated_s=1, calibration_faults="accelerometer off by 0.2 m/s2",
+    )  # fmt: skip
     return unit
 
 

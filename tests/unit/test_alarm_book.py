@@ -13,7 +13,13 @@ from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
 from shared.messages import AlarmState, EventKind, UnitEvent
-from shared.messages.station import AcknowledgeAlarm, RegisterUnit, ReportProblem, ResolveAlarm
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    RegisterUnit,
+    ReportProblem,
+    ResolveAlarm,
+    SetStart,
+)
 from tests.station_script import Script
 
 U = "FF-01"
@@ -160,6 +166,19 @@ def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     assert changes(script, "battery") == [("RAISED", "low")]
     script.wait(60, lambda: script.status(U, battery=0.9))
     assert changes(script, "battery")[-1] == ("RESOLVED", "low")
+
+
+def test_a_position_that_nobody_knows_is_an_alarm_until_it_is_known(script: Script) -> None:
+    script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 200.0, 0.1))
+    script.wait(10, lambda: script.position(U, 0.0, 0.0))
+    assert changes(script, "position-lost") == []
+    script.wait(60)
+    assert changes(script, "position-lost") == [], "silence is another alarm"
+    script.wait(10, lambda: script.position(U, 0.0, 0.0))
+    assert changes(script, "position-lost") == [("RAISED", "lost")]
+    script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 1.0, 0.1))
+    script.wait(12, lambda: script.position(U, 0.0, 0.0))
+    assert changes(script, "position-lost")[-1] == ("RESOLVED", "lost")
 
 
 def test_an_acknowledged_alarm_that_gets_worse_asks_again(script: Script) -> None:

@@ -1,0 +1,36 @@
+"""For a while nobody has known where a wearer is to better than a house."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class PositionLost:
+    after_s: float = 15.0
+    name: str = "position-lost"
+    levels: tuple[str, ...] = ("lost",)
+    clear_after_s: float = 10.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        fused = unit.fused
+        if fused is None:
+            return None
+        seen_ns = fused.header.t_utc_ns
+        if unit.unplaced_since_ns is None:
+            return Clear(seen_ns, "the position is known again")
+        if seen_ns - unit.unplaced_since_ns < self.after_s * NS_PER_S:
+            return None
+        return Finding(
+            "lost",
+            SOON,
+            f"The position of {unit.name} is lost ({fused.quality_reason})",
+            seen_ns=seen_ns,
+            onset_ns=unit.unplaced_since_ns,
+        )
