@@ -15,6 +15,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from edge.bench_speed import measure_speed, print_speed
+from edge.cross_validation import cross_validate, left_out_table
 from edge.scoring import Score, score_track
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
@@ -62,6 +63,10 @@ def bench_track(
     speed: Annotated[
         bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
     ] = False,
+    cross_validation: Annotated[
+        bool,
+        typer.Option("--cross-validate", help="Also leave each dataset out once (a minute)."),
+    ] = False,
 ) -> None:
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
     console = Console(width=max(Console().width, 150))
@@ -74,7 +79,7 @@ def bench_track(
     ]
     console.print(trial_table(scores))
     console.print(summary_table(scores))
-    report = {
+    report: dict[str, object] = {
         "tracker": tracker,
         "trials": [{"dataset": s.dataset, "trial": s.trial, **asdict(s.score)} for s in scores],
         "datasets": summarise(scores),
@@ -83,6 +88,10 @@ def bench_track(
         figures = measure_speed(RecordingSource(trials[0]), tracker)
         print_speed(console, figures)
         report["speed"] = asdict(figures)
+    if cross_validation:
+        left_out = cross_validate(trials)
+        console.print(left_out_table(left_out))
+        report["cross_validation"] = [asdict(entry) for entry in left_out]
     if json_file is not None:
         json_file.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
 
