@@ -57,6 +57,12 @@ class StationConfig:
             plain.append(self.http.listen)
         return tuple(one for one in plain if not _is_loopback(one.rpartition("/")[2]))
 
+    def standing_problems(self) -> tuple[str, ...]:
+        """What is wrong for as long as these settings stand, for the console."""
+        if all(one.startswith("tls/") for one in self.bus.listen):
+            return ()
+        return ("The bus is plain TCP: whoever reaches it can speak as any unit",)
+
     def refuse_plain(self) -> None:
         """ConfigError where plain connections from other machines were not asked for."""
         if self.insecure or not (plain := self.plain_endpoints()):

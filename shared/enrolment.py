@@ -22,7 +22,7 @@ from cryptography.hazmat.primitives import serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 
 from shared.errors import ConfigError
-from shared.tls import TlsIdentity, check_identity
+from shared.tls import DAMAGED, TlsIdentity, check_identity
 
 _COMPACT_PREFIX = "MUSTER1:"
 _CURVE = ec.SECP256R1()
@@ -111,7 +111,7 @@ def read_enrolment(path: Path) -> Enrolment:
     """Raises ConfigError, one sentence that names the file and what to do."""
     try:
         with path.open("rb") as file:
-            text = file.read(_MOST_BYTES).decode()
+            text = file.read(_MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
         raise ConfigError(f"{path}: there is no such enrolment file") from None
     except OSError as error:
@@ -166,7 +166,7 @@ def _from_compact(text: str) -> Enrolment:
         identity = TlsIdentity(
             _pem(compact.authority), _pem(compact.certificate), private_key_pem(key)
         )
-    except (binascii.Error, zlib.error, msgspec.DecodeError, ValueError) as error:
+    except (binascii.Error, zlib.error, msgspec.DecodeError, *DAMAGED) as error:
         raise ConfigError(
             "the scanned enrolment is damaged or cut short; scan the code again"
         ) from error

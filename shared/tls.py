@@ -10,11 +10,14 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from cryptography import x509
-from cryptography.exceptions import InvalidSignature
+from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
 from cryptography.hazmat.primitives import serialization
 from cryptography.x509.oid import NameOID
 
 from shared.errors import ConfigError
+
+# What cryptography raises for certificates and keys that are not whole.
+DAMAGED = (ValueError, TypeError, UnsupportedAlgorithm, x509.InvalidVersion)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +39,13 @@ def check_identity(identity: TlsIdentity) -> None:
     certificate = parse_certificate(identity.certificate, "certificate")
     try:
         key = serialization.load_pem_private_key(identity.private_key, password=None)
-    except (ValueError, TypeError) as error:
+    except DAMAGED as error:
         raise ConfigError("the private key is damaged; enrol again") from error
     if key.public_key() != certificate.public_key():
         raise ConfigError("the private key belongs to another certificate; enrol again")
     try:
         certificate.verify_directly_issued_by(authority)
-    except (ValueError, TypeError, InvalidSignature) as error:
+    except (*DAMAGED, InvalidSignature) as error:
         raise ConfigError(
             f"the certificate of {common_name(certificate)} was not issued by the authority "
             f"beside it ({common_name(authority)}); enrol again"
@@ -70,9 +73,14 @@ def validity_problem(identity: TlsIdentity, now: datetime) -> str | None:
 def parse_certificate(pem: bytes, what: str) -> x509.Certificate:
     """Raises ConfigError that names ``what`` when the bytes are no certificate."""
     try:
-        return x509.load_pem_x509_certificate(pem)
-    except ValueError as error:
+        certificate = x509.load_pem_x509_certificate(pem)
+        # These are only read when asked for, and may then turn out to be damaged.
+        certificate.public_key()
+        common_name(certificate)
+        _ = certificate.not_valid_before_utc, certificate.not_valid_after_utc
+    except DAMAGED as error:
         raise ConfigError(f"the {what} is damaged; enrol again") from error
+    return certificate
 
 
 def common_name(certificate: x509.Certificate) -> str:

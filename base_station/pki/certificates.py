@@ -14,7 +14,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from shared.enrolment import Holder, private_key_pem
 from shared.errors import ConfigError
-from shared.tls import parse_certificate
+from shared.tls import DAMAGED, parse_certificate
 
 # A unit's clock may be behind the station's when it is enrolled.
 _BACKDATED = timedelta(days=1)
@@ -86,7 +86,7 @@ def read_issued(certificate_pem: bytes, key_pem: bytes) -> Issued:
     certificate = parse_certificate(certificate_pem, "authority's certificate")
     try:
         key = serialization.load_pem_private_key(key_pem, password=None)
-    except (ValueError, TypeError) as error:
+    except DAMAGED as error:
         raise ConfigError("the authority's key is damaged; restore it from its backup") from error
     if (
         not isinstance(key, ec.EllipticCurvePrivateKey)

@@ -92,6 +92,27 @@ def test_a_code_misread_anywhere_is_said(enrolment: Enrolment) -> None:
             parse_enrolment(text[:at] + wrong + text[at + 1 :])
 
 
+def test_a_file_with_any_character_changed_is_itself_or_refused(enrolment: Enrolment) -> None:
+    text = enrolment.to_toml()
+    refused_count = 0
+    for at in range(len(text)):
+        wrong = "A" if text[at] != "A" else "B"
+        try:
+            parse_enrolment(text[:at] + wrong + text[at + 1 :])
+        except ConfigError as error:
+            one_sentence(str(error))
+            refused_count += 1
+    assert refused_count > len(text) / 2
+
+
+def test_a_file_that_passed_through_another_system_comes_back(
+    enrolment: Enrolment, tmp_path: Path
+) -> None:
+    path = tmp_path / "FF-01.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + enrolment.to_toml().replace("\n", "\r\n").encode())
+    assert read_enrolment(path) == enrolment
+
+
 @pytest.mark.parametrize(
     ("content", "expected"),
     [

@@ -20,7 +20,14 @@ def written(tmp_path: Path, toml: str) -> Path:
 def test_the_defaults_open_nothing_plain_to_the_network() -> None:
     config = StationConfig()
     assert config.plain_endpoints() == ()
+    assert config.standing_problems() == ()
     config.refuse_plain()
+
+
+def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_path: Path) -> None:
+    toml = "[bus]\nlisten = ['tcp/127.0.0.1:7447']\n"
+    (problem,) = load_config(written(tmp_path, toml), StationConfig).standing_problems()
+    assert "plain TCP" in problem
 
 
 @pytest.mark.parametrize(

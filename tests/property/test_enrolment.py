@@ -1,0 +1,47 @@
+"""Whatever is handed to a unit as its enrolment: it is one, or one sentence says what is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from base_station.pki.folder import PkiFolder
+from shared.enrolment import Enrolment, parse_enrolment
+from shared.errors import ConfigError
+
+
+@pytest.fixture(scope="module")
+def enrolment(tmp_path_factory: pytest.TempPathFactory) -> Enrolment:
+    data: Path = tmp_path_factory.mktemp("station")
+    folder = PkiFolder(data)
+    folder.create("Test", [], ["tls/127.0.0.1:7447"])
+    return folder.enroll("FF-01")
+
+
+def assert_itself_or_a_sentence(text: str, original: Enrolment) -> None:
+    said = ""
+    name = ""
+    try:
+        name = parse_enrolment(text).identity.common_name()
+    except ConfigError as error:
+        said = str(error)
+    assert name == original.name or said
+    assert "\n" not in said
+
+
+@given(text=st.text())
+def test_any_text(enrolment: Enrolment, text: str) -> None:
+    assert_itself_or_a_sentence(text, enrolment)
+    assert_itself_or_a_sentence("MUSTER1:" + text, enrolment)
+
+
+@given(data=st.data())
+def test_a_file_or_code_with_one_place_changed(enrolment: Enrolment, data: st.DataObject) -> None:
+    text = data.draw(st.sampled_from([enrolment.to_toml(), enrolment.to_compact()]))
+    at = data.draw(st.integers(0, len(text) - 1))
+    cut = data.draw(st.integers(0, 5))
+    put = data.draw(st.text(max_size=5))
+    assert_itself_or_a_sentence(text[:at] + put + text[at + cut :], enrolment)
