@@ -69,7 +69,7 @@ class Recorder:
         self.folder = data / LOG_FOLDER
         self._lock = FolderLock(data)
         try:
-            self.recoveries: tuple[Recovery, ...] = tuple(recover_log(self.folder, policy))
+            self.recoveries: tuple[Recovery, ...] = tuple(recover_log(self.folder))
             self._segments = self._look_up_segments()
             self._writer = SegmentWriter(self.folder, policy, self._segment_closed)
         except BaseException:

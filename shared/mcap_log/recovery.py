@@ -8,7 +8,8 @@ from pathlib import Path
 from shared.errors import LogError
 from shared.mcap_log.durable_file import sync_folder
 from shared.mcap_log.reading import SegmentReader
-from shared.mcap_log.writing import Segment, SegmentPolicy, segment_paths
+from shared.mcap_log.rebuilding import RebuiltSegment
+from shared.mcap_log.writing import segment_paths
 
 _TORN = ".torn"
 _MAKING = ".recovering"
@@ -29,7 +30,7 @@ class Recovery:
         return "; ".join((f"{self.path.name}: {self.messages} records kept, {lost}", *self.damage))
 
 
-def recover_log(folder: Path, policy: SegmentPolicy = SegmentPolicy()) -> list[Recovery]:  # noqa: B008  # frozen
+def recover_log(folder: Path) -> list[Recovery]:
     """Make every segment of a log complete; nobody may be writing to it.
 
     A torn file is kept beside its clean segment, with ``.torn`` added to its name.  Torn again
@@ -46,7 +47,7 @@ def recover_log(folder: Path, policy: SegmentPolicy = SegmentPolicy()) -> list[R
         return [
             recovery
             for path in segment_paths(folder)
-            if (recovery := _recover_segment(path, policy)) is not None
+            if (recovery := _recover_segment(path)) is not None
         ]
     except OSError as error:
         raise LogError(
@@ -55,25 +56,26 @@ def recover_log(folder: Path, policy: SegmentPolicy = SegmentPolicy()) -> list[R
         ) from error
 
 
-def _recover_segment(path: Path, policy: SegmentPolicy) -> Recovery | None:
+def _recover_segment(path: Path) -> Recovery | None:
     """None when the segment is complete."""
     with SegmentReader(path) as reader:
         if reader.is_complete:
             return None
-        clean = Segment(path.with_name(path.name + _MAKING), policy.chunk_bytes)
+        clean = RebuiltSegment(path.with_name(path.name + _MAKING))
         try:
-            for record in reader.records(derived=True):
-                clean.add(*record)
+            for chunk in reader.intact_chunks():
+                clean.add(chunk)
             clean.finish()
             clean.file.sync()
         finally:
             clean.file.close()
-        info = reader.info()
         torn_path = _free_name(path)
         path.rename(torn_path)
         clean.file.path.rename(path)
         sync_folder(path.parent)
-        return Recovery(path, torn_path, info.messages, reader.bytes_lost, tuple(reader.damage))
+        with SegmentReader(path) as mended:
+            messages = mended.info().messages
+        return Recovery(path, torn_path, messages, reader.bytes_lost, tuple(reader.damage))
 
 
 def _free_name(path: Path) -> Path:

@@ -17,7 +17,7 @@ from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.schemas import DERIVED, descriptor_set, sender_time_and_sequence, wire_type_of
 
-_PROFILE = "muster"
+PROFILE = "muster"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
 _TIME = "%Y%m%dT%H%M%SZ"
 _NAME = re.compile(r"(\d{6,})-(\d{8}T\d{6}Z)\.mcap(?:\.torn\d*)?")
@@ -60,7 +60,7 @@ class Segment:
     def __init__(self, path: Path, chunk_bytes: int) -> None:
         self.file = DurableFile(path)
         self._writer = Writer(self.file, chunk_bytes, CompressionType.ZSTD)  # type: ignore[arg-type]  # a stream is what it writes to
-        self._writer.start(profile=_PROFILE)
+        self._writer.start(profile=PROFILE)
         self._schemas: dict[str, int] = {}
         self._topics: dict[str, int] = {}
         self._chunk_topics: set[int] = set()
