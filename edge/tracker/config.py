@@ -40,7 +40,7 @@ class EskfConfig(NamedTuple):
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
     # Noise density of the rate: base plus per_unrest * unrest^1.5.
-    stance_rate_radps_rthz: float = 5e-4
+    stance_rate_radps_rthz: float = 1e-3
     stance_rate_per_unrest: float = 1.0
     unrest_half_window_s: float = 0.3  # over which the foot must rest to tell the gyroscope bias
     stance_rate_worth: float = 1e-4  # an update that tells less of the bias's variance is left out
@@ -55,7 +55,7 @@ class EskfConfig(NamedTuple):
     # Process noise.
     accel_noise_mps2_rthz: float = 0.15
     gyro_noise_radps_rthz: float = 2.5e-3
-    gyro_bias_walk_radps2_rthz: float = 3e-5
+    gyro_bias_walk_radps2_rthz: float = 5e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
 
     # What a clipped gyroscope hides (clipping.py).
