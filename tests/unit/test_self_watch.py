@@ -1,0 +1,56 @@
+"""The station's own problems are told once, and are over when they stay away."""
+
+from __future__ import annotations
+
+from base_station.self_watch import WELL_AFTER, SelfWatch
+from shared.messages.station import ReportProblem
+
+FULL = {"log": "the disk is full"}
+WELL = {"log": ""}
+
+
+def reports(checks: list[dict[str, str]], known: dict[str, str] | None = None) -> list[str]:
+    """What is reported over the checks, with the state that follows the reports."""
+    watch, known, told = SelfWatch(), dict(known or {}), []
+    for now in checks:
+        for report in watch.check(now, known):
+            assert isinstance(report, ReportProblem)
+            told.append(report.text)
+            if report.text:
+                known[report.part] = report.text
+            else:
+                del known[report.part]
+    return told
+
+
+def test_a_problem_is_told_once_and_its_end_once() -> None:
+    assert reports([FULL] * 20) == ["the disk is full"]
+    assert reports([FULL] * 3 + [WELL] * 20) == ["the disk is full", ""]
+
+
+def test_a_part_that_stutters_is_one_problem() -> None:
+    assert reports([FULL, WELL, WELL] * 20) == ["the disk is full"]
+
+
+def test_it_is_well_only_after_a_while() -> None:
+    assert reports([FULL] + [WELL] * (WELL_AFTER - 1)) == ["the disk is full"]
+    assert reports([FULL] + [WELL] * WELL_AFTER) == ["the disk is full", ""]
+
+
+def test_a_part_that_is_only_named_when_it_fails_gets_well_too() -> None:
+    assert reports([{"pipeline": "a mistake"}] + [{}] * WELL_AFTER) == ["a mistake", ""]
+
+
+def test_a_problem_from_before_a_restart_ends_where_its_part_is_watched() -> None:
+    assert reports([WELL] * WELL_AFTER, {"log": "the disk is full"}) == [""]
+
+
+def test_what_others_reported_is_left_to_them() -> None:
+    assert reports([WELL] * 20, {"rule-heat": "the rule failed"}) == []
+
+
+def test_a_problem_that_a_person_dismissed_is_told_again_while_it_lasts() -> None:
+    watch = SelfWatch()
+    assert [r.text for r in watch.check(FULL, {})] == ["the disk is full"]
+    assert [r.text for r in watch.check(FULL, FULL)] == []
+    assert [r.text for r in watch.check(FULL, {})] == ["the disk is full"]
