@@ -8,27 +8,62 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from shared.errors import ConfigError
+
+
+def make_folder(folder: Path) -> None:
+    """Mode 0700.  Raises ConfigError where it cannot, or is there already."""
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700)
+        if os.geteuid() == 0:
+            owner = folder.parent.stat()
+            os.chown(folder, owner.st_uid, owner.st_gid)
+    except OSError as error:
+        raise ConfigError(f"{folder} cannot be made: {error.strerror or error}") from error
+
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Replace ``path``, mode 0600; after a power cut it has the old or the new content."""
+    """Replace ``path``, mode 0600; after a power cut it has the old or the new content.
+
+    Raises ConfigError where it cannot.
+    """
     partial = path.with_name(path.name + ".partial")
-    partial.unlink(missing_ok=True)
-    descriptor = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(descriptor, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)
-    folder = os.open(path.parent, os.O_RDONLY)
     try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+        partial.unlink(missing_ok=True)
+        descriptor = _open_own(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(path)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+    except OSError as error:
+        raise ConfigError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """One command at a time changes the folder; the next waits."""
-    with (folder / "lock").open("w") as lock:
+    try:
+        lock = _open_own(folder / "lock", os.O_RDONLY | os.O_CREAT)
+    except OSError as error:
+        raise ConfigError(f"{folder} cannot be used: {error.strerror or error}") from error
+    try:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
+    finally:
+        os.close(lock)
+
+
+def _open_own(path: Path, flags: int) -> int:
+    """Mode 0600; what root makes belongs to the folder's owner, as whom the station runs."""
+    descriptor = os.open(path, flags, 0o600)
+    if os.geteuid() == 0:
+        owner = path.parent.stat()
+        os.chown(descriptor, owner.st_uid, owner.st_gid)
+    return descriptor

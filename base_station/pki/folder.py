@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 
 from base_station.pki.certificates import Issued, issue, make_authority, read_issued
-from base_station.pki.files import locked, write_atomically
+from base_station.pki.files import locked, make_folder, write_atomically
 from base_station.pki.registry import Entry, Registry, load_registry, save_registry
 from shared.channels import validate_unit_id
 from shared.enrolment import Enrolment, Holder
@@ -70,7 +70,7 @@ class PkiFolder:
                 f"{self._folder} is there already: making a new authority would shut out "
                 "everyone enrolled; move it away if that is meant"
             )
-        self._folder.mkdir(mode=0o700, parents=True)
+        make_folder(self._folder)
         registry = Registry(organisation, _with_loopback(hosts), tuple(connect))
         with locked(self._folder):
             authority = make_authority(organisation, self._now(), AUTHORITY_VALID)

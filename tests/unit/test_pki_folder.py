@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -53,11 +54,26 @@ def test_nobody_else_can_read_what_it_keeps(pki: PkiFolder) -> None:
     pki.enroll("anna")
     pki.renew_station()
     for file in pki.path.iterdir():
-        if file.name != "lock":
-            assert stat.S_IMODE(file.stat().st_mode) == 0o600, file.name
+        assert stat.S_IMODE(file.stat().st_mode) == 0o600, file.name
     assert {file.name for file in pki.path.iterdir()} == {
         "authority.key", "authority.pem", "lock", "registry.json", "station.key", "station.pem",
     }  # fmt: skip
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+def test_what_root_makes_and_changes_is_the_stations(tmp_path: Path) -> None:
+    os.chown(tmp_path, 12345, 12345)
+    pki = PkiFolder(tmp_path)
+    pki.create("Test", [], ["tls/127.0.0.1:7447"])
+    pki.enroll("anna")
+    pki.renew_station()
+    assert {path.stat().st_uid for path in (pki.path, *pki.path.iterdir())} == {12345}
+
+
+def test_a_folder_that_cannot_be_written_is_said(pki: PkiFolder) -> None:
+    (pki.path / "registry.json.partial").mkdir()
+    with pytest.raises(ConfigError, match=r"registry\.json cannot be written"):
+        pki.enroll("anna")
 
 
 def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
