@@ -11,17 +11,19 @@ from queue import SimpleQueue
 from threading import Event
 
 from edge.black_box import BlackBox
+from edge.calibration import Calibration, identity, read_calibration, write_calibration
 from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
-from edge.last_words import mayday_before
+from edge.last_words import answers_before, mayday_before
 from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, sensor_of
 from edge.runtime import Agent, Parts
+from edge.samples import SensorDescription
 from edge.source_reader import SourceReader
 from edge.sources import open_source
 from edge.sources.port import Source
@@ -30,6 +32,7 @@ from edge.tracker import make_tracker
 from shared.bus import Bus
 from shared.clock import SystemClock
 from shared.envelope import Stamper
+from shared.errors import ConfigError
 from shared.messages import EventKind, UnitEvent
 
 logger = logging.getLogger(__name__)
@@ -70,12 +73,20 @@ def compose_agent(
     )
     raw = RawStream(unit_id, spool.boot_id)
     stamper = Stamper(unit_id, spool.boot_id, clock)
+    calibration = _calibration(config, unit_id, source.description, datetime.now(UTC))
+    if calibration is not None:
+        folder.calibrations.mkdir(exist_ok=True)
+        write_calibration(calibration, folder.calibrations / f"{identity(calibration)}.toml")
     description = raw.description(
-        clock.monotonic_ns(), source.description, source=config.source, tracker=config.tracker
+        clock.monotonic_ns(),
+        source.description,
+        source=config.source,
+        tracker=config.tracker,
+        calibration="" if calibration is None else identity(calibration),
     )
     sensor = sensor_of(description)
     pipeline = TrackerPipeline(
-        UnitIdentity(_version(), config.source, config.tracker, sensor),
+        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration),
         make_tracker(config.tracker, sensor),
         stamper,
         config.position_rate_hz,
@@ -102,7 +113,7 @@ def compose_agent(
             reader=SourceReader(source, clock, speed),
             raw=raw,
             pipeline=pipeline,
-            desk=CommandDesk(stamper, pipeline.set_position_rate),
+            desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
             stamper=stamper,
             clock=clock,
             black_box=black_box,
@@ -129,6 +140,29 @@ class ZenohStation:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load
 
         return why_no_link(self._member.connect, self._member.identity, datetime.now(UTC))
+
+
+def _calibration(
+    config: EdgeConfig, unit_id: str, sensor: SensorDescription, now: datetime
+) -> Calibration | None:
+    """The calibration that was set, if it is of this unit and this sensor."""
+    if config.calibration is None:
+        return None
+    calibration = read_calibration(config.calibration)
+    for what, made_for, this in (
+        ("unit", calibration.unit, unit_id),
+        ("sensor", calibration.sensor, sensor.name),
+    ):
+        if made_for and made_for != this:
+            raise ConfigError(
+                f"{config.calibration} is for {what} {made_for!r}, and this is {this!r}; give "
+                "its own calibration, or none"
+            )
+    if calibration.is_old(now):
+        logger.warning("the calibration is old (%s); make a new one", calibration.made.date())
+    for fault in calibration.faults():
+        logger.warning("the calibration is poor: %s; make a new one", fault)
+    return calibration
 
 
 def _new_boot_id() -> int:

@@ -38,6 +38,9 @@ def run(
         Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
     ] = None,
     tracker: Annotated[str | None, typer.Option(help="`muster edge trackers` lists them.")] = None,
+    calibration: Annotated[
+        Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
+    ] = None,
     for_s: Annotated[
         float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0)
     ] = None,
@@ -62,6 +65,7 @@ def run(
         "connect": connect,
         "data": data,
         "tracker": tracker,
+        "calibration": calibration,
         "speed": speed,
     }
     settings = load_config(config, EdgeConfig, flags)

@@ -22,5 +22,12 @@ class DataFolder:
     def black_box(self) -> Path:
         return self.path / "black_box"
 
+    @property
+    def calibrations(self) -> Path:
+        """Those ever used, by their identity: without them the black box's raw samples do not
+        give the same positions again.
+        """
+        return self.path / "calibrations"
+
     def close(self) -> None:
         self._lock.close()

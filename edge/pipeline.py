@@ -10,14 +10,18 @@ import math
 from dataclasses import dataclass
 
 from edge.activity import ActivityMonitor
+from edge.calibration import Calibration, identity
 from edge.decimation import Decimator
 from edge.position_stream import PositionStream
 from edge.raw_stream import gps_fix
 from edge.samples import (
+    CANCEL,
+    MAYDAY,
     AmbientSample,
     BatterySample,
     ButtonPress,
     GpsSample,
+    ImuBatch,
     OtherSample,
     SensorBatch,
     SensorDescription,
@@ -40,6 +44,7 @@ class UnitIdentity:
     source: str
     tracker: str
     sensor: SensorDescription
+    calibration: Calibration | None = None
 
 
 class TrackerPipeline:
@@ -79,7 +84,8 @@ class TrackerPipeline:
 
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
         """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""
-        track = self._tracker.push(batch.imu)
+        imu = self._calibrated(batch.imu)
+        track = self._tracker.push(imu)
         messages: list[Message] = [
             self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
             for fault in self._health.push(batch.imu)
@@ -88,7 +94,7 @@ class TrackerPipeline:
             messages += self._take_other(sample, timeline)
         self._positions.take_pressure(batch.imu)
         messages += self._positions.push(track, timeline)
-        if self._monitor.push(batch.imu, track):
+        if self._monitor.push(imu, track):
             detail = "fell and has not moved since"
             messages.append(self._event(EventKind.FALL, _last_ns(batch, timeline), detail))
         messages += self._periodic(batch, timeline)
@@ -105,6 +111,10 @@ class TrackerPipeline:
         """How many messages are not known to have arrived, for the next status."""
         self._journal_pending = pending
 
+    def _calibrated(self, imu: ImuBatch) -> ImuBatch:
+        calibration = self._identity.calibration
+        return imu if calibration is None else calibration.apply(imu, self._identity.sensor)
+
     def _take_other(self, sample: OtherSample, timeline: Timeline) -> list[Message]:
         mono_ns = timeline.to_mono_ns(sample.t_ns)
         match sample:
@@ -116,7 +126,7 @@ class TrackerPipeline:
                     return [gps_fix(self._stamper.header(mono_ns), sample)]
             case BatterySample():
                 self._battery = sample.level
-            case ButtonPress():
+            case ButtonPress(button=button) if button in (MAYDAY, CANCEL):
                 return self._take_button(sample, mono_ns)
         return []
 
@@ -129,7 +139,7 @@ class TrackerPipeline:
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
         """A mayday stays until the wearer takes it back."""
-        pressed = press.button == "mayday"
+        pressed = press.button == MAYDAY
         if pressed == self._mayday:
             return []
         self._mayday = pressed
@@ -163,6 +173,7 @@ class TrackerPipeline:
 
     def _describe(self, mono_ns: int | None) -> UnitDescription:
         sensor = self._identity.sensor
+        calibration = self._identity.calibration
         return UnitDescription(
             header=self._stamper.header(mono_ns),
             software_version=self._identity.software_version,
@@ -172,10 +183,12 @@ class TrackerPipeline:
             accel_full_scale_mps2=sensor.accel_full_scale_mps2,
             gyro_full_scale_radps=sensor.gyro_full_scale_radps,
             tracker=self._identity.tracker,
-            calibration="",
+            calibration="" if calibration is None else identity(calibration),
             has_magnetometer=sensor.mag_present,
             has_barometer=sensor.barometer_present,
             has_gps=self._has_gps,
+            calibrated_s=None if calibration is None else round(calibration.made.timestamp()),
+            calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:

@@ -16,6 +16,9 @@ import math
 import numpy as np
 
 from edge.samples import (
+    ACKNOWLEDGE,
+    CANCEL,
+    MAYDAY,
     AmbientSample,
     BatterySample,
     ButtonPress,
@@ -39,7 +42,11 @@ from shared.messages import (
     UnitEvent,
 )
 
-_EVENT_OF_BUTTON = {"mayday": EventKind.MAYDAY, "cancel": EventKind.MAYDAY_CANCELLED}
+_EVENT_OF_BUTTON = {
+    MAYDAY: EventKind.MAYDAY,
+    CANCEL: EventKind.MAYDAY_CANCELLED,
+    ACKNOWLEDGE: EventKind.ACKNOWLEDGED,
+}
 _BUTTON_OF_EVENT = {kind: button for button, kind in _EVENT_OF_BUTTON.items()}
 
 
@@ -64,9 +71,15 @@ class RawStream:
         return tuple(raw)
 
     def description(
-        self, t_ns: int, sensor: SensorDescription, *, source: str, tracker: str
+        self,
+        t_ns: int,
+        sensor: SensorDescription,
+        *,
+        source: str,
+        tracker: str,
+        calibration: str = "",
     ) -> UnitDescription:
-        """What the samples that follow come from."""
+        """What the samples that follow come from; they are not calibrated themselves."""
         return UnitDescription(
             header=self._header(t_ns),
             software_version="",
@@ -76,7 +89,7 @@ class RawStream:
             accel_full_scale_mps2=sensor.accel_full_scale_mps2,
             gyro_full_scale_radps=sensor.gyro_full_scale_radps,
             tracker=tracker,
-            calibration="",
+            calibration=calibration,
             has_magnetometer=sensor.mag_present,
             has_barometer=sensor.barometer_present,
             has_gps=False,

@@ -67,13 +67,15 @@ def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Cali
     """The calibration that complete steps determine."""
     warm_up = next((step for step in steps if isinstance(step, WarmUpStep)), None)
     warmth = None if warm_up is None else solve_warmth(warm_up.windows())
+    turned_over = next((step for step in steps if isinstance(step, PosesStep)), None)
+    poses = [] if turned_over is None else turned_over.poses()
     accelerometer = gyroscope = magnetometer = None
     for step in steps:
         match step:
             case StillStep():
-                gyroscope = solve_gyroscope(step.windows(), warmth)
+                gyroscope = solve_gyroscope(step.windows(), poses, warmth)
             case PosesStep():
-                accelerometer = solve_accelerometer(step.poses(), warmth)
+                accelerometer = solve_accelerometer(poses, warmth)
             case TurningStep():
                 magnetometer = solve_magnetometer(step.fields_ut())
     return Calibration(

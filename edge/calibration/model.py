@@ -1,7 +1,7 @@
 """What is known of one unit's sensor errors, and how samples are rid of them.
 
     force = gain (reading - bias - bias_per_degc (temperature - at_degc))
-    rate  = reading - bias - bias_per_degc (temperature - at_degc)
+    rate  = reading - bias - bias_per_degc (temperature - at_degc) - per_force (force reading)
     field = gain (reading - hard_iron)
 
 Beyond the temperatures of the warm-up the bias is taken to stay as it was at the nearest.
@@ -40,6 +40,8 @@ class Accelerometer(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 class Gyroscope(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     bias_radps: Vector
     bias_std_radps: Vector
+    per_force: Matrix | None = None  # rad/s of each m/s2; None: there were no poses
+    per_force_std: Matrix | None = None
     at_degc: float | None = None
     residual_radps: float  # root mean square of half-second means
 
@@ -113,7 +115,7 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             return imu.accel_mps2
         slope = None if warmth is None else warmth.accel_bias_per_degc_mps2
         biased = imu.accel_mps2 - np.array(part.bias_mps2)
-        return np.asarray((biased - self._drift(imu, slope, part.at_degc)) @ np.array(part.gain).T)
+        return _turned(part.gain, biased - self._drift(imu, slope, part.at_degc))
 
     def _rate(self, imu: ImuBatch) -> Floats:
         part, warmth = self.gyroscope, self.warmth
@@ -121,13 +123,16 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             return imu.gyro_radps
         slope = None if warmth is None else warmth.gyro_bias_per_degc_radps
         drift = self._drift(imu, slope, part.at_degc)
-        return np.asarray(imu.gyro_radps - np.array(part.bias_radps) - drift)
+        rate_radps = imu.gyro_radps - np.array(part.bias_radps) - drift
+        if part.per_force is not None:
+            rate_radps = rate_radps - _turned(part.per_force, imu.accel_mps2)
+        return np.asarray(rate_radps)
 
     def _field(self, mag_ut: Floats | None) -> Floats | None:
         part = self.magnetometer
         if part is None or mag_ut is None:
             return mag_ut
-        return np.asarray((mag_ut - np.array(part.hard_iron_ut)) @ np.array(part.gain).T)
+        return _turned(part.gain, mag_ut - np.array(part.hard_iron_ut))
 
     def _drift(self, imu: ImuBatch, slope: Vector | None, at_degc: float | None) -> Floats:
         """What warmth adds to the bias (n, 3); nothing where the temperature is not known."""
@@ -137,6 +142,16 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         low, high = min(self.warmth.from_degc, at_degc), max(self.warmth.to_degc, at_degc)
         within = np.clip(degc, low, high)
         return np.asarray(np.nan_to_num(within - at_degc)[:, None] * np.array(slope))
+
+
+def _turned(gain: Matrix, vectors: Floats) -> Floats:
+    """``gain`` times each row (n, 3).
+
+    Not by matrix product, whose last bit depends on how many rows there are: samples must
+    come out the same however they are batched.
+    """
+    x, y, z = np.array(gain).T
+    return np.asarray(vectors[:, :1] * x + vectors[:, 1:2] * y + vectors[:, 2:] * z)
 
 
 def _unless_clipped(reading: Floats, corrected: Floats, full_scale: float | None) -> Floats:

@@ -43,6 +43,13 @@ def _table(calibration: Calibration) -> Table:
             "gyroscope bias", np.degrees(gyro.bias_radps), np.degrees(gyro.bias_std_radps),
             "deg/s", 4,
         )  # fmt: skip
+    if gyro is not None and gyro.per_force is not None and gyro.per_force_std is not None:
+        for axis, values, stds in zip("xyz", gyro.per_force, gyro.per_force_std, strict=True):
+            scale = 1e3 * np.degrees(1.0)
+            row(
+                f"... {axis} by force", scale * np.array(values), scale * np.array(stds),
+                "mdeg/s by m/s2", 2,
+            )  # fmt: skip
     if mag := calibration.magnetometer:
         row("hard iron", mag.hard_iron_ut, mag.hard_iron_std_ut, "uT", 2)
         row("soft iron", np.diag(mag.gain), np.diag(mag.gain_std), "gain", 4)

@@ -20,19 +20,45 @@ _NOISE_SHARE = 0.7  # what is not credited to noise counts as walk, the worse of
 _BLOCK = 20  # windows that are averaged: slow noise makes neighbours alike
 
 
-def solve_gyroscope(windows: list[Window], warmth: Warmth | None) -> Gyroscope:
+def solve_gyroscope(windows: list[Window], poses: list[Window], warmth: Warmth | None) -> Gyroscope:
+    """The bias of one rest; from ``poses``, if there are any, what force adds to it."""
     mean = mean_of(windows)
-    rates = np.array([window.gyro_radps for window in windows])
-    if warmth is not None:
-        degc = np.array([window.temperature_degc for window in windows]) - mean.temperature_degc
-        rates = rates - degc[:, None] * np.array(warmth.gyro_bias_per_degc_radps)
+    rates = _at_one_warmth(windows, mean.temperature_degc, warmth)
     spread = rates.std(axis=0, ddof=1)
+    per_force = per_force_std = None
+    bias = rates.mean(axis=0)
+    if poses:
+        slope, std = _force_slope(poses, _at_one_warmth(poses, mean.temperature_degc, warmth))
+        bias = bias - slope @ mean.accel_mps2
+        per_force, per_force_std = matrix(slope), matrix(std)
     return Gyroscope(
-        bias_radps=vector(rates.mean(axis=0)),
+        bias_radps=vector(bias),
         bias_std_radps=vector(spread / np.sqrt(len(rates))),
+        per_force=per_force,
+        per_force_std=per_force_std,
         at_degc=or_none(mean.temperature_degc),
         residual_radps=float(np.sqrt(np.mean(spread**2))),
     )
+
+
+def _at_one_warmth(windows: list[Window], at_degc: float, warmth: Warmth | None) -> Floats:
+    """The rates (n, 3) as they would be at that temperature."""
+    rates = np.array([window.gyro_radps for window in windows])
+    if warmth is None:
+        return rates
+    degc = np.array([window.temperature_degc for window in windows]) - at_degc
+    return np.asarray(rates - degc[:, None] * np.array(warmth.gyro_bias_per_degc_radps))
+
+
+def _force_slope(poses: list[Window], rates: Floats) -> tuple[Floats, Floats]:
+    """Rate by force (3, 3) with standard deviations; at least six poses."""
+    forces = np.array([pose.accel_mps2 for pose in poses])
+    table = np.column_stack((forces, np.ones(len(forces))))
+    inverse = np.linalg.inv(table.T @ table)
+    solution = inverse @ table.T @ rates
+    variance = ((rates - table @ solution) ** 2).sum(axis=0) / (len(poses) - 4)
+    std = np.sqrt(np.outer(variance, np.diag(inverse)[:3]))
+    return solution[:3].T, std
 
 
 def tells_misalignment(directions: Floats) -> tuple[bool, bool, bool]:

@@ -22,6 +22,8 @@ class UnitDescription(msgspec.Struct, frozen=True):
     has_magnetometer: bool
     has_barometer: bool
     has_gps: bool
+    calibrated_s: int | None = None  # UTC seconds at which it was made; None: no calibration
+    calibration_faults: str = ""  # what is poor about it, in words; empty: nothing
 
     def to_wire(self) -> unit_description_pb2.UnitDescription:
         return unit_description_pb2.UnitDescription(
@@ -37,6 +39,8 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_magnetometer=self.has_magnetometer,
             has_barometer=self.has_barometer,
             has_gps=self.has_gps,
+            calibrated_s=self.calibrated_s or 0,
+            calibration_faults=self.calibration_faults,
         )
 
     @staticmethod
@@ -54,4 +58,6 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_magnetometer=wire.has_magnetometer,
             has_barometer=wire.has_barometer,
             has_gps=wire.has_gps,
+            calibrated_s=wire.calibrated_s or None,
+            calibration_faults=wire.calibration_faults,
         )

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
 
 import pytest
 
 from edge.app import run_agent
+from edge.calibration import Calibration, write_calibration
 from edge.config import EdgeConfig
 from shared.config import load_config
 from shared.errors import ConfigError, MusterError
@@ -51,6 +53,7 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         ({"unit": "u1", "connect": ["tls/host:7447"]}, "needs the unit's enrolment"),
         ({"unit": "u1", "tracker": "esfk"}, "eskf"),
         ({"unit": "u1", "data": Path("/dev/null")}, "/dev/null"),
+        ({"unit": "u1", "calibration": Path("nothing.toml")}, "there is no calibration file"),
         ({"enrolment": Path("nothing.toml")}, "there is no such enrolment file"),
     ],
 )
@@ -105,3 +108,22 @@ def test_settings_that_cannot_work_leave_nothing_behind(tmp_path):
     with pytest.raises(ConfigError):
         run_agent(config, Event(), for_s=0.0, paced=True)
     assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize(
+    ("unit", "sensor", "said"),
+    [("u2", "", "is for unit 'u2', and this is 'u1'"), ("", "other", "is for sensor 'other'")],
+)
+def test_the_calibration_of_another_unit_is_refused(unit, sensor, said, tmp_path):
+    path = tmp_path / "c.toml"
+    write_calibration(Calibration(unit, sensor, datetime(2026, 1, 1, tzinfo=UTC)), path)
+    flags = {"unit": "u1", "calibration": path, "source": WALK, "data": tmp_path / "data"}
+    with pytest.raises(ConfigError, match=said):
+        run_agent(load_config(None, EdgeConfig, flags), Event(), for_s=0.0, paced=True)
+
+
+def test_calibrating_without_a_source_says_what_to_give(tmp_path):
+    result = muster_edge("calibrate", "--out", "c.toml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "--still, --poses, --turning, --warm-up" in result.stderr
+    assert "Traceback" not in result.stderr

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from datetime import UTC, datetime
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from edge.calibration import Calibration, identity
+from edge.calibration.model import Gyroscope
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import (
     AmbientSample,
@@ -199,6 +202,7 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
     assert [event.kind for event in pressed] == [EventKind.MAYDAY]
     assert not of(pipe.step(others_only(ButtonPress(2, "mayday"))), UnitEvent)
     assert of(steps(pipe, walk(300), []), Status)[-1].mayday
+    assert not of(pipe.step(others_only(ButtonPress(3, "acknowledge"))), UnitEvent)
     cancelled = of(pipe.step(others_only(ButtonPress(4 * NS_PER_S, "cancel"))), UnitEvent)
     assert [event.kind for event in cancelled] == [EventKind.MAYDAY_CANCELLED]
     assert not of(steps(pipe, walk(300, 5.0), []), Status)[-1].mayday
@@ -242,3 +246,33 @@ def test_a_clock_that_jumps_a_day_in_either_direction_stops_nothing():
         messages = steps(pipe, walk(500, start_s), [5] * 99)
         assert len(of(messages, Position)) == 25
         assert len(of(messages, Status)) == 5
+
+
+def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which():
+    seen: list[ImuBatch] = []
+
+    class Listening(StraightAhead):
+        def push(self, batch: ImuBatch) -> TrackBatch:
+            seen.append(batch)
+            return super().push(batch)
+
+    made = datetime(2026, 3, 1, tzinfo=UTC)
+    gyroscope = Gyroscope(
+        bias_radps=(0.1, 0.2, 0.3), bias_std_radps=(0.0, 0.0, 0.0), residual_radps=0.01
+    )
+    calibration = Calibration("u1", "fake", made, gyroscope=gyroscope)
+    identified = UnitIdentity("1.0", "test", "straight", SENSOR, calibration)
+    pipe = TrackerPipeline(identified, Listening(), Stamper("u1", 7, ManualClock()), 5.0)
+    (description,) = of(pipe.start(), UnitDescription)
+    assert description.calibration == identity(calibration)
+    assert description.calibrated_s == made.timestamp()
+    assert description.calibration_faults == "gyroscope off by 0.573 deg/s"
+    imu = walk(10)
+    steps(pipe, imu, [10])
+    assert seen[0].gyro_radps[0].tolist() == [-0.1, -0.2, -0.3]
+    assert imu.gyro_radps[0].tolist() == [0.0, 0.0, 0.0]
+
+
+def test_without_a_calibration_the_description_names_none():
+    (description,) = of(pipeline().start(), UnitDescription)
+    assert (description.calibration, description.calibrated_s) == ("", None)
