@@ -4,6 +4,7 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 
 from __future__ import annotations
 
+from shared.mcap_log.folder import segment_paths
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.schemas import location_topic, log_topic
@@ -12,7 +13,6 @@ from shared.mcap_log.writing import (
     SegmentPolicy,
     SegmentState,
     SegmentWriter,
-    segment_paths,
 )
 
 __all__ = [

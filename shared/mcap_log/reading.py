@@ -1,8 +1,4 @@
-"""Reads the segments of a log: by time and topic, whole, growing, torn or damaged.
-
-The MCAP container is read here with ``struct``: the library's reader stops at the first thing
-that is wrong, and takes several times as long.
-"""
+"""Reads the segments of a log: by time and topic, whole, growing, torn or damaged."""
 
 from __future__ import annotations
 
@@ -11,33 +7,36 @@ import struct
 import zlib
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from pathlib import Path
 from typing import BinaryIO
 
-import zstandard
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from shared.clock import NS_PER_S
 from shared.errors import LogError
+from shared.mcap_log.container import (
+    BETWEEN_CHUNKS,
+    CHUNK,
+    CHUNK_INDEX,
+    CHUNK_MARK,
+    FOOTER_BYTES,
+    INDEX_ENTRY,
+    INDEX_OFFSET,
+    MESSAGE,
+    MESSAGE_BYTES,
+    NONSENSE,
+    RECORD,
+    learn_topic,
+    message_offsets,
+    records_in,
+    unpacked,
+)
+from shared.mcap_log.folder import segment_paths, segments_within
 from shared.mcap_log.schemas import DERIVED
-from shared.mcap_log.writing import SegmentInfo, SegmentState, segment_began_s, segment_paths
+from shared.mcap_log.writing import SegmentInfo, SegmentState
 
 LogRecord = tuple[int, str, bytes]  # log time, key, payload
-
-_RECORD = struct.Struct("<BQ")  # opcode, length
-_CHUNK = struct.Struct("<QQQII")  # start, end, uncompressed size, crc, length of compression
-_MESSAGE = struct.Struct("<BQHIQ")  # opcode, length, channel, sequence, log time
-_MESSAGE_BYTES = 9 + 2 + 4 + 8 + 8  # up to the payload
-_CHUNK_INDEX = struct.Struct("<QQQQI")  # start, end, offset, length, length of the index offsets
-_INDEX_OFFSET = struct.Struct("<HQ")
-_INDEX_ENTRY = struct.Struct("<QQ")
-_FOOTER_BYTES = 9 + 20 + len(MCAP0_MAGIC)
-_CHUNK_BYTES_MAX = 1 << 30
-_COMPRESSION = b"zstd"
-_CHUNK_MARK = struct.pack("<I", len(_COMPRESSION)) + _COMPRESSION
-_BETWEEN_CHUNKS = (Opcode.HEADER, Opcode.MESSAGE_INDEX)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +162,7 @@ class SegmentReader:
             data = self._chunk_data(chunk)
             offsets = None if keys is None else self._indexed_offsets(chunk, keys, data)
             if offsets is None:
-                offsets = list(_message_offsets(data, self._contents.topics))
+                offsets = list(message_offsets(data, self._contents.topics))
             self._contents.chunks_learned = max(self._contents.chunks_learned, index + 1)
             if not outside:
                 yield from self._records_at(data, offsets, wanted)
@@ -194,10 +193,10 @@ class SegmentReader:
         known = self._contents.topics
         unknown = 0
         for offset in offsets:
-            _, length, topic, _, t_ns = _MESSAGE.unpack_from(data, offset)
+            _, length, topic, _, t_ns = MESSAGE.unpack_from(data, offset)
             key = topics.get(topic)
             if key is not None and wanted.low_ns <= t_ns < wanted.high_ns:
-                yield t_ns, key, data[offset + _MESSAGE_BYTES : offset + 9 + length]
+                yield t_ns, key, data[offset + MESSAGE_BYTES : offset + 9 + length]
             elif topic not in known:
                 unknown += 1
         if unknown:
@@ -207,8 +206,8 @@ class SegmentReader:
         """The chunk's records; nothing, and a note of the damage, where they are not intact."""
         try:
             _, length = self._record_at(chunk.offset)
-            return _unpacked(self._read(chunk.offset + 9, length))
-        except (ValueError, struct.error) as error:
+            return unpacked(self._read(chunk.offset + 9, length))
+        except NONSENSE as error:
             self._note(f"the chunk at byte {chunk.offset} is lost ({error})")
             return b""
 
@@ -223,19 +222,19 @@ class SegmentReader:
             return None
         offsets: list[int] = []
         try:
-            for topic, at in _INDEX_OFFSET.iter_unpack(chunk.topic_offsets):
+            for topic, at in INDEX_OFFSET.iter_unpack(chunk.topic_offsets):
                 if self._contents.topics.get(topic) in keys:
                     offsets += self._index_entries(topic, at, data)
-        except (ValueError, struct.error):
+        except NONSENSE:
             self._note(f"the index of the chunk at byte {chunk.offset} is damaged; read without it")
             return None
         return sorted(offsets)
 
     def _index_entries(self, topic: int, at: int, data: bytes) -> list[int]:
         _, length = self._record_at(at)
-        entries = list(_INDEX_ENTRY.iter_unpack(self._read(at + 9, length)[6:]))
+        entries = list(INDEX_ENTRY.iter_unpack(self._read(at + 9, length)[6:]))
         offsets = [offset for _, offset in entries]
-        found = [_MESSAGE.unpack_from(data, offset) for offset in offsets]
+        found = [MESSAGE.unpack_from(data, offset) for offset in offsets]
         if [(topic, t_ns) for t_ns, _ in entries] != [(head[2], head[4]) for head in found]:
             raise ValueError("it names other messages")
         if any(later <= earlier for earlier, later in pairwise(offsets)):
@@ -246,27 +245,27 @@ class SegmentReader:
         """The contents as the end of a complete file lists them; None where it does not."""
         try:
             return self._read_summary()
-        except (ValueError, struct.error):
+        except NONSENSE:
             return None
 
     def _read_summary(self) -> _Contents | None:
-        if self._size < _FOOTER_BYTES + len(MCAP0_MAGIC):
+        if self._size < FOOTER_BYTES + len(MCAP0_MAGIC):
             return None
-        footer = self._read(self._size - _FOOTER_BYTES, _FOOTER_BYTES)
+        footer = self._read(self._size - FOOTER_BYTES, FOOTER_BYTES)
         start, _, expected_crc = struct.unpack_from("<QQI", footer, 9)
         if not footer.endswith(MCAP0_MAGIC) or footer[0] != Opcode.FOOTER or start == 0:
             return None
-        summary = self._read(start, self._size - _FOOTER_BYTES - start)
+        summary = self._read(start, self._size - FOOTER_BYTES - start)
         if zlib.crc32(footer[: 9 + 16], zlib.crc32(summary)) != expected_crc:
             self._note("its table of contents is damaged and was made again")
             return None
         contents = _Contents(is_complete=True, readable_bytes=self._size, counts={})
         for opcode, body in records_in(summary):
             if opcode == Opcode.CHANNEL:
-                _learn_topic(body, contents.topics)
+                learn_topic(body, contents.topics)
             elif opcode == Opcode.CHUNK_INDEX:
-                begin, end, offset, _, count = _CHUNK_INDEX.unpack_from(body)
-                topic_offsets = body[_CHUNK_INDEX.size : _CHUNK_INDEX.size + count]
+                begin, end, offset, _, count = CHUNK_INDEX.unpack_from(body)
+                topic_offsets = body[CHUNK_INDEX.size : CHUNK_INDEX.size + count]
                 contents.chunks.append(_Chunk(offset, begin, end, topic_offsets or None))
             elif opcode == Opcode.STATISTICS:
                 contents.counts = dict(struct.iter_unpack("<HQ", body[46:]))
@@ -280,8 +279,8 @@ class SegmentReader:
         while offset + 9 <= self._size:
             opcode, length = self._record_at(offset)
             fits = offset + 9 + length <= self._size
-            is_chunk = opcode == Opcode.CHUNK and length >= _CHUNK.size
-            if not fits or not (is_chunk or opcode in _BETWEEN_CHUNKS):
+            is_chunk = opcode == Opcode.CHUNK and length >= CHUNK.size
+            if not fits or not (is_chunk or opcode in BETWEEN_CHUNKS):
                 found = self._next_chunk(offset + 1)
                 if found is None:
                     break
@@ -289,7 +288,7 @@ class SegmentReader:
                 offset = found
                 continue
             if is_chunk:
-                start_ns, end_ns, *_ = _CHUNK.unpack(self._read(offset + 9, _CHUNK.size))
+                start_ns, end_ns, *_ = CHUNK.unpack(self._read(offset + 9, CHUNK.size))
                 contents.chunks.append(_Chunk(offset, start_ns, end_ns))
             offset += 9 + length
             contents.readable_bytes = offset
@@ -299,19 +298,19 @@ class SegmentReader:
         """The next intact chunk record at or behind ``offset``, by the name of its compression."""
         rest = self._read(offset, self._size - offset)
         at = -1
-        while (at := rest.find(_CHUNK_MARK, at + 1)) >= 0:
-            begin = at - 9 - (_CHUNK.size - 4)
+        while (at := rest.find(CHUNK_MARK, at + 1)) >= 0:
+            begin = at - 9 - (CHUNK.size - 4)
             if begin >= 0 and rest[begin] == Opcode.CHUNK:
-                _, length = _RECORD.unpack_from(rest, begin)
+                _, length = RECORD.unpack_from(rest, begin)
                 try:
-                    _unpacked(rest[begin + 9 : begin + 9 + length])
-                except (ValueError, struct.error):
+                    unpacked(rest[begin + 9 : begin + 9 + length])
+                except NONSENSE:
                     continue
                 return offset + begin
         return None
 
     def _record_at(self, offset: int) -> tuple[int, int]:
-        opcode, length = _RECORD.unpack(self._read(offset, 9))
+        opcode, length = RECORD.unpack(self._read(offset, 9))
         return opcode, length
 
     def _read(self, offset: int, count: int) -> bytes:
@@ -342,65 +341,8 @@ def read_log(
     next.  ``on_damage`` hears in words of each part that could not be read.  Raises LogError
     when a segment cannot be opened.
     """
-    for path in _within(segment_paths(folder), start_ns, end_ns):
+    for path in segments_within(segment_paths(folder), start_ns, end_ns):
         with SegmentReader(path) as segment:
             yield from segment.records(start_ns, end_ns, keys)
             for note in segment.damage:
                 on_damage(note)
-
-
-def _within(paths: list[Path], start_ns: int | None, end_ns: int | None) -> list[Path]:
-    """The segments that can have records of the window, by the times in their names."""
-    return [
-        path
-        for path, following in zip_longest(paths, paths[1:])
-        if (end_ns is None or segment_began_s(path) * NS_PER_S < end_ns)
-        and (  # the second in which the following one began is the last of this one
-            start_ns is None
-            or following is None
-            or (segment_began_s(following) + 1) * NS_PER_S > start_ns
-        )
-    ]
-
-
-def _unpacked(chunk: bytes) -> bytes:
-    """The records inside a chunk record; ValueError when they are not intact."""
-    _, _, size, crc, name_length = _CHUNK.unpack_from(chunk)
-    body = _CHUNK.size + name_length
-    if chunk[_CHUNK.size : body] != _COMPRESSION or size > _CHUNK_BYTES_MAX:
-        raise ValueError("its head makes no sense")
-    try:
-        data = zstandard.decompress(chunk[body + 8 :], size)
-    except (zstandard.ZstdError, MemoryError) as error:
-        raise ValueError("it does not unpack") from error
-    if zlib.crc32(data) != crc:
-        raise ValueError("its checksum is wrong")
-    return data
-
-
-def records_in(data: bytes) -> Iterator[tuple[int, bytes]]:
-    """Opcode and body of each MCAP record."""
-    offset = 0
-    while offset < len(data):
-        opcode, length = _RECORD.unpack_from(data, offset)
-        yield opcode, data[offset + 9 : offset + 9 + length]
-        offset += 9 + length
-
-
-def _message_offsets(data: bytes, topics: dict[int, str]) -> Iterator[int]:
-    """Where the messages in a chunk's data are; learns the topics on the way."""
-    offset = 0
-    unpack = _RECORD.unpack_from
-    message = int(Opcode.MESSAGE)
-    while offset < len(data):
-        opcode, length = unpack(data, offset)
-        if opcode == message:
-            yield offset
-        elif opcode == Opcode.CHANNEL:
-            _learn_topic(data[offset + 9 : offset + 9 + length], topics)
-        offset += 9 + length
-
-
-def _learn_topic(channel: bytes, topics: dict[int, str]) -> None:
-    number, _, length = struct.unpack_from("<HHI", channel)
-    topics[number] = channel[8 : 8 + length].decode("utf-8", "replace")

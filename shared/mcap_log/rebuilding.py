@@ -20,11 +20,11 @@ from mcap.records import (
 )
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
+from shared.mcap_log.container import NONSENSE, RECORD, records_in
 from shared.mcap_log.durable_file import DurableFile
-from shared.mcap_log.reading import IntactChunk, records_in
+from shared.mcap_log.reading import IntactChunk
 from shared.mcap_log.writing import PROFILE
 
-_RECORD = struct.Struct("<BQ")
 _SIZE = struct.Struct("<Q")
 _NUMBER = struct.Struct("<H")
 
@@ -47,10 +47,10 @@ class RebuiltSegment:
         offset = self.file.tell()
         self.file.write(chunk.record)
         index_offsets = _index_offsets(chunk.index, self.file.tell())
-        if index_offsets.keys() != counts.keys():  # it was torn; the chunk is read without
-            index_offsets = {}
-        else:
+        if index_offsets.keys() == counts.keys():
             self.file.write(chunk.index)
+        else:  # it was torn or is damaged: the chunk is read without
+            index_offsets = {}
         (name_length,) = struct.unpack_from("<I", chunk.record, 9 + 28)
         name_end = 9 + 32 + name_length
         self._chunks.append(
@@ -76,7 +76,7 @@ class RebuiltSegment:
         start = self.file.tell()
         summary = b"".join((*self._schemas.values(), *self._topics.values()))
         summary += b"".join(_bytes_of(record) for record in (self._statistics(), *self._chunks))
-        checked = summary + _RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
+        checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
         self.file.write(summary)
         self.file.write(_bytes_of(Footer(start, 0, zlib.crc32(checked))))
         self.file.write(MCAP0_MAGIC)
@@ -89,9 +89,9 @@ class RebuiltSegment:
             if opcode == Opcode.MESSAGE:
                 counts[number] += 1
             elif opcode == Opcode.CHANNEL:
-                self._topics[number] = _RECORD.pack(opcode, len(body)) + body
+                self._topics[number] = RECORD.pack(opcode, len(body)) + body
             elif opcode == Opcode.SCHEMA:
-                self._schemas[number] = _RECORD.pack(opcode, len(body)) + body
+                self._schemas[number] = RECORD.pack(opcode, len(body)) + body
         return counts
 
     def _statistics(self) -> Statistics:
@@ -109,13 +109,16 @@ class RebuiltSegment:
 
 
 def _index_offsets(index: bytes, begin: int) -> dict[int, int]:
-    """Where the index of each topic will stand."""
+    """Where the index of each topic will stand; nothing where it makes no sense."""
     offsets: dict[int, int] = {}
     at = 0
-    while at < len(index):
-        _, length = _RECORD.unpack_from(index, at)
-        offsets[_NUMBER.unpack_from(index, at + 9)[0]] = begin + at
-        at += 9 + length
+    try:
+        while at < len(index):
+            _, length = RECORD.unpack_from(index, at)
+            offsets[_NUMBER.unpack_from(index, at + 9)[0]] = begin + at
+            at += 9 + length
+    except NONSENSE:
+        return {}
     return offsets
 
 

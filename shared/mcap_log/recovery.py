@@ -7,9 +7,9 @@ from pathlib import Path
 
 from shared.errors import LogError
 from shared.mcap_log.durable_file import sync_folder
+from shared.mcap_log.folder import segment_paths
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment
-from shared.mcap_log.writing import segment_paths
 
 _TORN = ".torn"
 _MAKING = ".recovering"

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
 
@@ -15,12 +13,11 @@ from mcap.writer import CompressionType, Writer
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
+from shared.mcap_log.folder import segment_number, segment_path
 from shared.mcap_log.schemas import DERIVED, descriptor_set, sender_time_and_sequence, wire_type_of
 
 PROFILE = "muster"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
-_TIME = "%Y%m%dT%H%M%SZ"
-_NAME = re.compile(r"(\d{6,})-(\d{8}T\d{6}Z)\.mcap(?:\.torn\d*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +142,7 @@ class SegmentWriter:
         """
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._next_number = 1 + max(map(_number_of, folder.iterdir()), default=0)
+            self._next_number = 1 + max(map(segment_number, folder.iterdir()), default=0)
         except OSError as error:
             raise LogError(f"the log folder {folder} cannot be used: {error.strerror}") from error
         self._folder = folder
@@ -238,8 +235,7 @@ class SegmentWriter:
 
     def _begin_segment(self, t_ns: int) -> None:
         self._end_segment()
-        began = datetime.fromtimestamp(t_ns // NS_PER_S, UTC).strftime(_TIME)
-        path = self._folder / f"{self._next_number:06d}-{began}.mcap"
+        path = segment_path(self._folder, self._next_number, t_ns)
         self._segment = Segment(path, self._policy.chunk_bytes)
         self._next_number += 1
 
@@ -248,26 +244,3 @@ class SegmentWriter:
             self._segment.finish()
             self._ended.append(self._segment)
             self._segment = None
-
-
-def segment_paths(folder: Path) -> list[Path]:
-    """The segments of a log in the order of writing."""
-    if not folder.is_dir():
-        return []
-    return sorted(
-        (path for path in folder.iterdir() if path.suffix == ".mcap" and _number_of(path)),
-        key=_number_of,
-    )
-
-
-def segment_began_s(path: Path) -> int:
-    """The time of a segment's first record in whole seconds since 1970, from its name."""
-    match = _NAME.fullmatch(path.name)
-    assert match is not None
-    return int(datetime.strptime(match.group(2), _TIME).replace(tzinfo=UTC).timestamp())
-
-
-def _number_of(path: Path) -> int:
-    """0 where the name is not that of a segment."""
-    match = _NAME.fullmatch(path.name)
-    return int(match.group(1)) if match else 0
