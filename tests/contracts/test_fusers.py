@@ -9,11 +9,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from base_station.bench.fusion_walks import Receiver, Walk
 from base_station.fusion import FUSERS
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
 from shared.geo import rotate
 from shared.quality import Quality
-from tests.fusion_walks import Receiver, Walk
 
 CHI2_2_95 = 5.991
 

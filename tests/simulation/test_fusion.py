@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from base_station.bench.fusion_walks import Errors, Floats, Receiver, Scores, Walk, mono_ns, run
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind, Start
 from shared.geo import wrap_pi
 from shared.quality import Quality
-from tests.fusion_walks import Errors, Floats, Receiver, Scores, Walk, mono_ns, run
 
 ALWAYS, NEVER = (0.0, math.inf), (math.inf, math.inf)
 SEEDS = range(16)

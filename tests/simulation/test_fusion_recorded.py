@@ -1,8 +1,8 @@
 """The fuser on the tracks of recorded walks, with satellite fixes cut in.
 
 Recipe: a walk is tracked as it is; its measured truth, turned by a drawn angle, gets a fix a
-second with the receiver errors of ``tests.fusion_walks`` during the first 60 per cent of the walk
-and none after.  The tracker's own frame has whatever heading it came to.
+second with the receiver errors of ``base_station.bench.fusion_walks`` during the first 60 per
+cent of the walk and none after.  The tracker's own frame has whatever heading it came to.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base_station.bench.fusion_walks import RATE_HZ, Floats, Receiver, Scores, Walk, run
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
 from edge.tracker import TRACKERS
-from tests.fusion_walks import RATE_HZ, Floats, Receiver, Scores, Walk, run
 
 TRIALS = ("31", "37", "40", "44")  # of ``footprints``: walks with a footprint at every stride
 DRAWS = 6
