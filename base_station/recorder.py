@@ -122,10 +122,10 @@ class Recorder:
         """What is wrong with the log, as a sentence for a person; empty: nothing."""
         if self._failure:
             return self._failure
-        if self._refused:
-            return f"the disk does not keep up: {self._refused} log records are lost"
         if self._writer.problem:
             return self._writer.problem
+        if self.lost:  # said until the station starts anew
+            return f"the disk did not keep up: {self.lost} records are missing in the log"
         if self._disk_free_bytes < _LITTLE_FREE_BYTES:
             free_mb = self._disk_free_bytes / 1e6
             return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
@@ -135,7 +135,7 @@ class Recorder:
     def is_behind(self) -> bool:
         """Whether records of a second ago may not be on the disk yet."""
         stuck = self._clock.monotonic_ns() - self._turned_ns > _STUCK_NS
-        return stuck or bool(self._failure or self._refused or self._writer.problem)
+        return stuck or bool(self._failure or self._writer.problem)
 
     @property
     def lost(self) -> int:

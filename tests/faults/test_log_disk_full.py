@@ -98,6 +98,20 @@ def test_closing_on_a_full_disk_says_what_is_left_behind(tmp_path: Path) -> None
     assert writer.problem
 
 
+def test_what_a_recorder_lost_is_said_until_it_starts_anew(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=2000))
+    with files_of_at_most(0):
+        for number in range(100):
+            recorder.write(T0_NS + number, KEY, bytes(200), urgent=True)
+    assert recorder.flush()
+    assert recorder.lost > 0
+    assert recorder.problem == (
+        f"the disk did not keep up: {recorder.lost} records are missing in the log"
+    )
+    recorder.close()
+    assert len(payloads(tmp_path / "log")) + recorder.lost == 100
+
+
 def test_a_recorder_on_a_full_disk_is_behind_until_there_is_room(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path, SystemClock())
     with files_of_at_most(0):
