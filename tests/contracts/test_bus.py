@@ -353,3 +353,18 @@ def test_a_linked_end_knows_it_until_it_closes(ends: Ends) -> None:
     assert ends.station.is_linked()
     ends.unit.close()
     assert not ends.unit.is_linked()
+
+
+def test_a_handler_may_close_its_own_subscription(ends: Ends) -> None:
+    heard, once = Heard(), Heard()
+
+    def close_after_one(key: str, payload: bytes) -> None:
+        once(key, payload)
+        subscription.close()
+
+    subscription = ends.station.subscribe(KEY, close_after_one)
+    ends.station.subscribe(KEY, heard)
+    publish_until_heard(ends.unit, KEY, heard)
+    ends.unit.publish(KEY, b"later", Qos.LIVE)
+    until(lambda: bool(heard.samples), "a message after closing")
+    assert len(once.samples) == 1
