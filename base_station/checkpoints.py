@@ -17,7 +17,7 @@ from shared.clock import NS_PER_S
 SUFFIX = ".checkpoint"
 KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
-SPARSE_NS = 300 * NS_PER_S
+SPARSE_NS = 60 * NS_PER_S  # what a seek in a replay steps at most
 
 
 class SavedState(msgspec.Struct, frozen=True):

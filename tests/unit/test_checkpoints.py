@@ -1,0 +1,49 @@
+"""The folder of checkpoints stays small: close together lately, a minute apart before."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+from base_station.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints
+from shared.clock import NS_PER_S
+from tests.live_station import make_pipeline
+
+STEP_NS = 10 * NS_PER_S
+
+
+def times(folder: Path) -> list[int]:
+    return sorted(int(path.stem) for path in folder.iterdir())
+
+
+def test_old_ones_are_thinned_out_and_the_newest_is_always_there(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    state = make_pipeline().checkpoint()
+    for number in range(1, 200):
+        checkpoints.save(number * STEP_NS, 1, state)
+    kept = times(tmp_path)
+    assert kept[-KEPT_CLOSE:] == [number * STEP_NS for number in range(200 - KEPT_CLOSE, 200)]
+    far = [after - before for before, after in pairwise(kept[:-KEPT_CLOSE])]
+    assert len(far) > 10
+    assert min(far) >= SPARSE_NS
+    assert max(far) < 2 * SPARSE_NS
+
+
+def test_there_are_never_too_many(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    state = make_pipeline().checkpoint()
+    for number in range(1, KEPT_FAR + KEPT_CLOSE + 30):
+        checkpoints.save(number * SPARSE_NS, 1, state)
+    assert len(times(tmp_path)) <= KEPT_FAR + KEPT_CLOSE
+
+
+def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    assert checkpoints.latest() is None
+    for t_ns in (100, 200, 300):
+        checkpoints.save(t_ns, t_ns // 100, make_pipeline().checkpoint())
+    saved = checkpoints.latest(until_ns=250)
+    assert saved is not None
+    assert (saved.t_ns, saved.events_at_t) == (200, 2)
+    assert checkpoints.latest(until_ns=99) is None
+    assert checkpoints.latest_ns(10**9) == 300
