@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import socket
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
@@ -18,6 +17,7 @@ from shared.bus_memory import MemoryRouter
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos, alive_key
 from shared.errors import BusError
+from tests.station_command import free_port
 
 KEY = POSITION.key("anna")
 ALIVE = alive_key("anna")
@@ -61,13 +61,6 @@ class ZenohFabric:
         self._stack.callback(bus.close)
         wait_linked(self.station(), bus)
         return bus
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def until(holds: Callable[[], bool], what: str, timeout_s: float = 20.0) -> None:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import socket
-import time
-from collections.abc import Callable
 from contextlib import closing
 
 import pytest
@@ -12,20 +9,12 @@ import pytest
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 from shared.errors import BusError
+from tests.station_command import free_port, wait_until
 
 
 @pytest.fixture
 def address() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-
-
-def until(holds: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + 30.0
-    while not holds():
-        assert time.monotonic() < deadline, f"never came: {what}"
-        time.sleep(0.01)
+    return f"tcp/127.0.0.1:{free_port()}"
 
 
 def publish_until_heard(unit: ZenohBus, station: ZenohBus, what: str) -> None:
@@ -36,7 +25,7 @@ def publish_until_heard(unit: ZenohBus, station: ZenohBus, what: str) -> None:
         unit.publish("muster/v1/anna/up/status", b"", Qos.LIVE)
         return bool(heard)
 
-    until(arrived, what)
+    wait_until(what, arrived)
 
 
 def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(address: str) -> None:
