@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from edge.air_height import AirHeight
 from edge.body_motion import BodyMotion, MotionWindow
 from edge.falls import FallDetector
 from edge.posture import Posture
@@ -27,6 +28,9 @@ _RUNNING_PERIOD_S = 0.8
 _RUNNING_STRIDE_M = 0.9
 _STAIR_RISE_M = 0.11
 _STAIR_SLOPE = 0.25  # steeper than ramps, flatter than stairs
+_STAIRS_KEPT = 8  # strides: about a storey
+_DOUBTED_FROM_M = 1.0  # of stairs: less is lost in the barometer's noise
+_DOUBTED_SHARE = 0.3  # of the rise that the barometer must have seen
 _COLLAPSED_S = 4.0  # motionless after going down suddenly
 
 
@@ -38,7 +42,9 @@ class ActivityMonitor:
         self._falls = FallDetector()
         self._posture = Posture()
         self._cutter = StrideCutter()
+        self._air = AirHeight()
         self._strides: deque[Stride] = deque()
+        self._stairs: list[Stride] = []  # the strides in a row that were stairs
         self._doing = Activity.STILL
         self._steps = 0
         self._stirring_s = 0.0
@@ -63,6 +69,7 @@ class ActivityMonitor:
             self._steps = 2 * int(track.steps[-1])
         if not len(imu):
             return 0
+        self._air.push(imu)
         self._falls.push(imu)
         return sum(self._take_window(window) for window in self._motion.push(imu))
 
@@ -104,11 +111,30 @@ class ActivityMonitor:
             return Activity.CRAWLING
         if self._posture.tipped_step:  # says nothing yet: a stumble, or someone who lies down
             return self._doing
-        steep = abs(stride.rise_m) > _STAIR_SLOPE * stride.length_m
-        if steep and abs(stride.rise_m) > _STAIR_RISE_M:
+        if self._is_on_stairs(stride):
             return Activity.STAIRS_UP if stride.rise_m > 0.0 else Activity.STAIRS_DOWN
         quick = stride.period_s < _RUNNING_PERIOD_S and stride.length_m > _RUNNING_STRIDE_M
         return Activity.RUNNING if quick or stride.speed_mps > _RUNNING_MPS else Activity.WALKING
+
+    def _is_on_stairs(self, stride: Stride) -> bool:
+        steep = abs(stride.rise_m) > _STAIR_SLOPE * stride.length_m
+        if not steep or abs(stride.rise_m) <= _STAIR_RISE_M:
+            self._stairs.clear()
+            return False
+        if self._stairs and self._stairs[-1].rise_m * stride.rise_m < 0.0:
+            self._stairs.clear()
+        self._stairs.append(stride)
+        del self._stairs[:-_STAIRS_KEPT]
+        return not self._is_denied_by_air()
+
+    def _is_denied_by_air(self) -> bool:
+        """A tracker that has lost its way may climb where the air does not."""
+        first, last = self._stairs[0], self._stairs[-1]
+        rise_m = sum(stride.rise_m for stride in self._stairs[1:])
+        if abs(rise_m) < _DOUBTED_FROM_M:
+            return False
+        climbed_m = self._air.climbed_m(first.end_ns, last.end_ns)
+        return climbed_m is not None and climbed_m / rise_m < _DOUBTED_SHARE
 
     def _take_window(self, window: MotionWindow) -> bool:
         """Return whether it confirms a fall."""

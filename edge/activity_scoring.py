@@ -55,6 +55,7 @@ class ActivityScore:
 
     every: Confusion = field(default_factory=Confusion)
     settled: Confusion = field(default_factory=Confusion)
+    falls_done: int = 0
     falls_told: int = 0
     duration_s: float = 0.0
 
@@ -86,6 +87,7 @@ def score_activity(
         now = label(t_ns / NS_PER_S)
         if now is not done:
             done, since_s = now, t_ns / NS_PER_S
+            score.falls_done += done is Activity.FALLING
         said = monitor.activity(t_ns)
         if done is None:
             continue

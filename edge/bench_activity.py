@@ -58,7 +58,10 @@ def bench_activity(
     for title, score in report.items():
         console.print(_table(f"{title}, settled", score.settled))
         console.print(_table(f"{title}, every instant", score.every))
-        console.print(f"{score.falls_told} falls told in {score.duration_s / 60.0:.1f} minutes\n")
+        console.print(
+            f"{score.falls_told} falls told, {score.falls_done} labelled, in "
+            f"{score.duration_s / 60.0:.1f} minutes\n"
+        )
     if json_file is not None:
         figures = {title: _as_json(score) for title, score in report.items()}
         json_file.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
@@ -139,6 +142,7 @@ def _as_json(score: ActivityScore) -> dict[str, Any]:
     return {
         "settled": matrix(score.settled),
         "every_instant": matrix(score.every),
+        "falls_labelled": score.falls_done,
         "falls_told": score.falls_told,
         "duration_s": score.duration_s,
     }

@@ -167,6 +167,37 @@ def test_a_footfall_in_mid_swing_is_none():
     assert (stride.length_m, stride.rise_m) == pytest.approx((1.4, 0.0))
 
 
+def climbing(rise_m: float, n: int = 12):
+    """A tracker's rows on stairs, a stride a second with half of it standing."""
+    rows = [(0.0, 0.0, 0.0, True)]
+    for k in range(1, n):
+        rows += [(k - 0.5, 0.3 * k - 0.3, rise_m * (k - 1), True)]
+        rows += [(k - 0.3, 0.3 * k - 0.1, rise_m * (k - 0.5), False)]
+        rows += [(float(k), 0.3 * k, rise_m * k, True)]
+    return footsteps(rows)
+
+
+@pytest.mark.parametrize(
+    ("rise_m", "pa_per_s", "told"),
+    [
+        (0.34, None, Activity.STAIRS_UP),
+        (0.34, -4.0, Activity.STAIRS_UP),
+        (0.34, 0.0, Activity.WALKING),  # the air stays as it is: the tracker is wrong
+        (0.34, 4.0, Activity.WALKING),
+        (-0.34, 4.0, Activity.STAIRS_DOWN),
+        (-0.34, 0.0, Activity.WALKING),
+    ],
+)
+def test_the_barometer_has_a_say_on_stairs(rise_m, pa_per_s, told):
+    monitor = ActivityMonitor()
+    imu = samples(12.5, shake=1.0)
+    if pa_per_s is not None:
+        imu = replace(imu, pressure_pa=101_000.0 + pa_per_s * imu.t_ns / NS_PER_S)
+    monitor.push(imu, empty_rows())
+    monitor.push(imu.part(slice(0, 0)), climbing(rise_m))
+    assert monitor.activity(int(imu.t_ns[-1])) is told
+
+
 def activities(source, until_s: float) -> tuple[list[Activity], int]:
     """Each second's activity, and the falls told."""
     tracker = make_tracker("eskf", source.description)
