@@ -86,7 +86,6 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         backfill = Backfill(bus, feed.deliver, clock)
 
         checkpoints = Checkpoints(folder.checkpoints)
-        insecure = bool(config.plain_endpoints())
         pki = PkiFolder(folder.path)
         expiry = ExpiryWatch(pki, clock)
         drive = _start_drive(
@@ -98,7 +97,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
                 projection=projection,
                 checkpoints=checkpoints,
                 photo_urls=roster.photo_url,
-                facts=lambda: _facts(recorder, feed, router, expiry, insecure),
+                facts=lambda: _facts(config, recorder, feed, router, expiry),
                 clock=steady,
                 boot_id=secrets.randbits(63),
                 report=backfill.report,
@@ -235,13 +234,13 @@ def _replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartRepl
 
 
 def _facts(
+    config: StationConfig,
     recorder: Recorder,
     feed: LiveFeed,
     router: RouterProcess,
     expiry: ExpiryWatch,
-    insecure: bool,
 ) -> StationFacts:
-    problems = [*expiry.problems()]
+    problems = [*config.standing_problems(), *expiry.problems()]
     if not router.is_open:
         problems.append("The bus's router is away and is started again; no unit is linked")
     if feed.overflowed:
@@ -250,7 +249,7 @@ def _facts(
         problems=tuple(problems),
         log_bytes=recorder.log_bytes,
         disk_free_bytes=recorder.disk_free_bytes,
-        insecure=insecure,
+        insecure=bool(config.plain_endpoints()),
     )
 
 
