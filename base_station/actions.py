@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import assert_never
 
+from base_station import command_book
 from base_station.alarms.book import AlarmBook
+from base_station.command_state import SentCommand
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Incident, Person, StationState, UnitState
 from base_station.plan import read_plan
@@ -18,17 +20,19 @@ from shared.messages.station import (
     Action,
     Assign,
     CloseIncident,
+    ConfirmCommand,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
+    SendCommand,
     SetAnchor,
     SetPlan,
     SetStart,
     Unassign,
 )
 
-Effect = Alarm | UnitState  # what an action changed
+Effect = Alarm | UnitState | SentCommand  # what an action changed
 
 
 class Actions:
@@ -45,10 +49,8 @@ class Actions:
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
         effects: Iterable[Effect] = state.units.values()
         match action:
-            case AcknowledgeAlarm():
-                effects = [_or_refuse(self._book.acknowledge(state, action.alarm_id, by))]
-            case ResolveAlarm():
-                effects = [_or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))]
+            case AcknowledgeAlarm() | ResolveAlarm():
+                effects = [self._alarm(state, by, action)]
             case ReportProblem():
                 effects = self._book.problem(state, action.part, action.text)
             case RegisterUnit():
@@ -69,9 +71,18 @@ class Actions:
                 unit = _registered(state, action.unit_id)
                 unit.person = None
                 effects = [unit]
+            case SendCommand() | ConfirmCommand():
+                effects = [_command(state, by, action)]
             case _:
                 assert_never(action)
         return effects
+
+    def _alarm(
+        self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
+    ) -> Alarm:
+        if isinstance(action, AcknowledgeAlarm):
+            return _or_refuse(self._book.acknowledge(state, action.alarm_id, by))
+        return _or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[Effect]:
         unit = state.units.get(action.unit_id)
@@ -97,6 +108,12 @@ class Actions:
         )
         self._positioning.start(state, unit, start)
         yield unit
+
+
+def _command(state: StationState, by: str, action: SendCommand | ConfirmCommand) -> SentCommand:
+    if isinstance(action, SendCommand):
+        return command_book.send(state, by, action)
+    return command_book.confirm(state, by, action)
 
 
 def _open(state: StationState, action: OpenIncident) -> None:

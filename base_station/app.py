@@ -26,6 +26,7 @@ from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store, copy_database
+from base_station.downlink import Downlink
 from base_station.drive import StationDrive, Surroundings
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
@@ -48,8 +49,10 @@ from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT
 from shared.clock import Clock, SystemClock
+from shared.envelope import Stamper
 from shared.errors import StoreError, UserError
 from shared.mcap_log import SegmentPolicy, SegmentReader, segment_paths
+from shared.messages import STATION_ID
 
 Announce = Callable[[str], None]
 _log = logging.getLogger(__name__)
@@ -84,6 +87,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         closing.callback(bus.close)
         hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
         backfill = Backfill(bus, feed.deliver, clock)
+        downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
         checkpoints = Checkpoints(folder.checkpoints)
         pki = PkiFolder(folder.path)
@@ -101,12 +105,15 @@ def run_station(config: StationConfig, announce: Announce) -> None:
                 clock=steady,
                 boot_id=secrets.randbits(63),
                 report=backfill.report,
+                say=downlink.report,
             ),
         )
         closing.callback(drive.stop)
         closing.callback(hearing.close)  # first: what still comes is stepped before the end
         backfill.start()
         closing.callback(backfill.close)
+        downlink.start()
+        closing.callback(downlink.close)
         closing.callback(feed.close)
         archive = Archive(LogFeed(folder.log, recorder.flush).records, checkpoints, _pipeline)
         services = Services(

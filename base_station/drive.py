@@ -17,15 +17,18 @@ from typing import Protocol
 
 import msgspec
 
+from base_station import command_book
 from base_station.api.wire import Snapshot
 from base_station.backfill import Held, Report
 from base_station.checkpoints import Checkpoints
+from base_station.command_state import Order
 from base_station.events import Output, Refused, StationEvent, event_of
 from base_station.foxglove_topics import FoxgloveTopics
 from base_station.picture import Picture
 from base_station.pipeline import StationPipeline
 from base_station.playback import is_decision
 from base_station.projector import Projector
+from base_station.self_watch import SelfWatch
 from base_station.sinks import ActionDone, LiveSink, PhotoUrls, ProjectionSink
 from base_station.views import StationFacts
 from shared.channels import OPERATOR, TICK, Direction, Qos, channel_of, parse_key
@@ -34,13 +37,12 @@ from shared.codec import encode
 from shared.envelope import Stamper
 from shared.errors import StoreError, UnknownChannelError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, Tick
-from shared.messages.station import Action, ReportProblem
+from shared.messages.station import Action, SendCommand
 
 TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 20
 CHECKPOINT_NS = 30 * NS_PER_S  # what a restart steps at most; at 1,000 events/s some 2 s
 STOP_TIMEOUT_S = 10.0
-OWN_PARTS = ("log", "store", "bus", "checkpoint", "pipeline", "drive")  # reported by the drive
 
 Record = tuple[int, str, bytes]  # station time, key, payload
 log = logging.getLogger(__name__)
@@ -92,6 +94,7 @@ class Surroundings:
     photo_urls: PhotoUrls
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
     report: Callable[[Report], None]  # hears once a second what is there of each linked unit
+    say: Callable[[Sequence[Order]], None]  # hears what no unit has answered
     clock: Clock
     boot_id: int
 
@@ -125,6 +128,7 @@ class StationDrive:
         self._messages_before = 0
         self._health_due = False  # consoles hear of the station's health with the next delta
         self._urgent = False  # something was written that must be on the disk before it is told
+        self._watch = SelfWatch()
         self._failed: dict[str, str] = {}  # parts that failed since the last tick, and how
 
     # ---- from any thread
@@ -229,6 +233,8 @@ class StationDrive:
             by, action, future = self._inbox.popleft()
             done = self._do(by, action)
             self._settle()
+            if isinstance(action, SendCommand):
+                self._around.say(command_book.unanswered(self._pipeline.state))
             if future.set_running_or_notify_cancel():
                 future.set_result(done)
 
@@ -248,6 +254,7 @@ class StationDrive:
         self._report_problems()
         if not self._around.log.is_behind:  # what is reported may be acknowledged to its unit
             self._around.report(self._held())
+        self._around.say(command_book.unanswered(self._pipeline.state))
         messages = self._pipeline.state.counts.messages
         self._picture.facts = msgspec.structs.replace(
             self._around.facts(), messages_per_s=float(messages - self._messages_before)
@@ -313,12 +320,9 @@ class StationDrive:
         now = {"log": self._around.log.problem, "store": self._around.projection.problem()}
         now |= self._failed
         self._failed = {}
-        known = self._pipeline.state.problems
-        for part in (*now, *(own for own in OWN_PARTS if own in known and own not in now)):
-            text = now.get(part, "")
-            if bool(text) != (part in known):
-                log.warning("%s: %s", part, text or "works again")
-                self._do(STATION_ID, ReportProblem(part, text))
+        for report in list(self._watch.check(now, self._pipeline.state.problems)):
+            log.warning("%s: %s", report.part, report.text or "works again")
+            self._do(STATION_ID, report)
 
     def _held(self) -> Report:
         return {

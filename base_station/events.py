@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import msgspec
 
-from shared.channels import is_backfilled, parse_key
+from shared.channels import Direction, is_backfilled, parse_key
 from shared.codec import decode
 from shared.errors import WireError
-from shared.messages import AlarmChange, FusedPosition, Message
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, Message
 
 
 class Received(msgspec.Struct, frozen=True):
     """A message that could be read."""
 
     t_ns: int  # station time (UTC, never going back) at which it came
-    unit_id: str  # from the key
+    unit_id: str  # from the key: whose message it is, or to whom a command goes
     message: Message
     backfilled: bool = False  # fetched later from the unit's journal
 
@@ -47,6 +47,12 @@ class TrailFilled(msgspec.Struct, frozen=True):
     unit_id: str
 
 
+class CommandTouched(msgspec.Struct, frozen=True):
+    """A command is new or has got further with a unit."""
+
+    command_id: str
+
+
 class Refused(msgspec.Struct, frozen=True):
     """A person's action that had no effect."""
 
@@ -54,7 +60,7 @@ class Refused(msgspec.Struct, frozen=True):
     reason: str  # for that person
 
 
-Output = FusedPosition | AlarmChange | UnitTouched | TrailFilled | Refused
+Output = FusedPosition | AlarmChange | UnitTouched | TrailFilled | CommandTouched | Refused
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
@@ -64,7 +70,8 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         message = decode(channel, payload)
     except WireError as error:
         return Rejected(t_ns, key, str(error))
-    if message.header.unit_id != unit_id:
+    speaker = STATION_ID if channel.direction is Direction.DOWN else unit_id
+    if message.header.unit_id != speaker:
         return Rejected(
             t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
         )

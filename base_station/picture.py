@@ -1,5 +1,5 @@
-"""Keeps consoles up to date with a pipeline: which units and alarms changed since the last
-delta, and when only a whole new snapshot will do.  Live and replay both draw through it.
+"""Keeps consoles up to date with a pipeline: which units, alarms and commands changed since the
+last delta, and when only a whole new snapshot will do.  Live and replay both draw through it.
 """
 
 from __future__ import annotations
@@ -7,13 +7,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
-from base_station.events import Output, TrailFilled, UnitTouched
+from base_station.events import CommandTouched, Output, TrailFilled, UnitTouched
 from base_station.pipeline import StationPipeline
 from base_station.sinks import LiveSink, PhotoUrls
 from base_station.views import (
     NS_PER_MS,
     StationFacts,
     alarm_view,
+    command_view,
     health_view,
     snapshot,
     trail_view,
@@ -37,6 +38,7 @@ class Picture:
         self._pipeline = pipeline
         self._units: dict[str, None] = {}  # an ordered set
         self._alarms: list[AlarmChange] = []
+        self._commands: dict[str, None] = {}
         self._filled: dict[str, None] = {}
         self._frame = self._frame_now()
 
@@ -44,6 +46,8 @@ class Picture:
         for output in outputs:
             if isinstance(output, UnitTouched):
                 self._units[output.unit_id] = None
+            elif isinstance(output, CommandTouched):
+                self._commands[output.command_id] = None
             elif isinstance(output, TrailFilled):
                 self._filled[output.unit_id] = None
             elif isinstance(output, AlarmChange):
@@ -56,7 +60,7 @@ class Picture:
         if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
             self.reset(replay)
             return
-        if not (self._units or self._alarms or health or replay):
+        if not (self._units or self._alarms or self._commands or health or replay):
             return
         state = self._pipeline.state
         self._seq += 1
@@ -67,12 +71,18 @@ class Picture:
                 unit_view(state, state.units[unit_id], self._photo_urls) for unit_id in self._units
             ),
             alarms=tuple(map(alarm_view, self._alarms)),
+            commands=tuple(
+                command_view(state.commands[command_id])
+                for command_id in self._commands
+                if command_id in state.commands
+            ),
             trails=self._filled_trails() if health else {},
             health=health_view(state, self.facts) if health else None,
             replay=replay,
         )
         self._units.clear()
         self._alarms.clear()
+        self._commands.clear()
         self._sink.delta(delta)
 
     def reset(self, replay: ReplayView | None = None) -> None:
@@ -80,6 +90,7 @@ class Picture:
         self._frame = self._frame_now()
         self._units.clear()
         self._alarms.clear()
+        self._commands.clear()
         self._filled.clear()
         self._sink.reset(self._snapshot(replay))
 

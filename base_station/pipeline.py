@@ -11,10 +11,13 @@ from typing import assert_never
 
 import msgspec
 
+from base_station import command_book
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
+from base_station.command_state import SentCommand
 from base_station.events import (
+    CommandTouched,
     Output,
     Received,
     Refused,
@@ -33,6 +36,8 @@ from shared.errors import UserError
 from shared.messages import (
     STATION_ID,
     AlarmChange,
+    Command,
+    CommandReply,
     EventKind,
     GpsFix,
     Header,
@@ -98,6 +103,8 @@ class StationPipeline:
                 return self._tick()
             if isinstance(message, OperatorAction):
                 return self._act(message)
+            if isinstance(message, Command):
+                return _touched(command_book.note_sent(state, event.unit_id, message))
             if channel_of(message).direction is Direction.UP:
                 return self._hear(event.unit_id, message, event.backfilled)
             return []  # what the station itself had decided, in a log that is stepped again
@@ -111,6 +118,7 @@ class StationPipeline:
                 unit.link = link
                 outputs.append(UnitTouched(unit.unit_id))
             outputs.extend(self._review(unit))
+        outputs.extend(CommandTouched(one.command_id) for one in command_book.expire(self.state))
         return outputs
 
     def _act(self, message: OperatorAction) -> list[Output]:
@@ -122,6 +130,8 @@ class StationPipeline:
         for effect in effects:
             if isinstance(effect, Alarm):
                 outputs.append(self._change(effect))
+            elif isinstance(effect, SentCommand):
+                outputs.append(CommandTouched(effect.command_id))
             else:
                 outputs.append(UnitTouched(effect.unit_id))
         return outputs
@@ -141,7 +151,7 @@ class StationPipeline:
             return []
         unit.link = unit.link_at(state.t_ns)
         outputs: list[Output] = []
-        if news == "new" or isinstance(message, UnitEvent):
+        if news == "new" or isinstance(message, UnitEvent | CommandReply):
             outputs.extend(self._observe(unit, message))
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
@@ -176,6 +186,8 @@ class StationPipeline:
                 unit.description = message
             case UnitEvent():
                 _note_event(unit, message, t_ns)
+            case CommandReply():
+                return _touched(command_book.note_reply(self.state, unit, message))
             case _:
                 pass  # raw samples and signs of life: that they came is all that counts here
         return []
@@ -217,6 +229,10 @@ def read_checkpoint(saved: bytes) -> Checkpoint | None:
         return msgspec.msgpack.decode(saved, type=Checkpoint)
     except (msgspec.MsgspecError, UnicodeDecodeError):
         return None
+
+
+def _touched(command: SentCommand | None) -> list[Output]:
+    return [] if command is None else [CommandTouched(command.command_id)]
 
 
 def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:

@@ -35,7 +35,7 @@ class Projector:
         if isinstance(message, OperatorAction):
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
-        elif outputs and event.unit_id != STATION_ID:
+        elif outputs and message.header.unit_id != STATION_ID:
             self._heard[event.unit_id] = event.t_ns
             if isinstance(message, UnitDescription):
                 self._descriptions.append(message)

@@ -10,6 +10,8 @@ import msgspec
 from base_station.api.wire import (
     AlarmView,
     AnchorView,
+    CommandView,
+    DeliveryView,
     HealthView,
     IncidentView,
     PersonView,
@@ -20,6 +22,7 @@ from base_station.api.wire import (
     TrailPoint,
     UnitView,
 )
+from base_station.command_state import Delivery, SentCommand
 from base_station.live_state import (
     STALE_AFTER_S,
     Alarm,
@@ -101,6 +104,32 @@ def alarm_view(alarm: Alarm | AlarmChange) -> AlarmView:
     )
 
 
+def command_view(command: SentCommand) -> CommandView:
+    return CommandView(
+        command_id=command.command_id,
+        kind=command.kind.name.lower(),
+        text=command.text,
+        issued_by=command.issued_by,
+        issued_ms=command.issued_ns // NS_PER_MS,
+        expires_ms=command.expires_ns // NS_PER_MS,
+        asks_wearer=command.asks_wearer,
+        open=command.is_open,
+        units=tuple(_delivery_view(command, one) for one in command.deliveries.values()),
+    )
+
+
+def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
+    return DeliveryView(
+        unit_id=delivery.unit_id,
+        state=command.state_of(delivery),
+        sent_ms=_ms(delivery.sent_ns),
+        received_ms=_ms(delivery.received_ns),
+        acknowledged_ms=_ms(delivery.acknowledged_ns),
+        acknowledged_by=delivery.acknowledged_by,
+        reason=delivery.reason,
+    )
+
+
 def incident_view(incident: Incident) -> IncidentView:
     return IncidentView(
         incident_id=incident.incident_id,
@@ -149,6 +178,7 @@ def snapshot(
         incident=incident_view(state.incident) if state.incident else None,
         units=tuple(unit_view(state, unit, photo_urls) for unit in state.units.values()),
         alarms=tuple(map(alarm_view, shown)),
+        commands=tuple(map(command_view, state.commands.values())),
         trails={
             unit.unit_id: trail_view(unit.trail) for unit in state.units.values() if unit.trail
         },

@@ -1,40 +1,70 @@
-"""What a unit does with the station's commands, each once."""
+"""What a unit does with the station's commands, each once, and what it answers."""
 
 from __future__ import annotations
 
 import logging
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+
+import msgspec
 
 from shared.envelope import Stamper
-from shared.messages import Command, CommandKind, CommandReply, CommandState
+from shared.messages import ASKS_WEARER, Command, CommandKind, CommandReply, CommandState
 
 logger = logging.getLogger(__name__)
 
 POSITION_RATE_HZ = (0.1, 50.0)
-_REMEMBERED = 1000
+REMEMBERED = 1000
 
 
 class CommandDesk:
-    """Applies commands and answers them; a repeat gets the first answer again, and no more."""
+    """Applies commands and answers them; a repeat gets the newest answer again, and no more.
 
-    def __init__(self, stamper: Stamper, set_position_rate: Callable[[float], None]) -> None:
+    ``given``: answers from before the program was started, oldest first.
+    """
+
+    def __init__(
+        self,
+        stamper: Stamper,
+        set_position_rate: Callable[[float], None],
+        given: Iterable[CommandReply] = (),
+    ) -> None:
         self._stamper = stamper
         self._set_position_rate = set_position_rate
-        self._answers: OrderedDict[str, tuple[CommandState, str]] = OrderedDict()
+        self._answers: OrderedDict[str, CommandReply] = OrderedDict()
+        for reply in given:
+            self._remember(reply)
 
-    def take(self, command: Command, now_utc_ns: int) -> CommandReply:
-        answer = self._answers.get(command.command_id)
-        if answer is None:
-            answer = self._apply(command, now_utc_ns)
-            self._answers[command.command_id] = answer
-            if len(self._answers) > _REMEMBERED:
-                self._answers.popitem(last=False)
-        return CommandReply(self._stamper.header(), command.command_id, *answer)
+    def take(self, command: Command) -> CommandReply:
+        reply = self._answers.get(command.command_id)
+        if reply is not None:
+            return msgspec.structs.replace(reply, header=self._stamper.header())
+        state, detail = self._apply(command)
+        asks = state is CommandState.RECEIVED and command.kind in ASKS_WEARER
+        reply = CommandReply(self._stamper.header(), command.command_id, state, detail, asks)
+        self._remember(reply)
+        return reply
 
-    def _apply(self, command: Command, now_utc_ns: int) -> tuple[CommandState, str]:
-        if 0 < command.expires_utc_ns < now_utc_ns:
-            return CommandState.REFUSED, "it had expired when it came"
+    def acknowledge(self) -> tuple[CommandReply, ...]:
+        """The wearer pressed the button: that answers everything that asked for it."""
+        asked = [reply.command_id for reply in self._answers.values() if reply.awaits_wearer]
+        replies = tuple(
+            CommandReply(self._stamper.header(), command_id, CommandState.ACKNOWLEDGED, "button")
+            for command_id in asked
+        )
+        for reply in replies:
+            self._remember(reply)
+        return replies
+
+    def _remember(self, reply: CommandReply) -> None:
+        self._answers[reply.command_id] = reply
+        if len(self._answers) > REMEMBERED:
+            self._answers.popitem(last=False)
+
+    def _apply(self, command: Command) -> tuple[CommandState, str]:
+        # By the station's own clock alone: a unit whose clock is wrong obeys all the same.
+        if 0 < command.expires_utc_ns <= command.header.t_utc_ns:
+            return CommandState.REFUSED, "it had expired when it was sent"
         match command.kind:
             case CommandKind.UNKNOWN:
                 return CommandState.REFUSED, "this unit does not know this kind of command"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from edge.commands import REMEMBERED
 from edge.spool import Spool
-from shared.channels import EVENT
+from shared.channels import EVENT, REPLY
 from shared.codec import decode
-from shared.messages import EventKind, UnitEvent
+from shared.messages import CommandReply, EventKind, UnitEvent
 
 
 def mayday_before(spool: Spool) -> bool:
@@ -22,3 +23,16 @@ def mayday_before(spool: Spool) -> bool:
         if event.kind is EventKind.MAYDAY:
             return True
     return False
+
+
+def answers_before(spool: Spool) -> list[CommandReply]:
+    """What this unit has answered to commands, oldest first, so that it does none of them again."""
+    answers: list[CommandReply] = []
+    for boot in reversed(spool.boots()):
+        for payload in spool.newest_first(boot.boot_id, REPLY):
+            answer = decode(REPLY, payload)
+            assert isinstance(answer, CommandReply)
+            answers.append(answer)
+            if len(answers) == 2 * REMEMBERED:  # a command has one or two, seldom more
+                return answers[::-1]
+    return answers[::-1]

@@ -19,6 +19,7 @@ from edge.link import Link
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline
 from edge.raw_stream import RawStream, batch_of
+from edge.samples import ACKNOWLEDGE, ButtonPress
 from edge.source_reader import PlacedBatch, SourceReader
 from edge.sources.port import Source
 from edge.spool import Spool
@@ -107,7 +108,10 @@ class Agent:
         self._last_batch_ns = parts.clock.monotonic_ns()
         self._silence_told = False
         parts.pipeline.note_journal(parts.spool.pending)
-        parts.outbox.put(parts.pipeline.step(batch_of(raw), placed.timeline))
+        batch = batch_of(raw)
+        parts.outbox.put(parts.pipeline.step(batch, placed.timeline))
+        if any(isinstance(one, ButtonPress) and one.button == ACKNOWLEDGE for one in batch.others):
+            parts.outbox.put(parts.desk.acknowledge())
         down = any(
             outage.start_s <= placed.since_start_s < outage.start_s + outage.duration_s
             for outage in parts.source.radio_outages
@@ -127,7 +131,7 @@ class Agent:
                 logger.warning("a command that cannot be understood: %s", error)
                 continue
             assert isinstance(command, Command)
-            parts.outbox.put((parts.desk.take(command, parts.clock.utc_ns()),))
+            parts.outbox.put((parts.desk.take(command),))
 
     def _watch(self) -> None:
         """Notice what has stopped working, and say so once."""

@@ -80,9 +80,14 @@ class BatterySample:
     level: float  # 0 empty ... 1 full
 
 
+MAYDAY, CANCEL, ACKNOWLEDGE = "mayday", "cancel", "acknowledge"
+
+
 @dataclass(frozen=True, slots=True)
 class ButtonPress:
-    """The wearer pressed the unit's button: ``mayday`` or ``cancel``."""
+    """The wearer pressed a button of the unit: ``MAYDAY``, ``CANCEL`` (takes a mayday back) or
+    ``ACKNOWLEDGE`` (has understood what the station said).
+    """
 
     t_ns: int
     button: str

@@ -10,6 +10,7 @@ from typing import Self
 from base_station.alarms import ALARMS
 from base_station.api.wire import Delta, Snapshot
 from base_station.checkpoints import Checkpoints
+from base_station.downlink import Downlink
 from base_station.drive import StationDrive, Surroundings
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.fusion import FUSERS
@@ -22,7 +23,8 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
-from shared.messages import Message
+from shared.envelope import Stamper
+from shared.messages import STATION_ID, Message
 from shared.messages.station import Action
 
 PATIENCE_S = 20.0
@@ -70,9 +72,11 @@ class LiveStation:
         self.recorder = Recorder(folder, clock)
         self.feed = LiveFeed(clock)
         self.log = LogFeed(self.recorder.folder, self.recorder.flush)
-        router = MemoryRouter()
-        self.bus = router.attach_station()
+        self.router = MemoryRouter()
+        self.bus = self.router.attach_station()
         self._subscription = self.bus.subscribe("muster/v1/**", self.feed.offer)
+        stamper = Stamper(STATION_ID, clock.utc_ns(), clock)
+        self.downlink = Downlink(self.bus, stamper, clock)
         saved = self.checkpoints.latest()
         self.pipeline = make_pipeline(saved.pipeline if saved else None)
         self.drive = StationDrive(
@@ -86,6 +90,7 @@ class LiveStation:
                 photo_urls=lambda person_id: f"/photos/{person_id}",
                 facts=StationFacts,
                 report=lambda _: None,
+                say=self.downlink.report,
                 clock=clock,
                 boot_id=clock.utc_ns(),
             ),
@@ -95,9 +100,11 @@ class LiveStation:
 
     def __enter__(self) -> Self:
         self.drive.start()
+        self.downlink.start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.downlink.close()
         self.drive.stop()
         self.close()
 

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import msgspec
 
 from base_station.alarms import ALARMS
-from base_station.events import Output, event_of
+from base_station.events import Output, Received, event_of
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline
-from shared.channels import OPERATOR, TICK, channel_of
+from shared.channels import COMMAND, OPERATOR, TICK, channel_of
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.messages import (
     STATION_ID,
     Activity,
     AlarmChange,
+    Command,
+    CommandKind,
+    CommandReply,
+    CommandState,
     EventKind,
     FixType,
     FusedPosition,
@@ -35,6 +40,7 @@ from shared.quality import Quality, Reason
 
 START_NS = 1_700_000_000 * NS_PER_S
 Record = tuple[int, str, bytes]
+M = TypeVar("M", bound=Message)
 
 
 def new_pipeline() -> StationPipeline:
@@ -67,6 +73,12 @@ class Script:
     @property
     def fused(self) -> list[FusedPosition]:
         return [output for output in self.outputs if isinstance(output, FusedPosition)]
+
+    def said(self, kind: type[M]) -> list[M]:
+        """The messages of a kind that were stepped."""
+        events = [event_of(*record) for record in self.records]
+        messages = [event.message for event in events if isinstance(event, Received)]
+        return [message for message in messages if isinstance(message, kind)]
 
     def header(self, unit_id: str, captured_s: float | None = None) -> Header:
         seq = self._seqs[unit_id] = self._seqs.get(unit_id, 0) + 1
@@ -125,6 +137,16 @@ class Script:
 
     def event(self, unit_id: str, kind: EventKind, detail: str = "") -> list[Output]:
         return self.say(UnitEvent(self.header(unit_id), kind, detail))
+
+    def command(self, unit_id: str, command_id: str) -> list[Output]:
+        """The station hears itself say it."""
+        sent = Command(self.header(STATION_ID), command_id, CommandKind.EVACUATE, "chief", 0)
+        return self.record(COMMAND.key(unit_id), encode(sent))
+
+    def reply(
+        self, unit_id: str, command_id: str, state: CommandState, detail: str = ""
+    ) -> list[Output]:
+        return self.say(CommandReply(self.header(unit_id), command_id, state, detail))
 
     def position(
         self, unit_id: str, north_m: float, east_m: float, **changes: object

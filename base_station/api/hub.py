@@ -1,8 +1,7 @@
 """Spreads a live picture to the consoles that watch it.
 
 A delta is encoded once and the same bytes go to everyone.  A client that cannot keep up loses
-its queue, not the station its memory: once it takes something again it gets a snapshot.  All
-but ``delta`` and ``reset`` is called in the event loop.
+its queue, not the station its memory: once it takes something again it gets a snapshot.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future
 
 import msgspec
 
@@ -86,6 +86,15 @@ class Hub:
         self._loop, self._source = loop, source
         if self._clients:
             self.request_snapshot()
+
+    # ---- from any thread but the source's
+
+    def snapshot(self) -> Future[Snapshot]:
+        """The picture as it is now; never done where the source has stopped."""
+        future: Future[Snapshot] = Future()
+        if self._source is not None:
+            self._source.request_snapshot(future.set_result)
+        return future
 
     # ---- in the source's thread
 

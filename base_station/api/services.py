@@ -12,6 +12,7 @@ from starlette.requests import HTTPConnection
 
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
+from base_station.api.wire import Snapshot
 from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
@@ -48,6 +49,13 @@ class Services:
             raise UserError(done.refused.reason)
         self.settle()
         return done
+
+    def picture(self) -> Snapshot:
+        """What the consoles show now."""
+        try:
+            return self.hub.snapshot().result(ACTION_TIMEOUT_S)
+        except FutureTimeoutError:
+            raise StoreError("the station is too busy to say this now; try again") from None
 
 
 def services_of(connection: HTTPConnection) -> Services:

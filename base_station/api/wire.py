@@ -83,6 +83,32 @@ class UnitView(msgspec.Struct, frozen=True):
     alarms: tuple[str, ...]  # ids of the alarms that are not resolved
 
 
+class DeliveryView(msgspec.Struct, frozen=True):
+    """How far a command has got with one unit."""
+
+    unit_id: str
+    state: str  # queued | sent | received | acknowledged | refused | expired
+    sent_ms: int | None
+    received_ms: int | None
+    acknowledged_ms: int | None
+    acknowledged_by: str  # the wearer, or who heard from the wearer
+    reason: str  # of a refusal
+
+
+class CommandView(msgspec.Struct, frozen=True):
+    """What units were told; a delta carries it whole."""
+
+    command_id: str
+    kind: str  # lower-case name of shared.messages.CommandKind
+    text: str
+    issued_by: str
+    issued_ms: int
+    expires_ms: int
+    asks_wearer: bool  # done only when somebody has acknowledged it
+    open: bool  # more is to come of it
+    units: tuple[DeliveryView, ...]
+
+
 class IncidentView(msgspec.Struct, frozen=True):
     incident_id: str
     name: str
@@ -136,6 +162,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     incident: IncidentView | None
     units: tuple[UnitView, ...]
     alarms: tuple[AlarmView, ...]  # all that are not resolved, and the last resolved ones
+    commands: tuple[CommandView, ...]  # all that are open, and the last closed ones; oldest first
     trails: dict[str, tuple[TrailPoint, ...]]  # by unit
     plan: msgspec.Raw | None  # GeoJSON as stored: see docs/messages
     anchor: AnchorView | None
@@ -148,6 +175,7 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     now_ms: int
     units: tuple[UnitView, ...] = ()
     alarms: tuple[AlarmView, ...] = ()
+    commands: tuple[CommandView, ...] = ()
     trails: dict[str, tuple[TrailPoint, ...]] = {}  # whole, of units whose past was filled in
     health: HealthView | None = None
     incident: IncidentView | None = None

@@ -28,10 +28,12 @@ from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
     CloseIncident,
+    ConfirmCommand,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
+    SendCommand,
     SetAnchor,
     SetPlan,
     SetStart,
@@ -108,6 +110,8 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             _add(session, UnitStart, **key, **columns)
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
             pass  # what it changed of the alarms comes with the same step
+        case SendCommand() | ConfirmCommand():
+            pass  # the audit and the log have it
 
 
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")

@@ -34,6 +34,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)
     battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
     battery_life_s: Annotated[float, Meta(ge=1.0)] = 6 * 3600.0  # from full to empty
+    acknowledges_every_s: Annotated[int, Meta(ge=1)] | None = None  # looks at the unit so often
     worn_on: Segment = "foot"
     rate_hz: Annotated[float, Meta(ge=20.0, le=5000.0)] = 200.0
 

@@ -49,6 +49,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-9.0, 12.5),
         building=True,
+        acknowledges_every_s=10,
     ),
     Scenario(
         name="climbs-stairs",
@@ -67,6 +68,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-8.0, 13.0),
         building=True,
+        acknowledges_every_s=8,
         battery_start=0.88,
     ),
     Scenario(
@@ -95,6 +97,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-9.0, 11.5),
         building=True,
+        acknowledges_every_s=12,
         ambient_degc=(
             (0.0, 19.0),
             (18.0, 30.0),
@@ -117,6 +120,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-8.5, 12.0),
         building=True,
+        acknowledges_every_s=15,
         radio_outages_s=((22.0, 45.0), (240.0, 60.0), (480.0, 45.0)),
         battery_start=0.64,
     ),

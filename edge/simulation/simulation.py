@@ -9,8 +9,10 @@ from math import radians
 import numpy as np
 
 from edge.samples import (
+    ACKNOWLEDGE,
     AmbientSample,
     BatterySample,
+    ButtonPress,
     Floats,
     GpsSample,
     ImuBatch,
@@ -160,7 +162,9 @@ class Simulation:
 
 
 class _Others:
-    """The slow sensors: ambient temperature and GPS every second, battery every ten."""
+    """The slow sensors: ambient temperature and GPS every second, battery every ten; and the
+    button that says that the wearer has understood, where the scenario has it pressed.
+    """
 
     def __init__(self, simulation: Simulation, gps: Gps, rng: np.random.Generator) -> None:
         self._simulation = simulation
@@ -174,6 +178,9 @@ class _Others:
                 samples.append(BatterySample(second * 1_000_000_000, self._battery(second)))
             samples.append(self._ambient(float(second)))
             samples.append(self._fix(float(second)))
+            every_s = self._simulation.scenario.acknowledges_every_s
+            if every_s is not None and second % every_s == 0:
+                samples.append(ButtonPress(second * 1_000_000_000, ACKNOWLEDGE))
         return tuple(samples)
 
     def _battery(self, t_s: float) -> float:

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from shared.messages.alarm import AlarmChange, AlarmState
-from shared.messages.command import Command, CommandKind, CommandReply, CommandState
+from shared.messages.command import (
+    ASKS_WEARER,
+    Command,
+    CommandKind,
+    CommandReply,
+    CommandState,
+)
 from shared.messages.event import EventKind, Heartbeat, UnitEvent
 from shared.messages.fused import FusedPosition
 from shared.messages.gps import FixType, GpsFix
@@ -34,6 +40,7 @@ Message = (
 )
 
 __all__ = [
+    "ASKS_WEARER",
     "SCHEMA_REVISION",
     "STATION_ID",
     "Activity",

@@ -22,6 +22,10 @@ class CommandKind(IntEnum):
     RESET_ALARM = 6
 
 
+# Done when the wearer has acknowledged it; the others are done when the unit has them.
+ASKS_WEARER = frozenset({CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT})
+
+
 class CommandState(IntEnum):
     UNKNOWN = 0
     RECEIVED = 1
@@ -67,6 +71,7 @@ class CommandReply(msgspec.Struct, frozen=True):
     command_id: str
     state: CommandState
     detail: str = ""
+    awaits_wearer: bool = False  # received; the wearer has yet to acknowledge it
 
     def to_wire(self) -> command_pb2.CommandReply:
         return command_pb2.CommandReply(
@@ -74,6 +79,7 @@ class CommandReply(msgspec.Struct, frozen=True):
             command_id=self.command_id,
             state=int(self.state),  # type: ignore[arg-type]  # stubs want the generated enum
             detail=self.detail,
+            awaits_wearer=self.awaits_wearer,
         )
 
     @staticmethod
@@ -83,4 +89,5 @@ class CommandReply(msgspec.Struct, frozen=True):
             command_id=wire.command_id,
             state=known(CommandState, wire.state),
             detail=wire.detail,
+            awaits_wearer=wire.awaits_wearer,
         )

@@ -21,6 +21,7 @@ class EventKind(IntEnum):
     SENSOR_FAULT = 6
     STORAGE_FAULT = 7
     SOURCE_ENDED = 8
+    ACKNOWLEDGED = 9  # in the black box: the wearer's press, whatever it answers
 
 
 class UnitEvent(msgspec.Struct, frozen=True):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+from shared.messages.command import CommandKind
 from shared.messages.header import Header
+from shared.messages.known import known
 from shared.messages.muster.v1 import station_pb2
 
 
@@ -95,6 +97,26 @@ class ReportProblem(msgspec.Struct, frozen=True):
     text: str  # a sentence for a person
 
 
+class SendCommand(msgspec.Struct, frozen=True):
+    """To one unit, to a crew or to everyone: one of the three is said."""
+
+    command_id: str
+    kind: CommandKind
+    unit_id: str
+    crew: str
+    everyone: bool
+    text: str
+    position_rate_hz: float  # for SET_POSITION_RATE
+    lasts_s: float  # until it expires
+
+
+class ConfirmCommand(msgspec.Struct, frozen=True):
+    """Somebody has heard from the wearer in another way."""
+
+    command_id: str
+    unit_id: str
+
+
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -107,6 +129,8 @@ Action = (
     | SetStart
     | SetPlan
     | ReportProblem
+    | SendCommand
+    | ConfirmCommand
 )
 
 _FIELD_OF_ACTION: dict[type[Action], str] = {
@@ -121,6 +145,8 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     SetStart: "set_start",
     SetPlan: "set_plan",
     ReportProblem: "report_problem",
+    SendCommand: "send_command",
+    ConfirmCommand: "confirm_command",
 }
 _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 
@@ -151,8 +177,10 @@ class OperatorAction(msgspec.Struct, frozen=True):
             raise ValueError("an operator's action of a kind that this program does not know")
         part = getattr(wire, field)
         action_type = _ACTION_OF_FIELD[field]
-        fields = action_type.__struct_fields__
-        action = action_type(**{name: getattr(part, name) for name in fields})
+        values = {name: getattr(part, name) for name in action_type.__struct_fields__}
+        if action_type is SendCommand:
+            values["kind"] = known(CommandKind, part.kind)
+        action = action_type(**values)
         return OperatorAction(
             header=Header.from_wire(wire.header),
             action_id=wire.action_id,

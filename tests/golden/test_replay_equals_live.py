@@ -13,13 +13,23 @@ from base_station.pipeline import StationPipeline, read_checkpoint
 from base_station.playback import Playback, compare, is_decision
 from shared.channels import OPERATOR, Qos, channel_of
 from shared.codec import decode, encode
-from shared.messages import STATION_ID, AlarmChange, EventKind, FusedPosition, OperatorAction
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    CommandKind,
+    CommandState,
+    EventKind,
+    FusedPosition,
+    OperatorAction,
+)
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
     CloseIncident,
+    ConfirmCommand,
     OpenIncident,
     ResolveAlarm,
+    SendCommand,
     SetAnchor,
     SetPlan,
     SetStart,
@@ -77,11 +87,26 @@ def _second(script: Script, second: int) -> None:
         script.event("FF-03", EventKind.MAYDAY)
     if second == 40:
         script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
+    _commands(script, second)
     if second == 50:
         script.act(ResolveAlarm(script.alarms[0].alarm_id, "spoken to"))
     if second % 50 == 0:
         script.record("muster/v1/FF-01/up/position", b"\xff rubbish")
         script.position("stranger", 0.0, 0.0)
+
+
+def _commands(script: Script, second: int) -> None:
+    """An evacuation: one acknowledges, one does not hear it in time, for one the chief answers."""
+    if second == 70:
+        kind = CommandKind.EVACUATE
+        script.act(SendCommand("c1", kind, "", "", True, "out", 0.0, lasts_s=60.0))
+        script.command("FF-01", "c1")
+    if second == 71:
+        script.reply("FF-01", "c1", CommandState.RECEIVED)
+    if second == 75:
+        script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
+    if second == 90:
+        script.act(ConfirmCommand("c1", "FF-03"))
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +137,10 @@ def test_the_incident_is_worth_replaying(told: Script) -> None:
     assert len(told.fused) > 500
     assert {fused.floor for fused in told.fused} == {0, 1}
     assert any(fused.since_gps_s is not None for fused in told.fused)
+    command = told.pipeline.state.commands["c1"]
+    assert {one.unit_id: command.state_of(one) for one in command.deliveries.values()} == {
+        "FF-01": "acknowledged", "FF-02": "expired", "FF-03": "acknowledged"
+    }  # fmt: skip
 
 
 def test_a_replay_of_the_log_decides_the_same(told: Script) -> None:

@@ -49,7 +49,7 @@ def imu_batches(draw) -> ImuBatch:
 OTHERS = st.one_of(
     st.builds(AmbientSample, TIMES, ANY),
     st.builds(BatterySample, TIMES, ANY),
-    st.builds(ButtonPress, TIMES, st.sampled_from(["mayday", "cancel", "unknown"])),
+    st.builds(ButtonPress, TIMES, st.sampled_from(["mayday", "cancel", "acknowledge", "unknown"])),
     st.builds(
         GpsSample, TIMES, st.one_of(st.just(math.nan), st.floats(-90, 90)), st.floats(-180, 180),
         ANY, ANY, ANY, st.integers(0, 4), st.integers(0, 60), ANY, ANY,

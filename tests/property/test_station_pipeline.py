@@ -9,15 +9,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base_station.pipeline import read_checkpoint
-from shared.messages import AlarmChange, AlarmState, EventKind
+from shared.messages import (
+    AlarmChange,
+    AlarmState,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    EventKind,
+)
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
     CloseIncident,
+    ConfirmCommand,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
+    SendCommand,
     SetAnchor,
     SetPlan,
     SetStart,
@@ -30,6 +39,7 @@ from tests.station_script import Script
 UNITS = st.sampled_from(["FF-01", "FF-02", "stranger"])
 METRES = st.floats(-1e4, 1e4)
 ANY = st.floats(allow_nan=True, allow_infinity=True, width=32)
+COMMAND_IDS = st.sampled_from(["c1", "c2", "c3"])
 ANGLES = st.floats(0.0, 6.28)
 
 Deed = Callable[[Script], object]
@@ -94,6 +104,23 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
     st.builds(lambda t: lambda s: s.act(ReportProblem("log", t)), st.sampled_from(["", "full"])),
     st.builds(lambda i: lambda s: s.act(AcknowledgeAlarm(i)), st.text(max_size=5)),
     st.just(_resolve_some),
+    st.builds(
+        lambda i, k, u, c, e, last: lambda s: s.act(SendCommand(i, k, u, c, e, "hi", 5.0, last)),
+        COMMAND_IDS,
+        st.sampled_from(list(CommandKind)),
+        st.just("") | UNITS,
+        st.sampled_from(["", "", "red"]),
+        st.booleans(),
+        st.just(20.0) | ANY,
+    ),
+    st.builds(lambda u, i: lambda s: s.command(u, i), UNITS, COMMAND_IDS),
+    st.builds(
+        lambda u, i, state: lambda s: s.reply(u, i, state),
+        UNITS,
+        COMMAND_IDS,
+        st.sampled_from(list(CommandState)),
+    ),
+    st.builds(lambda u, i: lambda s: s.act(ConfirmCommand(i, u)), UNITS, COMMAND_IDS),
 )
 
 
@@ -148,3 +175,23 @@ def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
     for life in lives.values():
         if life[0].rule in latched and life[-1].state is AlarmState.RESOLVED:
             assert life[-1].by.startswith("chief")
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(DEEDS, max_size=60))
+def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) -> None:
+    script = Script()
+    script.register("FF-01", "FF-02")
+    for deed in deeds:
+        script.now_s += 0.3
+        deed(script)
+    acknowledged = {
+        (reply.header.unit_id, reply.command_id)
+        for reply in script.said(CommandReply)
+        if reply.state is CommandState.ACKNOWLEDGED
+    }
+    for command in script.pipeline.state.commands.values():
+        for delivery in command.deliveries.values():
+            if command.state_of(delivery) == "acknowledged":
+                by_wearer = (delivery.unit_id, command.command_id) in acknowledged
+                assert by_wearer or delivery.acknowledged_by == "chief"

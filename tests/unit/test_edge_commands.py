@@ -9,8 +9,6 @@ from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Command, CommandKind, CommandState, Header
 
-NOW_NS = 1_000_000
-
 
 @pytest.fixture
 def rates() -> list[float]:
@@ -22,13 +20,17 @@ def desk(rates) -> CommandDesk:
     return CommandDesk(Stamper("u1", 1, ManualClock()), rates.append)
 
 
+SENT_NS = 1_000_000
+
+
 def command(kind: CommandKind, command_id: str = "c1", expires_ns: int = 0, rate_hz: float = 0.0):
-    return Command(Header("station", 1, 1, 0), command_id, kind, "anna", expires_ns, "", rate_hz)
+    header = Header("station", 1, 1, 0, t_utc_ns=SENT_NS)
+    return Command(header, command_id, kind, "anna", expires_ns, "", rate_hz)
 
 
 def test_a_rate_is_set_once_however_often_it_is_asked(desk, rates):
     asked = command(CommandKind.SET_POSITION_RATE, rate_hz=10.0)
-    first, second = desk.take(asked, NOW_NS), desk.take(asked, NOW_NS)
+    first, second = desk.take(asked), desk.take(asked)
     assert rates == [10.0]
     assert first.state is second.state is CommandState.RECEIVED
     assert first.command_id == "c1"
@@ -37,7 +39,7 @@ def test_a_rate_is_set_once_however_often_it_is_asked(desk, rates):
 
 @pytest.mark.parametrize("rate_hz", [0.0, 0.01, 51.0])
 def test_a_rate_out_of_range_is_refused_with_the_reason(desk, rates, rate_hz):
-    reply = desk.take(command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz), NOW_NS)
+    reply = desk.take(command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz))
     assert reply.state is CommandState.REFUSED
     assert "between" in reply.detail
     assert not rates
@@ -47,16 +49,45 @@ def test_a_rate_out_of_range_is_refused_with_the_reason(desk, rates, rate_hz):
     ("kind", "expires_ns", "state"),
     [
         (CommandKind.EVACUATE, 0, CommandState.RECEIVED),
-        (CommandKind.EVACUATE, NOW_NS + 1, CommandState.RECEIVED),
-        (CommandKind.EVACUATE, NOW_NS - 1, CommandState.REFUSED),
+        (CommandKind.EVACUATE, SENT_NS + 1, CommandState.RECEIVED),
+        (CommandKind.EVACUATE, SENT_NS, CommandState.REFUSED),
+        (CommandKind.EVACUATE, SENT_NS - 1, CommandState.REFUSED),
         (CommandKind.UNKNOWN, 0, CommandState.REFUSED),
     ],
 )
 def test_expired_and_unknown_commands_are_refused(desk, kind, expires_ns, state):
-    assert desk.take(command(kind, expires_ns=expires_ns), NOW_NS).state is state
+    assert desk.take(command(kind, expires_ns=expires_ns)).state is state
 
 
 def test_what_is_remembered_is_bounded(desk):
     for number in range(5000):
-        desk.take(command(CommandKind.TEXT, f"c{number}"), NOW_NS)
+        desk.take(command(CommandKind.TEXT, f"c{number}"))
     assert len(desk._answers) <= 1000
+
+
+ASKING = [CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT]
+
+
+@pytest.mark.parametrize("kind", [kind for kind in CommandKind if kind is not CommandKind.UNKNOWN])
+def test_the_wearer_acknowledges_what_asks_for_it_and_once(desk, kind):
+    reply = desk.take(command(kind, rate_hz=5.0))
+    assert reply.awaits_wearer is (kind in ASKING)
+    answers = desk.acknowledge()
+    assert [answer.state for answer in answers] == [CommandState.ACKNOWLEDGED] * (kind in ASKING)
+    assert not desk.acknowledge()
+
+
+def test_a_repeat_after_the_acknowledgement_is_told_of_it(desk):
+    asked = command(CommandKind.PAR_REQUEST)
+    desk.take(asked)
+    (acknowledged,) = desk.acknowledge()
+    again = desk.take(asked)
+    assert (again.state, again.awaits_wearer) == (CommandState.ACKNOWLEDGED, False)
+    assert again.header.seq == acknowledged.header.seq + 1
+    assert not desk.acknowledge()
+
+
+def test_one_press_answers_everything_that_is_asked(desk):
+    for number in range(3):
+        desk.take(command(CommandKind.TEXT, f"c{number}"))
+    assert [answer.command_id for answer in desk.acknowledge()] == ["c0", "c1", "c2"]

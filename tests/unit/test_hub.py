@@ -33,7 +33,7 @@ class Source:
             self._hub.delta(Delta(self.seq, self.seq))
 
     def snapshot(self) -> Snapshot:
-        return Snapshot(self.seq, self.seq, None, (), (), {}, None, None, HEALTH, None)
+        return Snapshot(self.seq, self.seq, None, (), (), (), {}, None, None, HEALTH, None)
 
     def answer(self) -> None:
         for deliver in self.asked:
@@ -165,3 +165,11 @@ async def test_without_clients_nothing_is_encoded(hub: Hub, source: Source) -> N
     assert hub.watchers == 0
     with pytest.raises(TimeoutError):
         await asyncio.wait_for(client.next_message(), 0.01)
+
+
+async def test_a_program_may_ask_for_the_picture(hub: Hub, source: Source) -> None:
+    asked = hub.snapshot()
+    assert not asked.done()
+    source.say(4)
+    source.answer()
+    assert asked.result(0).seq == 4

@@ -7,16 +7,25 @@ from pathlib import Path
 
 import pytest
 
-from edge.last_words import mayday_before
+from edge.commands import REMEMBERED, CommandDesk
+from edge.last_words import answers_before, mayday_before
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import SensorDescription
 from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker
-from shared.channels import EVENT
+from shared.channels import EVENT, REPLY
 from shared.clock import ManualClock
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.messages import EventKind, UnitEvent
+from shared.messages import (
+    Command,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    EventKind,
+    Header,
+    UnitEvent,
+)
 
 STARTED, STOPPED = EventKind.STARTED, EventKind.STOPPED
 MAYDAY, CANCELLED, FALL = EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.FALL
@@ -61,3 +70,58 @@ def test_a_mayday_from_before_is_said_again_first_thing():
     )
     events = [message for message in pipeline.start() if isinstance(message, UnitEvent)]
     assert [event.kind for event in events] == [STARTED, MAYDAY]
+
+
+class DeskBoot:
+    """A boot whose desk answers into the journal; ``rates`` are those it has set."""
+
+    def __init__(self, path: Path) -> None:
+        self.spool = Spool(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
+        self.rates: list[float] = []
+        stamper = Stamper("u1", self.spool.boot_id, ManualClock())
+        self.desk = CommandDesk(stamper, self.rates.append, answers_before(self.spool))
+
+    def take(self, command_id: str, kind: CommandKind) -> CommandReply:
+        header = Header("station", 1, 1, 0)
+        reply = self.desk.take(Command(header, command_id, kind, "anna", 0, position_rate_hz=10.0))
+        self.keep(reply)
+        return reply
+
+    def keep(self, *replies: CommandReply) -> None:
+        self.spool.append([Journaled(r.header.seq, REPLY, 0, encode(r)) for r in replies])
+
+
+def test_what_was_done_before_a_restart_is_not_done_again(tmp_path):
+    first = DeskBoot(tmp_path)
+    first.take("c1", CommandKind.SET_POSITION_RATE)
+    assert first.rates == [10.0]
+    first.spool.close()
+    second = DeskBoot(tmp_path)
+    reply = second.take("c1", CommandKind.SET_POSITION_RATE)
+    assert reply.state is CommandState.RECEIVED
+    assert second.rates == []
+    second.spool.close()
+
+
+def test_what_the_wearer_had_not_acknowledged_is_still_asked_after_a_restart(tmp_path):
+    first = DeskBoot(tmp_path)
+    first.take("c1", CommandKind.EVACUATE)
+    first.keep(*first.desk.acknowledge())
+    first.take("c2", CommandKind.EVACUATE)
+    first.spool.close()
+    second = DeskBoot(tmp_path)
+    assert second.take("c1", CommandKind.EVACUATE).state is CommandState.ACKNOWLEDGED
+    assert [reply.command_id for reply in second.desk.acknowledge()] == ["c2"]
+    second.spool.close()
+
+
+def test_the_newest_answers_are_remembered_across_boots(tmp_path):
+    first = DeskBoot(tmp_path)
+    for number in range(2 * REMEMBERED + 5):
+        first.take(f"c{number}", CommandKind.LOCATE)
+    first.spool.close()
+    second = DeskBoot(tmp_path)
+    given = answers_before(second.spool)
+    assert given[-1].command_id == f"c{2 * REMEMBERED + 4}"
+    assert len(given) == 2 * REMEMBERED
+    second.spool.close()

@@ -72,6 +72,38 @@ export interface UnitView {
   alarms: string[]; // ids of the alarms that are not resolved
 }
 
+export type DeliveryState =
+  | "queued"
+  | "sent"
+  | "received"
+  | "acknowledged"
+  | "refused"
+  | "expired";
+
+/** How far a command has got with one unit. */
+export interface DeliveryView {
+  unit_id: string;
+  state: DeliveryState;
+  sent_ms: number | null;
+  received_ms: number | null;
+  acknowledged_ms: number | null;
+  acknowledged_by: string; // the wearer, or who heard from the wearer
+  reason: string; // of a refusal
+}
+
+/** What units were told. */
+export interface CommandView {
+  command_id: string;
+  kind: string;
+  text: string;
+  issued_by: string;
+  issued_ms: number;
+  expires_ms: number;
+  asks_wearer: boolean; // done only when somebody has acknowledged it
+  open: boolean; // more is to come of it
+  units: DeliveryView[];
+}
+
 export interface IncidentView {
   incident_id: string;
   name: string;
@@ -126,6 +158,7 @@ export interface Snapshot {
   incident: IncidentView | null;
   units: UnitView[];
   alarms: AlarmView[];
+  commands: CommandView[]; // all that are open, and the last closed ones; oldest first
   trails: Record<string, TrailPoint[]>;
   plan: Plan | null;
   anchor: AnchorView | null;
@@ -140,6 +173,7 @@ export interface Delta {
   now_ms: number;
   units?: UnitView[];
   alarms?: AlarmView[];
+  commands?: CommandView[];
   trails?: Record<string, TrailPoint[]>;
   health?: HealthView;
   incident?: IncidentView;

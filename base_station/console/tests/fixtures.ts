@@ -1,7 +1,9 @@
 /** Things as the station sends them, with what a test cares about changed. */
 import type {
   AlarmView,
+  CommandView,
   Delta,
+  DeliveryState,
   HealthView,
   PositionView,
   Snapshot,
@@ -86,6 +88,34 @@ export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmVi
   };
 }
 
+/** A command to these units, and how far it has got with each. */
+export function command(
+  commandId: string,
+  units: Record<string, DeliveryState>,
+  change: Partial<CommandView> = {},
+): CommandView {
+  return {
+    command_id: commandId,
+    kind: "evacuate",
+    text: "",
+    issued_by: "chief",
+    issued_ms: 0,
+    expires_ms: 60_000,
+    asks_wearer: true,
+    open: true,
+    units: Object.entries(units).map(([unit_id, state]) => ({
+      unit_id,
+      state,
+      sent_ms: null,
+      received_ms: null,
+      acknowledged_ms: null,
+      acknowledged_by: "",
+      reason: "",
+    })),
+    ...change,
+  };
+}
+
 export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
   return {
     type: "snapshot",
@@ -94,6 +124,7 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     incident: null,
     units: [],
     alarms: [],
+    commands: [],
     trails: {},
     plan: null,
     anchor: null,

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { apply, TRAIL_POINTS, type State } from "../src/live/state";
 import type { TrailPoint } from "../src/wire";
-import { alarm, delta, position, snapshot, unit } from "./fixtures";
+import { alarm, command, delta, position, snapshot, unit } from "./fixtures";
 
 function after(...messages: Parameters<typeof apply>[1][]): State {
   let state: State | null = null;
@@ -47,6 +47,28 @@ describe("apply", () => {
 
   it("forgets a unit that a snapshot no longer has", () => {
     expect(after(snapshot({ units: [unit("a")] }), snapshot()).units.size).toBe(0);
+  });
+
+  it("follows how far a command gets with each unit", () => {
+    const state = after(
+      snapshot({ commands: [command("x", { a: "sent", b: "queued" })] }),
+      delta(11, { commands: [command("x", { a: "acknowledged", b: "sent" })] }),
+      delta(12, { commands: [command("y", { a: "queued" })] }),
+    );
+    expect([...state.commands.keys()]).toEqual(["x", "y"]);
+    expect(state.commands.get("x")?.units.map((one) => one.state)).toEqual([
+      "acknowledged",
+      "sent",
+    ]);
+  });
+
+  it("keeps open commands and the last closed ones", () => {
+    const closed = Array.from({ length: 30 }, (_, i) => command(`c${i}`, {}, { open: false }));
+    const open = command("open", { a: "sent" });
+    const state = after(snapshot({ commands: [open] }), delta(11, { commands: closed }));
+    expect(state.commands.has("open")).toBe(true);
+    expect(state.commands.has("c29")).toBe(true);
+    expect(state.commands.has("c0")).toBe(false);
   });
 
   it("keeps resolved alarms, but not without end", () => {

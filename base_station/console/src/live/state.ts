@@ -2,6 +2,7 @@
 import type {
   AlarmView,
   AnchorView,
+  CommandView,
   Delta,
   HealthView,
   IncidentView,
@@ -19,6 +20,7 @@ export interface State {
   incident: IncidentView | null;
   units: ReadonlyMap<string, UnitView>;
   alarms: ReadonlyMap<string, AlarmView>;
+  commands: ReadonlyMap<string, CommandView>; // oldest first
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
   plan: Plan | null;
   anchor: AnchorView | null;
@@ -37,6 +39,7 @@ const TRAIL_STEP_M = 0.5;
 const TRAIL_REST_MS = 15_000;
 export const TRAIL_POINTS = 900;
 const RESOLVED_KEPT = 50;
+const CLOSED_KEPT = 10;
 
 /** The state after a message.  A delta that does not follow leaves the state as it was. */
 export function apply(state: State | null, message: Message): Applied {
@@ -52,6 +55,7 @@ function fromSnapshot(message: Snapshot): State {
     incident: message.incident,
     units: new Map(message.units.map((unit) => [unit.unit_id, unit])),
     alarms: new Map(message.alarms.map((alarm) => [alarm.alarm_id, alarm])),
+    commands: new Map(message.commands.map((command) => [command.command_id, command])),
     trails: new Map(Object.entries(message.trails)),
     plan: message.plan,
     anchor: message.anchor,
@@ -71,6 +75,7 @@ function withDelta(state: State, delta: Delta): State {
     units: delta.units ? withUnits(state.units, delta.units) : state.units,
     trails: withTrails(state.trails, delta),
     alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
+    commands: delta.commands ? withCommands(state.commands, delta.commands) : state.commands,
   };
 }
 
@@ -115,5 +120,16 @@ function withAlarms(alarms: State["alarms"], changed: readonly AlarmView[]): Sta
     .filter((alarm) => alarm.state === "resolved")
     .sort((a, b) => b.changed_ms - a.changed_ms);
   for (const alarm of resolved.slice(RESOLVED_KEPT)) next.delete(alarm.alarm_id);
+  return next;
+}
+
+function withCommands(
+  commands: State["commands"],
+  changed: readonly CommandView[],
+): State["commands"] {
+  const next = new Map(commands);
+  for (const command of changed) next.set(command.command_id, command);
+  const closed = [...next.values()].filter((command) => !command.open);
+  for (const command of closed.slice(0, -CLOSED_KEPT)) next.delete(command.command_id);
   return next;
 }

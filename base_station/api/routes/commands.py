@@ -1,0 +1,123 @@
+"""What units are told, and how far that has got with each of them."""
+
+from __future__ import annotations
+
+import uuid
+from enum import StrEnum
+from typing import Annotated, Self
+
+import msgspec
+from fastapi import APIRouter
+from pydantic import BaseModel, Field, model_validator
+
+from base_station.api.forms import Form, Id, Note, UnitIdText, Word
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.api.wire import CommandView
+from shared.messages import CommandKind
+from shared.messages.station import ConfirmCommand, SendCommand
+
+router = APIRouter(tags=["commands"])
+
+
+class Kind(StrEnum):
+    EVACUATE = "evacuate"
+    PAR_REQUEST = "par_request"
+    TEXT = "text"
+    LOCATE = "locate"
+    SET_POSITION_RATE = "set_position_rate"
+
+
+class Target(Form):
+    """One of the three."""
+
+    unit_id: UnitIdText | None = None
+    crew: Annotated[Word, Field(min_length=1)] | None = None
+    everyone: bool = False
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        if (self.unit_id is not None) + (self.crew is not None) + self.everyone != 1:
+            raise ValueError("say one of: unit_id, crew, everyone")
+        return self
+
+
+class NewCommand(Form):
+    kind: Kind
+    target: Target
+    text: Note = ""
+    position_rate_hz: Annotated[float, Field(ge=0.1, le=50.0)] = 5.0  # for set_position_rate
+    expires_s: Annotated[float, Field(ge=1.0, le=86_400.0)] = 600.0
+
+
+class Confirmation(Form):
+    unit_id: UnitIdText
+
+
+class Delivery(BaseModel):
+    unit_id: str
+    state: str
+    sent_ms: int | None
+    received_ms: int | None
+    acknowledged_ms: int | None
+    acknowledged_by: str
+    reason: str
+
+
+class Command(BaseModel):
+    command_id: str
+    kind: str
+    text: str
+    issued_by: str
+    issued_ms: int
+    expires_ms: int
+    asks_wearer: bool
+    open: bool
+    units: list[Delivery]
+
+
+@router.get("/commands")
+def list_commands(station: Station, _: Viewer) -> list[Command]:
+    """Those that are open and the last closed ones, oldest first; the audit names all."""
+    return [_command(view) for view in station.picture().commands]
+
+
+@router.get("/commands/{command_id}")
+def get_command(command_id: Id, station: Station, _: Viewer) -> Command:
+    return _command_or_404(station, command_id)
+
+
+@router.post("/commands", status_code=201)
+def send(new: NewCommand, station: Station, who: Commander) -> Command:
+    """It is sent to each unit until that answers, ``expires_s`` from now at the latest."""
+    action = SendCommand(
+        command_id=uuid.uuid4().hex,
+        kind=CommandKind[new.kind.name],
+        unit_id=new.target.unit_id or "",
+        crew=new.target.crew or "",
+        everyone=new.target.everyone,
+        text=new.text,
+        position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
+        lasts_s=new.expires_s,
+    )
+    station.act(who.username, action)
+    return _command_or_404(station, action.command_id)
+
+
+@router.post("/commands/{command_id}/confirm", status_code=204)
+def confirm(command_id: Id, by_voice: Confirmation, station: Station, who: Commander) -> None:
+    """Somebody has heard from the wearer in another way: that acknowledges the command."""
+    _command_or_404(station, command_id)
+    station.act(who.username, ConfirmCommand(command_id, by_voice.unit_id))
+
+
+def _command_or_404(station: Services, command_id: str) -> Command:
+    for view in station.picture().commands:
+        if view.command_id == command_id:
+            return _command(view)
+    raise Problem(404, "There is no such command.")
+
+
+def _command(view: CommandView) -> Command:
+    return Command.model_validate(msgspec.to_builtins(view))

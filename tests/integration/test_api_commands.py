@@ -1,0 +1,98 @@
+"""Commands by way of the API: who may send what, and what is said of it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+
+from base_station.db.accounts import Role
+from shared.clock import ManualClock
+from shared.messages import CommandReply, CommandState, Header
+from tests.station import DeskStation
+
+EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
+
+
+@pytest_asyncio.fixture
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    yield station
+    station.close()
+
+
+async def test_a_crew_is_told_and_its_answers_are_shown(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        for unit_id, crew in (("FF-01", "A"), ("FF-02", "A"), ("FF-03", "B")):
+            person = (await commander.post("/people", json={"name": unit_id, "crew": crew})).json()
+            await commander.post("/units", json={"unit_id": unit_id})
+            worn = {"unit_id": unit_id, "person_id": person["person_id"]}
+            assert (await commander.post("/assignments", json=worn)).status_code == 204
+        order = {"kind": "text", "target": {"crew": "A"}, "text": "come out", "expires_s": 60}
+        answer = await commander.post("/commands", json=order)
+        assert answer.status_code == 201, answer.text
+        command = answer.json()
+        assert (command["kind"], command["text"], command["issued_by"]) == (
+            "text", "come out", "commander"
+        )  # fmt: skip
+        assert command["expires_ms"] - command["issued_ms"] == 60_000
+        assert [unit["state"] for unit in command["units"]] == ["queued", "queued"]
+        clock.advance(1.0)
+        station.drive.hear(
+            CommandReply(Header("FF-01", 7, 1, 0), command["command_id"], CommandState.ACKNOWLEDGED)
+        )
+        path = f"/commands/{command['command_id']}"
+        confirmed = await commander.post(f"{path}/confirm", json={"unit_id": "FF-02"})
+        assert confirmed.status_code == 204, confirmed.text
+        (listed,) = (await commander.get("/commands")).json()
+        assert listed == (await commander.get(path)).json()
+        assert not listed["open"]
+        assert [(unit["state"], unit["acknowledged_by"]) for unit in listed["units"]] == [
+            ("acknowledged", "FF-01"), ("acknowledged", "commander")
+        ]  # fmt: skip
+        again = await commander.post(f"{path}/confirm", json={"unit_id": "FF-02"})
+        assert again.status_code == 409
+    async with station.client(Role.ADMINISTRATOR) as administrator:
+        entries = (await administrator.get("/audit")).json()
+    assert {"SendCommand", "ConfirmCommand"} <= {entry["action"] for entry in entries}
+
+
+async def test_a_viewer_looks_on(station: DeskStation) -> None:
+    async with station.client(Role.VIEWER) as viewer:
+        assert (await viewer.post("/commands", json=EVACUATE)).status_code == 403
+        refused = await viewer.post("/commands/c1/confirm", json={"unit_id": "FF-01"})
+        assert refused.status_code == 403
+        assert (await viewer.get("/commands")).json() == []
+        assert (await viewer.get("/commands/none")).status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("change", "status", "word"),
+    [
+        ({"target": {}}, 422, "one of"),
+        ({"target": {"everyone": True, "crew": "A"}}, 422, "one of"),
+        ({"target": {"crew": ""}}, 422, "crew"),
+        ({"target": {"unit_id": "FF-09"}}, 409, "FF-09"),
+        ({}, 409, "everyone"),  # nobody is there
+        ({"kind": "reset_alarm"}, 422, "kind"),
+        ({"expires_s": 0}, 422, "expires_s"),
+        ({"expires_s": "soon"}, 422, "expires_s"),
+        ({"position_rate_hz": 1000}, 422, "position_rate_hz"),
+        ({"text": "line\nbreak"}, 422, "text"),
+        ({"more": 1}, 422, "more"),
+    ],
+)
+async def test_what_makes_no_sense_is_refused(
+    station: DeskStation, change: dict[str, object], status: int, word: str
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        answer = await commander.post("/commands", json=EVACUATE | change)
+        assert answer.status_code == status, answer.text
+        assert word in answer.json()["detail"]
+        assert (await commander.get("/commands")).json() == []

@@ -1,0 +1,187 @@
+"""A command from the console's button to the wearer's and back, over the bus."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from base_station import downlink
+from base_station.command_state import Order
+from base_station.downlink import Downlink
+from base_station.playback import compare
+from edge.commands import CommandDesk
+from shared.bus import Subscription
+from shared.bus_memory import MemoryBus, MemoryRouter
+from shared.channels import COMMAND, REPLY
+from shared.clock import ManualClock, SystemClock
+from shared.codec import decode, encode
+from shared.envelope import Stamper
+from shared.messages import STATION_ID, Command, CommandKind, CommandReply
+from shared.messages.station import ConfirmCommand, RegisterUnit, SendCommand
+from tests.live_station import LiveStation, make_pipeline, until
+
+U = "FF-01"
+
+
+class Unit:
+    """A unit's command desk on the bus; it may be deaf, mute or away."""
+
+    def __init__(self, router: MemoryRouter, boot_id: int = 1) -> None:
+        self.bus: MemoryBus = router.attach_unit()
+        self.rates: list[float] = []
+        self.heard: list[Command] = []
+        self.is_mute = False
+        self.desk = CommandDesk(Stamper(U, boot_id, SystemClock()), self.rates.append)
+        self._hearing: Subscription | None = None
+
+    def come(self) -> None:
+        self._hearing = self.bus.subscribe(COMMAND.key(U), self._take)
+
+    def go(self) -> None:
+        assert self._hearing is not None
+        self._hearing.close()
+
+    def press(self) -> None:
+        for reply in self.desk.acknowledge():
+            self.say(reply)
+
+    def say(self, reply: CommandReply) -> None:
+        self.bus.publish(REPLY.key(U), encode(reply), REPLY.qos)
+
+    def _take(self, _key: str, payload: bytes) -> None:
+        command = decode(COMMAND, payload)
+        assert isinstance(command, Command)
+        self.heard.append(command)
+        reply = self.desk.take(command)
+        if not self.is_mute:
+            self.say(reply)
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 10**8)
+    monkeypatch.setattr(downlink, "_LOOK_EVERY_S", 0.02)
+
+
+def order(kind: CommandKind, rate_hz: float = 0.0, lasts_s: float = 600.0) -> SendCommand:
+    return SendCommand("c1", kind, U, "", False, "", rate_hz, lasts_s)
+
+
+def state(station: LiveStation) -> str:
+    (command,) = station.snapshot().commands
+    return command.units[0].state
+
+
+def test_a_par_is_sent_received_and_acknowledged(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        unit = Unit(station.router)
+        unit.come()
+        station.act(order(CommandKind.PAR_REQUEST))
+        until(lambda: state(station) == "received")
+        unit.press()
+        until(lambda: state(station) == "acknowledged")
+        assert len(unit.heard) == 1
+        told = [one.commands[0].units[0].state for one in station.screen.deltas if one.commands]
+        assert told[-1] == "acknowledged"
+    records = list(station.log.records())
+    keys = [key for _, key, _ in records]
+    assert keys.count(COMMAND.key(U)) == 1
+    assert keys.count(REPLY.key(U)) == 2
+    assert list(compare(records, make_pipeline())) == []
+
+
+def test_it_is_said_again_until_the_unit_answers_and_done_once(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        unit = Unit(station.router)
+        unit.is_mute = True
+        unit.come()
+        station.act(order(CommandKind.SET_POSITION_RATE, 10.0))
+        until(lambda: len(unit.heard) >= 4)
+        assert state(station) == "sent"
+        unit.is_mute = False
+        until(lambda: state(station) == "received")
+        count = len(unit.heard)
+        assert unit.rates == [10.0]
+        assert [one.command_id for one in unit.heard] == ["c1"] * count
+
+
+def test_a_unit_that_comes_back_is_told_what_it_missed(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        unit = Unit(station.router)
+        station.act(order(CommandKind.EVACUATE))
+        until(lambda: any(delta.health for delta in station.screen.deltas))
+        assert state(station) == "queued"
+        unit.come()
+        until(lambda: state(station) == "received")
+        unit.go()
+
+
+def test_what_nobody_heard_expires_and_is_said_no_more(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        station.act(order(CommandKind.EVACUATE, lasts_s=0.3))
+        until(lambda: state(station) == "expired")
+        unit = Unit(station.router)
+        unit.come()
+        station.act(ConfirmCommand("c1", U))
+        assert state(station) == "acknowledged"
+        assert unit.heard == []
+
+
+def test_a_station_that_starts_again_goes_on_telling(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        station.act(order(CommandKind.EVACUATE))
+    with LiveStation(tmp_path) as station:
+        unit = Unit(station.router)
+        unit.come()
+        until(lambda: state(station) == "received")
+
+
+def an_order(expires_ns: int) -> Order:
+    return Order(U, "c1", CommandKind.EVACUATE, "anna", expires_ns, "", 0.0)
+
+
+@pytest.fixture
+def link() -> tuple[Downlink, Unit, ManualClock]:
+    router, clock = MemoryRouter(), ManualClock()
+    return (
+        Downlink(router.attach_station(), Stamper(STATION_ID, 1, clock), clock),
+        Unit(router),
+        clock,
+    )
+
+
+def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
+    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 2 * 10**9)
+    down, unit, clock = link
+    unit.come()
+    orders = [an_order(clock.utc_ns() + 5 * 10**9)]
+    counts = []
+    for _ in range(12):
+        down._say_all(orders)
+        counts.append(len(unit.heard))
+        clock.advance(0.5)
+    assert counts == [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3]
+    assert [one.header.seq for one in unit.heard] == [1, 2, 3]
+
+
+def test_who_was_away_is_told_at_once(
+    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 100 * 10**9)
+    down, unit, clock = link
+    orders = [an_order(clock.utc_ns() + 10**12)]
+    come_and_go: list[Callable[[], None]] = [unit.come, unit.go, unit.come]
+    for happens in come_and_go:
+        happens()
+        down._say_all(orders)
+        clock.advance(0.1)
+    assert len(unit.heard) == 2

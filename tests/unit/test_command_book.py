@@ -1,0 +1,241 @@
+"""How far a command has got with each unit, event by event."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.command_book import CLOSED_KEPT, MOST_OPEN, unanswered
+from base_station.events import CommandTouched, Refused
+from shared.channels import REPLY, backfilled_key
+from shared.codec import encode
+from shared.messages import CommandKind, CommandReply, CommandState
+from shared.messages.station import Assign, ConfirmCommand, SendCommand, Unassign
+from tests.station_script import Script
+
+RECEIVED, ACKNOWLEDGED = CommandState.RECEIVED, CommandState.ACKNOWLEDGED
+REFUSED = CommandState.REFUSED
+
+
+def crewed() -> Script:
+    """FF-01 and FF-02 in the red crew, FF-03 in the blue one, FF-04 in its drawer."""
+    script = Script()
+    script.register("FF-01", "FF-02", "FF-03", "FF-04")
+    for number, crew in ((1, "red"), (2, "red"), (3, "blue")):
+        script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", crew, ""))
+    return script
+
+
+def order(
+    command_id: str = "c1",
+    kind: CommandKind = CommandKind.EVACUATE,
+    unit_id: str = "",
+    crew: str = "",
+    everyone: bool = False,
+    text: str = "",
+    rate_hz: float = 0.0,
+    lasts_s: float = 60.0,
+) -> SendCommand:
+    return SendCommand(command_id, kind, unit_id, crew, everyone, text, rate_hz, lasts_s)
+
+
+def states(script: Script, command_id: str = "c1") -> dict[str, str]:
+    command = script.pipeline.state.commands[command_id]
+    return {one.unit_id: command.state_of(one) for one in command.deliveries.values()}
+
+
+def to_one(kind: CommandKind = CommandKind.PAR_REQUEST) -> Script:
+    script = crewed()
+    script.act(order(kind=kind, unit_id="FF-01", text="hi", rate_hz=5.0))
+    return script
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ({"unit_id": "FF-04"}, ["FF-04"]),
+        ({"crew": "red"}, ["FF-01", "FF-02"]),
+        ({"everyone": True}, ["FF-01", "FF-02", "FF-03", "stranded"]),
+    ],
+)
+def test_a_command_goes_to_a_unit_a_crew_or_everyone(target, told):
+    script = crewed()
+    script.register("stranded")
+    script.status("stranded")  # nobody wears it, but it is out there
+    script.status("stranger")
+    assert script.act(order(**target)) == [CommandTouched("c1")]
+    assert list(states(script)) == told
+    assert [one.unit_id for one in unanswered(script.pipeline.state)] == told
+
+
+def test_whom_it_went_to_does_not_change_with_who_wears_what():
+    script = crewed()
+    script.act(order(crew="red"))
+    script.act(Unassign("FF-01"))
+    script.act(Assign("FF-04", "p4", "Person 4", "red", ""))
+    assert list(states(script)) == ["FF-01", "FF-02"]
+
+
+@pytest.mark.parametrize(
+    ("action", "reason"),
+    [
+        (order(), "one of"),
+        (order(unit_id="FF-01", everyone=True), "one of"),
+        (order(unit_id="FF-09"), "FF-09"),
+        (order(crew="green"), "green"),
+        (order(kind=CommandKind.UNKNOWN, everyone=True), "kind"),
+        (order(kind=CommandKind.TEXT, everyone=True, text="  "), "text"),
+        (order(everyone=True, lasts_s=0.0), "lasts"),
+        (order(everyone=True, lasts_s=math.inf), "lasts"),
+        (order(everyone=True, rate_hz=math.nan), "rate"),
+        (order(command_id="", everyone=True), "id"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_with_the_reason(action, reason):
+    script = crewed()
+    (output,) = script.act(action)
+    assert isinstance(output, Refused)
+    assert reason in output.reason
+    assert not script.pipeline.state.commands
+
+
+def test_it_is_queued_sent_received_and_acknowledged():
+    script = to_one()
+    seen = [states(script)["FF-01"]]
+    for happens in (
+        lambda: script.command("FF-01", "c1"),
+        lambda: script.reply("FF-01", "c1", RECEIVED),
+        lambda: script.reply("FF-01", "c1", ACKNOWLEDGED),
+    ):
+        script.now_s += 1.0
+        assert CommandTouched("c1") in happens()
+        seen.append(states(script)["FF-01"])
+    assert seen == ["queued", "sent", "received", "acknowledged"]
+    command = script.pipeline.state.commands["c1"]
+    delivery = command.deliveries["FF-01"]
+    assert delivery.acknowledged_by == "Person 1"
+    assert [delivery.sent_ns, delivery.received_ns, delivery.acknowledged_ns] == [
+        command.issued_ns + second * 10**9 for second in (1, 2, 3)
+    ]
+    assert not command.is_open
+
+
+def test_repeats_change_nothing():
+    script = to_one()
+    for happens in (
+        lambda: script.command("FF-01", "c1"),
+        lambda: script.reply("FF-01", "c1", RECEIVED),
+        lambda: script.reply("FF-01", "c1", ACKNOWLEDGED),
+    ):
+        happens()
+        before = repr(script.pipeline.state.commands)
+        script.now_s += 1.0
+        assert CommandTouched("c1") not in happens()
+        assert repr(script.pipeline.state.commands) == before
+
+
+def test_a_unit_is_not_heard_because_it_was_told_something():
+    script = to_one()
+    script.command("FF-01", "c1")
+    assert script.pipeline.state.units["FF-01"].heard_ns is None
+
+
+def test_nobody_answers_for_another():
+    script = to_one()
+    script.reply("FF-02", "c1", ACKNOWLEDGED)
+    script.reply("stranger", "c1", ACKNOWLEDGED)
+    assert states(script) == {"FF-01": "queued"}
+
+
+def test_moving_and_talking_completes_no_par():
+    script = to_one()
+    script.command("FF-01", "c1")
+    script.wait(30, lambda: (script.status("FF-01"), script.position("FF-01", 1.0, 1.0)))
+    assert states(script) == {"FF-01": "sent"}
+
+
+def test_somebody_at_the_console_completes_a_par():
+    script = to_one()
+    assert script.act(ConfirmCommand("c1", "FF-01"), by="ada") == [CommandTouched("c1")]
+    assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == "ada"
+    (again,) = script.act(ConfirmCommand("c1", "FF-01"))
+    assert isinstance(again, Refused)
+    assert not unanswered(script.pipeline.state)
+
+
+@pytest.mark.parametrize(("command_id", "unit_id"), [("c2", "FF-01"), ("c1", "FF-02")])
+def test_what_was_not_asked_cannot_be_confirmed(command_id, unit_id):
+    (output,) = to_one().act(ConfirmCommand(command_id, unit_id))
+    assert isinstance(output, Refused)
+
+
+def test_what_asks_nobody_is_done_when_it_is_received():
+    script = to_one(CommandKind.LOCATE)
+    script.reply("FF-01", "c1", RECEIVED)
+    assert not script.pipeline.state.commands["c1"].is_open
+    script.wait(61)
+    assert states(script) == {"FF-01": "received"}
+    assert isinstance(script.act(ConfirmCommand("c1", "FF-01"))[0], Refused)
+
+
+def test_a_refusal_says_why_and_ends_it():
+    script = to_one(CommandKind.SET_POSITION_RATE)
+    script.reply("FF-01", "c1", REFUSED, "too fast")
+    assert states(script) == {"FF-01": "refused"}
+    assert script.pipeline.state.commands["c1"].deliveries["FF-01"].reason == "too fast"
+    assert not unanswered(script.pipeline.state)
+
+
+@pytest.mark.parametrize("so_far", [[], ["sent"], ["sent", "received"]])
+def test_it_expires_where_nobody_answered_in_time(so_far):
+    script = to_one()
+    if "sent" in so_far:
+        script.command("FF-01", "c1")
+    if "received" in so_far:
+        script.reply("FF-01", "c1", RECEIVED)
+    script.wait(59)
+    assert script.pipeline.state.commands["c1"].is_open
+    script.now_s += 1.0
+    assert CommandTouched("c1") in script.tick()
+    assert states(script) == {"FF-01": "expired"}
+    assert not unanswered(script.pipeline.state)
+    script.now_s += 1.0
+    assert CommandTouched("c1") not in script.tick()
+
+
+def test_a_late_acknowledgement_counts_all_the_same():
+    script = to_one()
+    script.wait(70)
+    script.reply("FF-01", "c1", RECEIVED)
+    assert states(script) == {"FF-01": "expired"}
+    script.reply("FF-01", "c1", ACKNOWLEDGED)
+    assert states(script) == {"FF-01": "acknowledged"}
+
+
+def test_a_reply_out_of_the_journal_counts():
+    script = to_one()
+    reply = CommandReply(script.header("FF-01"), "c1", ACKNOWLEDGED)
+    script.status("FF-01")
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(reply))
+    assert states(script) == {"FF-01": "acknowledged"}
+
+
+def test_who_speaks_as_the_station_must_be_the_station():
+    script = to_one()
+    forged = CommandReply(script.header("FF-02"), "c1", ACKNOWLEDGED)
+    script.record("muster/v1/FF-01/alert/reply", encode(forged))
+    assert states(script) == {"FF-01": "queued"}
+
+
+def test_what_is_kept_is_bounded():
+    script = crewed()
+    for number in range(3 * CLOSED_KEPT):
+        script.act(order(f"l{number}", CommandKind.LOCATE, unit_id="FF-01"))
+        script.reply("FF-01", f"l{number}", RECEIVED)
+    assert list(script.pipeline.state.commands)[-1] == f"l{3 * CLOSED_KEPT - 1}"
+    assert len(script.pipeline.state.commands) <= CLOSED_KEPT
+    for number in range(MOST_OPEN):
+        script.act(order(f"e{number}", unit_id="FF-01"))
+    (output,) = script.act(order("more", unit_id="FF-01"))
+    assert isinstance(output, Refused)
