@@ -209,7 +209,10 @@ def _latency(values_ms: list[float] | tuple[float, ...]) -> Latency:
 
 
 def _table(report: BusReport) -> Table:
-    table = Table(title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores")
+    table = Table(
+        title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores",
+        caption="A console shows the newest of what a unit said within 50 ms.",
+    )
     for title in ("", "measured", "to reach"):
         table.add_column(title, justify="left" if title == "" else "right")
     bare, live = report.bare_latency, report.latency
