@@ -26,6 +26,7 @@ _STIRRING_S = 1.0  # of motion before the first stride of a walk is known
 _RUNNING_MPS = 2.0  # people change from walking to running here (Hreljac 1995)
 _RUNNING_PERIOD_S = 0.8
 _RUNNING_STRIDE_M = 0.9
+_FASTEST_MPS = 12.0  # nobody is faster
 _STAIR_RISE_M = 0.11
 _STAIR_SLOPE = 0.25  # steeper than ramps, flatter than stairs
 _STAIRS_KEPT = 8  # strides: about a storey
@@ -109,8 +110,8 @@ class ActivityMonitor:
     def _kind(self, stride: Stride) -> Activity:
         if self._posture.crawling:
             return Activity.CRAWLING
-        if self._posture.tipped_step:  # says nothing yet: a stumble, or someone who lies down
-            return self._doing
+        if self._posture.tipped_step or stride.speed_mps > _FASTEST_MPS:
+            return self._doing  # a stumble, someone who lies down, or a tracker that is lost
         if self._is_on_stairs(stride):
             return Activity.STAIRS_UP if stride.rise_m > 0.0 else Activity.STAIRS_DOWN
         quick = stride.period_s < _RUNNING_PERIOD_S and stride.length_m > _RUNNING_STRIDE_M
