@@ -19,11 +19,17 @@ from rich.table import Table
 
 from base_station.bench.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
 from base_station.bench.console import Console, latencies_ms
-from base_station.bench.station import Recorded, StationProcess, free_port, station_process
+from base_station.bench.station import (
+    Membership,
+    Recorded,
+    StationProcess,
+    free_port,
+    station_process,
+)
 from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
-from shared.errors import StoreError
+from shared.errors import BusError, StoreError
 
-_LINK_TIMEOUT_S = 60.0
+_PATIENCE_S = 60.0
 _SETTLE_S = 2.0
 _STEADY_S = 5.0
 _FLOOD_S = 2.0
@@ -78,6 +84,9 @@ def bench_bus(
     ] = 10.0,
     seconds: Annotated[float, typer.Option(min=1.0, help="How long they speak.")] = 30.0,
     consoles: Annotated[int, typer.Option(min=1, help="Consoles that watch.")] = 3,
+    plain: Annotated[
+        bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")
+    ] = False,
     json_file: Annotated[
         Path | None, typer.Option("--json", help="Also write the figures to this file.")
     ] = None,
@@ -86,7 +95,7 @@ def bench_bus(
     bare Zenoh publisher and subscriber in the same run.
     """
     with Progress(transient=True) as progress:
-        report = measure(units, rate, seconds, consoles, progress)
+        report = measure(units, rate, seconds, consoles, progress, plain=plain)
     Terminal().print(_table(report))
     for problem in report.problems:
         Terminal().print(f"the station says: {problem}")
@@ -95,9 +104,15 @@ def bench_bus(
 
 
 def measure(
-    units: int, rate_hz: float, seconds: float, consoles: int, progress: Progress
+    units: int,
+    rate_hz: float,
+    seconds: float,
+    consoles: int,
+    progress: Progress,
+    *,
+    plain: bool = False,
 ) -> BusReport:
-    """Bare Zenoh first, then the station, both on this machine."""
+    """Bare Zenoh over plain TCP first, then the station, both on this machine."""
     total_hz = units * rate_hz
     steady_s, flood_s = min(_STEADY_S, seconds), min(_FLOOD_S, seconds)
     task = progress.add_task("bare Zenoh", total=steady_s + flood_s + seconds)
@@ -109,15 +124,18 @@ def measure(
         progress.advance(task, flood_s)
     progress.update(task, description=f"{units} units")
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
-        station = closing.enter_context(station_process(Path(folder)))
+        names = unit_names(units)
+        members = Membership(Path(folder), names, plain=plain)
+        station = closing.enter_context(station_process(Path(folder), members.address))
+        speakers = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
         return _run_station(
-            station, units, total_hz, seconds, consoles, (steady, flood), progress, closing
+            station, speakers, total_hz, seconds, consoles, (steady, flood), progress, closing
         )
 
 
 def _run_station(
     station: StationProcess,
-    unit_count: int,
+    units: list[BenchUnit],
     total_hz: float,
     seconds: float,
     console_count: int,
@@ -125,13 +143,11 @@ def _run_station(
     progress: Progress,
     closing: ExitStack,
 ) -> BusReport:
-    names = unit_names(unit_count)
-    for name in names:
-        station.api.post("/units", {"unit_id": name})
-    units = [BenchUnit(name, station.bus_address, closing) for name in names]
-    _wait_linked(units)
+    for unit in units:
+        station.api.post("/units", {"unit_id": unit.unit_id})
+    _wait_heard(units)
     watching = [Console(station.api, closing) for _ in range(console_count)]
-    if not all(console.wait_ready(_LINK_TIMEOUT_S) for console in watching):
+    if not all(console.wait_ready(_PATIENCE_S) for console in watching):
         raise StoreError("the station to be measured shows nothing at its consoles")
     for unit in units:
         unit.introduce()
@@ -153,7 +169,7 @@ def _run_station(
         bare,
         watching[0],
         units,
-        units=unit_count,
+        units=len(units),
         consoles=console_count,
         rate_wanted_hz=total_hz,
         rate_hz=rate_hz,
@@ -195,9 +211,11 @@ def _report(
     )
 
 
-def _wait_linked(units: list[BenchUnit]) -> None:
-    deadline = time.monotonic() + _LINK_TIMEOUT_S
-    while not all(unit.is_linked for unit in units) and time.monotonic() < deadline:
+def _wait_heard(units: list[BenchUnit]) -> None:
+    deadline = time.monotonic() + _PATIENCE_S
+    while not all(unit.is_heard for unit in units):
+        if time.monotonic() > deadline:
+            raise BusError("the station to be measured does not listen to all units")
         time.sleep(0.05)
 
 

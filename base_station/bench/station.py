@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -18,12 +18,15 @@ import psutil
 
 from base_station.bench.console import Api
 from base_station.data_folder import DataFolder
+from base_station.pki.folder import PkiFolder
+from shared.bus_zenoh import UnitEndpoint
 from shared.channels import parse_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.errors import StoreError, WireError
 from shared.mcap_log import read_log
 from shared.messages import STATION_ID, FusedPosition
+from shared.tls import TlsIdentity
 
 _SAID = "station.err"
 _START_TIMEOUT_S = 60.0
@@ -41,8 +44,7 @@ class Recorded(NamedTuple):
 
 
 class StationProcess:
-    def __init__(self, data: Path, bus_address: str, process: subprocess.Popen[str]) -> None:
-        self.bus_address = bus_address
+    def __init__(self, data: Path, process: subprocess.Popen[str]) -> None:
         self._data = DataFolder(data)
         self._process = process
         self._usage = psutil.Process(process.pid)
@@ -92,10 +94,24 @@ class StationProcess:
         return sum(sum(process.cpu_times()[:2]) for process in processes)
 
 
+class Membership:
+    """Where the station's bus is and with what each unit gets in: its certificate, or nothing."""
+
+    def __init__(self, data: Path, unit_ids: Sequence[str], *, plain: bool) -> None:
+        self.address = f"{'tcp' if plain else 'tls'}/127.0.0.1:{free_port()}"
+        self._identities: dict[str, TlsIdentity] = {}
+        if not plain:
+            authority = PkiFolder(data)
+            authority.create("bench", hosts=[], connect=[self.address])
+            self._identities = {one: authority.enroll(one).identity for one in unit_ids}
+
+    def endpoint_of(self, unit_id: str) -> UnitEndpoint:
+        return UnitEndpoint((self.address,), self._identities.get(unit_id))
+
+
 @contextmanager
-def station_process(data: Path) -> Iterator[StationProcess]:
+def station_process(data: Path, bus_address: str) -> Iterator[StationProcess]:
     """Runs ``muster base serve``; ended hard where ``stop`` was not called."""
-    bus_address = f"tcp/127.0.0.1:{free_port()}"
     command = "from base_station.cli import app; app()"
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
@@ -109,7 +125,7 @@ def station_process(data: Path) -> Iterator[StationProcess]:
         ) as process,
     ):
         try:
-            yield StationProcess(data, bus_address, process)
+            yield StationProcess(data, process)
         finally:
             if process.poll() is None:
                 process.kill()

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import alive_key, channel_of
+from shared.channels import POSITION, alive_key, channel_of
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
@@ -30,17 +30,18 @@ class Sent:
 class BenchUnit:
     """One unit: walks north at 1 m/s and says so."""
 
-    def __init__(self, unit_id: str, address: str, closing: ExitStack) -> None:
+    def __init__(self, unit_id: str, endpoint: UnitEndpoint, closing: ExitStack) -> None:
         self.unit_id = unit_id
         self.sent = Sent()
         self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
-        self._bus = ZenohBus(UnitEndpoint((address,)))
+        self._bus = ZenohBus(endpoint)
         closing.callback(self._bus.close)
         self._token = self._bus.declare_alive(alive_key(unit_id))
 
     @property
-    def is_linked(self) -> bool:
-        return self._bus.is_linked()
+    def is_heard(self) -> bool:
+        """The station listens."""
+        return self._bus.is_heard(POSITION.key(self.unit_id))
 
     def introduce(self) -> None:
         header = self._stamper.header()
