@@ -174,6 +174,29 @@ def test_a_command_is_answered_and_done(station, start):
     wait_until(lambda: closest_positions_ns(station) <= 60_000_000)
 
 
+def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
+    """The simulated wearer looks at the unit every 10 s."""
+    par = Command(
+        Stamper("station", 1, SystemClock()).header(), "c1", CommandKind.PAR_REQUEST, "anna", 0
+    )
+    first = start(WALK, "--speed", "5")
+    wait_until(lambda: station.of(Position))
+    station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
+    wait_until(lambda: len(station.of(CommandReply)) == 2)
+    first.kill()
+    first.wait()
+    start(WALK, "--speed", "5")
+    wait_until(lambda: station.alive == [True, False, True])
+    station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
+    wait_until(lambda: len(station.of(CommandReply)) == 3)
+    replies = station.of(CommandReply)
+    assert [(reply.state, reply.awaits_wearer) for reply in replies] == [
+        (CommandState.RECEIVED, True),
+        (CommandState.ACKNOWLEDGED, False),
+        (CommandState.ACKNOWLEDGED, False),
+    ]
+
+
 def closest_positions_ns(station: Station) -> int:
     times = [message.header.t_mono_ns for message in station.of(Position)]
     return min((b - a for a, b in pairwise(times)), default=10**18)

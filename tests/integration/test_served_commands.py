@@ -1,0 +1,68 @@
+"""A command through a station with its own authority: router process, access rules and all."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+
+from base_station.pki.folder import PkiFolder
+from edge.commands import CommandDesk
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import COMMAND, REPLY
+from shared.clock import SystemClock
+from shared.codec import decode, encode
+from shared.envelope import Stamper
+from shared.messages import Command as UnitCommand
+from shared.messages import CommandReply
+from tests.station_command import Browser, Command, free_port, wait_until
+
+U = "FF-01"
+
+
+def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> None:
+    data, listen = tmp_path / "station", f"tls/127.0.0.1:{free_port()}"
+    pki = PkiFolder(data)
+    pki.create("Test", hosts=[], connect=[listen])
+    enrolment = pki.enroll(U)
+    flags = ("serve", "--data", str(data), "--http", "127.0.0.1:0", "--listen", listen)
+    station = Command(tmp_path / "output.txt", *flags)
+    desk = CommandDesk(Stamper(U, 1, SystemClock()), lambda _: None)
+    heard: list[UnitCommand] = []
+    try:
+        with (
+            Browser(station.wait_ready(), data) as browser,
+            closing(ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))) as bus,
+        ):
+
+            def say(reply: CommandReply) -> None:
+                bus.publish(REPLY.key(U), encode(reply), REPLY.qos)
+
+            def take(_key: str, payload: bytes) -> None:
+                command = decode(COMMAND, payload)
+                assert isinstance(command, UnitCommand)
+                heard.append(command)
+                say(desk.take(command))
+
+            def state() -> str:
+                (command,) = browser.call("GET", "/commands")
+                return str(command["units"][0]["state"])
+
+            wait_until(
+                "the unit is ours",
+                lambda: U in [u["unit_id"] for u in browser.call("GET", "/units")],
+            )
+            order = {"kind": "par_request", "target": {"unit_id": U}, "expires_s": 60}
+            browser.call("POST", "/commands", json=order)
+            assert state() == "queued"
+            hearing = bus.subscribe(COMMAND.key(U), take)
+            wait_until("it has the command", lambda: state() == "received")
+            for reply in desk.acknowledge():
+                say(reply)
+            wait_until("the wearer has answered", lambda: state() == "acknowledged")
+            (told,) = browser.call("GET", "/commands")
+            assert told["units"][0]["sent_ms"] is not None  # the station heard itself say it
+            hearing.close()
+        assert heard[0].issued_by == "admin"
+        assert station.stop() == 0
+    finally:
+        station.kill()
