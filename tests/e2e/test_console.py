@@ -66,6 +66,13 @@ def menu(page: Page, name: str) -> Locator:
     return dialog
 
 
+def command(page: Page, name: str) -> Locator:
+    page.get_by_role("group", name="Commands").get_by_role("button", name=name).click()
+    dialog = page.get_by_role("dialog")
+    dialog.wait_for()
+    return dialog
+
+
 def close(dialog: Locator) -> None:
     dialog.get_by_role("button", name="Close", exact=True).click()
 
@@ -150,6 +157,45 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
     wearable.cancel_mayday()
     alarm.get_by_role("button", name="Resolve").click()
     expect(alarm).to_have_count(0, timeout=SOON_MS)
+
+
+def test_a_roll_call_is_received_and_acknowledged(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
+    dialog = command(page, "PAR")
+    dialog.get_by_role("button", name="Send").click()
+    row = dialog.get_by_role("row", name=NAME)
+    expect(row).to_contain_text("received", timeout=SOON_MS)
+    close(dialog)
+    expect(card).to_contain_text("PAR", timeout=SOON_MS)
+    expect(card).to_contain_text("received")
+    bar = page.get_by_role("group", name="Commands")
+    expect(bar).to_contain_text("0 of 1 acknowledged")
+    wearable.acknowledge()
+    expect(bar).not_to_contain_text("acknowledged", timeout=SOON_MS)
+    dialog = command(page, "PAR")
+    expect(row).to_contain_text(f"acknowledged{NAME}", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_an_evacuation_asks_first_and_may_be_answered_by_voice(page: Page, card: Locator) -> None:
+    dialog = command(page, "Evacuate")
+    expect(card).not_to_contain_text("Evacuate")
+    dialog.get_by_role("button", name="Evacuate now").click()
+    row = dialog.get_by_role("row", name=NAME).first
+    expect(row).to_contain_text("received", timeout=SOON_MS)
+    row.get_by_role("button", name="Answered by voice").click()
+    expect(row).to_contain_text("acknowledgedadmin", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_a_message_stays_on_the_card_until_it_is_answered(page: Page, card: Locator) -> None:
+    dialog = command(page, "Message")
+    dialog.get_by_label("To").select_option(label="Ladder 1")
+    dialog.get_by_label("Message", exact=True).fill("Come to the stairs")
+    dialog.get_by_role("button", name="Send").click()
+    close(dialog)
+    expect(card).to_contain_text("Message: Come to the stairs", timeout=SOON_MS)
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])

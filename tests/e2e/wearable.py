@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import secrets
 import threading
+from queue import SimpleQueue
 from typing import Self
 
+from edge.commands import CommandDesk
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import channel_of
+from shared.channels import COMMAND, channel_of
 from shared.clock import SystemClock
-from shared.codec import encode
+from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import (
     Activity,
+    Command,
     EventKind,
     Message,
     Position,
@@ -32,6 +35,11 @@ class Wearable:
     def __init__(self, unit_id: str, station: str) -> None:
         self._bus = ZenohBus(UnitEndpoint((station,)))
         self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
+        self._desk = CommandDesk(self._stamper, lambda _: None)
+        self._commands: SimpleQueue[bytes] = SimpleQueue()
+        self._hearing = self._bus.subscribe(
+            COMMAND.key(unit_id), lambda _, payload: self._commands.put(payload)
+        )
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._walk, name=unit_id)
 
@@ -50,15 +58,26 @@ class Wearable:
     def cancel_mayday(self) -> None:
         self._say(UnitEvent(self._stamper.header(), EventKind.MAYDAY_CANCELLED))
 
+    def acknowledge(self) -> None:
+        for reply in self._desk.acknowledge():
+            self._say(reply)
+
     def _walk(self) -> None:
         walked_m, steps = 0.0, 0
         while not self._ended.wait(STEP_S):
             walked_m += SPEED_MPS * STEP_S
+            self._take_commands()
             self._say(self._position(walked_m))
             if steps % 5 == 0:
                 self._say(self._status(steps))
                 self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
             steps += 1
+
+    def _take_commands(self) -> None:
+        while not self._commands.empty():
+            command = decode(COMMAND, self._commands.get())
+            assert isinstance(command, Command)
+            self._say(self._desk.take(command))
 
     def _say(self, message: Message) -> None:
         channel = channel_of(message)

@@ -1,5 +1,6 @@
 /** The station's REST API, as far as the console uses it. */
-import type { AnchorView } from "./wire";
+import type { Target } from "./live/commands";
+import type { AnchorView, CommandView } from "./wire";
 
 export interface Me {
   username: string;
@@ -28,6 +29,8 @@ export interface PastAlarm {
   text: string;
   raised_ms: number;
 }
+
+export type CommandKind = "evacuate" | "par_request" | "text";
 
 export interface RunningReplay {
   replay_id: string;
@@ -101,6 +104,11 @@ export const acknowledge = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
 export const resolve = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
+
+export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
+  call<CommandView>("POST", "/commands", { kind, target, text });
+export const confirmCommand = (commandId: string, unitId: string) =>
+  call<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
 
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
 export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);

@@ -4,6 +4,7 @@ import "./styles/theme.css";
 import "./styles/frame.css";
 import "./styles/alarms.css";
 import "./styles/people.css";
+import "./styles/commands.css";
 import "./styles/plan.css";
 import "./styles/dialogs.css";
 import { resume } from "./sessions";

@@ -8,7 +8,15 @@ export const centring = signal(0);
 export type FloorChoice = number | "all";
 export const floor = signal<FloorChoice>("all");
 
-export type DialogName = "incidents" | "people" | "units" | "site" | "health";
+export type DialogName =
+  | "incidents"
+  | "people"
+  | "units"
+  | "site"
+  | "health"
+  | "evacuate"
+  | "par_request"
+  | "text";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the units dialog begins with. */
 export const dialogUnit = signal<string | null>(null);

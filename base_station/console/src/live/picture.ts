@@ -3,6 +3,7 @@ import { batch, computed, signal, type ReadonlySignal, type Signal } from "@prea
 import type {
   AlarmView,
   AnchorView,
+  CommandView,
   HealthView,
   IncidentView,
   Plan,
@@ -30,6 +31,7 @@ export class Picture {
   });
   readonly incident = signal<IncidentView | null>(null);
   readonly alarms = signal<ReadonlyMap<string, AlarmView>>(new Map());
+  readonly commands = signal<ReadonlyMap<string, CommandView>>(new Map());
   readonly plan = signal<Plan | null>(null);
   readonly anchor = signal<AnchorView | null>(null);
   readonly health = signal<HealthView | null>(null);
@@ -61,6 +63,7 @@ export class Picture {
       this.heardMs.value = state.now_ms;
       this.incident.value = state.incident;
       this.alarms.value = state.alarms;
+      this.commands.value = state.commands;
       this.plan.value = state.plan;
       this.anchor.value = state.anchor;
       this.health.value = state.health;

@@ -7,6 +7,7 @@ import { displayName, type Urgency } from "../live/urgency";
 import { isOld, regionAt } from "../plan/ellipse";
 import type { AlarmView, Link, UnitView } from "../wire";
 import * as words from "../words";
+import { OpenCommands } from "./CommandState";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { Photo } from "./Photo";
 
@@ -50,6 +51,7 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         </span>
       </button>
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
+      <OpenCommands unitId={unitId} commands={picture.commands.value} />
       <Facts unit={unit} picture={picture} />
       {unit.position && <Doubt text={words.qualityNote(unit.position)} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}

@@ -1,4 +1,5 @@
 import { dialog } from "../view";
+import { CommandDialog } from "./CommandDialog";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
@@ -17,6 +18,10 @@ export function Dialogs() {
       return <SiteDialog />;
     case "health":
       return <HealthDialog />;
+    case "evacuate":
+    case "par_request":
+    case "text":
+      return <CommandDialog kind={dialog.value} />;
     default:
       return null;
   }

@@ -2,6 +2,7 @@ import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/sign
 import type { Picture } from "../live/picture";
 import { arrange, samePlaces, type Place } from "../live/urgency";
 import { Card } from "./Card";
+import { CommandBar } from "./CommandBar";
 
 /** The list of people: who needs attention first, without jumping while somebody reads. */
 export function People({ picture }: { picture: Picture }) {
@@ -28,6 +29,7 @@ export function People({ picture }: { picture: Picture }) {
       onPointerEnter={() => (held.value = true)}
       onPointerLeave={() => (held.value = false)}
     >
+      <CommandBar picture={picture} />
       {places.value.length === 0 ? (
         <p class="nobody">
           {picture.ready.value ? "No unit has been heard yet." : "Waiting for the station."}

@@ -1,0 +1,38 @@
+import { mayAct } from "../sessions";
+import { openDialog } from "../view";
+import { answered, commandWord, newestFirst } from "../live/commands";
+import type { Picture } from "../live/picture";
+
+/** What a commander can tell everyone with two presses, and how far that has got. */
+export function CommandBar({ picture }: { picture: Picture }) {
+  const open = newestFirst(picture.commands.value.values()).filter((command) => command.open);
+  if (!mayAct.value && open.length === 0) return null;
+  return (
+    <div class="command-bar" role="group" aria-label="Commands">
+      {mayAct.value && (
+        <>
+          <button type="button" class="danger" onClick={() => openDialog("evacuate")}>
+            Evacuate
+          </button>
+          <button type="button" onClick={() => openDialog("par_request")}>
+            PAR
+          </button>
+          <button type="button" onClick={() => openDialog("text")}>
+            Message
+          </button>
+        </>
+      )}
+      <ul aria-label="Open commands">
+        {open.map((command) => {
+          const [done, all] = answered(command);
+          return (
+            <li key={command.command_id}>
+              <strong>{commandWord(command)}</strong> {done} of {all}
+              {command.asks_wearer ? " acknowledged" : " received"}
+            </li>
+          );
+        })}
+      </ul>
+    </div>
+  );
+}

@@ -1,0 +1,138 @@
+import { attempt, live, mayAct } from "../sessions";
+import * as api from "../api";
+import { commandWord, crewsOf, kindWord, newestFirst, type Target } from "../live/commands";
+import type { Picture } from "../live/picture";
+import { displayName } from "../live/urgency";
+import type { CommandView, DeliveryView } from "../wire";
+import { clockTime } from "../words";
+import { CommandState } from "./CommandState";
+import { Dialog } from "./Dialog";
+import { fields } from "./useLoaded";
+
+const SAYS: Record<api.CommandKind, string> = {
+  evacuate: "Tells them to get out at once. Each wearer is asked to acknowledge it.",
+  par_request: "Asks each wearer to answer. Nothing but a person’s answer completes it.",
+  text: "Each wearer is asked to acknowledge it.",
+};
+
+/** Asks whom it is for before anything is sent, and shows what became of it. */
+export function CommandDialog({ kind }: { kind: api.CommandKind }) {
+  const picture = live.value?.picture;
+  if (picture === undefined) return null;
+  return (
+    <Dialog title={kindWord(kind)}>
+      {mayAct.value && <CommandForm kind={kind} picture={picture} />}
+      {newestFirst(picture.commands.value.values()).map((command) => (
+        <Deliveries key={command.command_id} command={command} picture={picture} />
+      ))}
+    </Dialog>
+  );
+}
+
+function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Picture }) {
+  const units = picture.unitIds.value
+    .map((unitId) => picture.unit(unitId)?.value)
+    .filter((unit) => unit?.registered);
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        const form = event.currentTarget;
+        const { target = "everyone", text = "" } = fields(event);
+        const sent = api.sendCommand(kind, targetOf(target), text);
+        void attempt(sent).then((command) => command && form.reset());
+      }}
+    >
+      <p>{SAYS[kind]}</p>
+      <label>
+        To
+        <select name="target">
+          <option value="everyone">Everyone</option>
+          {crewsOf(units.filter((unit) => unit !== undefined)).map((crew) => (
+            <option key={crew} value={`crew:${crew}`}>
+              {crew}
+            </option>
+          ))}
+          {units.map(
+            (unit) =>
+              unit && (
+                <option key={unit.unit_id} value={`unit:${unit.unit_id}`}>
+                  {displayName(unit)}
+                </option>
+              ),
+          )}
+        </select>
+      </label>
+      {kind === "text" && (
+        <label>
+          Message
+          <input name="text" required maxLength={120} />
+        </label>
+      )}
+      <button class={kind === "evacuate" ? "danger" : "primary"}>
+        {kind === "evacuate" ? "Evacuate now" : "Send"}
+      </button>
+    </form>
+  );
+}
+
+function targetOf(value: string): Target {
+  const name = value.slice(value.indexOf(":") + 1);
+  if (value.startsWith("crew:")) return { crew: name };
+  return value.startsWith("unit:") ? { unit_id: name } : { everyone: true };
+}
+
+function Deliveries({ command, picture }: { command: CommandView; picture: Picture }) {
+  return (
+    <table>
+      <caption>
+        {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by})
+      </caption>
+      <thead class="spoken">
+        <tr>
+          <th scope="col">Who</th>
+          <th scope="col">State</th>
+          <th scope="col">By whom and when</th>
+        </tr>
+      </thead>
+      <tbody>
+        {command.units.map((delivery) => (
+          <tr key={delivery.unit_id}>
+            <th scope="row">{nameOf(delivery.unit_id, picture)}</th>
+            <td>
+              <CommandState state={delivery.state} />
+            </td>
+            <td>
+              <Answer command={command} delivery={delivery} />
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function nameOf(unitId: string, picture: Picture): string {
+  const unit = picture.unit(unitId)?.value;
+  return unit === undefined ? unitId : displayName(unit);
+}
+
+function Answer({ command, delivery }: { command: CommandView; delivery: DeliveryView }) {
+  if (delivery.acknowledged_ms !== null) {
+    return (
+      <>
+        {delivery.acknowledged_by}, {clockTime(delivery.acknowledged_ms)}
+      </>
+    );
+  }
+  if (delivery.state === "refused") return <>{delivery.reason}</>;
+  if (!command.asks_wearer || !mayAct.value) return null;
+  return (
+    <button
+      type="button"
+      onClick={() => void attempt(api.confirmCommand(command.command_id, delivery.unit_id))}
+    >
+      Answered by voice
+    </button>
+  );
+}

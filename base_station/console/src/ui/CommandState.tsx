@@ -1,0 +1,43 @@
+import { commandWord, openTo, stateWord } from "../live/commands";
+import type { CommandView, DeliveryState } from "../wire";
+import { Icon, type IconName } from "./Icon";
+
+const ICONS: Record<DeliveryState, IconName> = {
+  queued: "clock",
+  sent: "sent",
+  received: "received",
+  acknowledged: "check",
+  refused: "cross",
+  expired: "cross",
+};
+
+/** How far a command has got with somebody. */
+export function CommandState({ state }: { state: DeliveryState }) {
+  return (
+    <span class={`command-state ${state}`}>
+      <Icon name={ICONS[state]} />
+      {stateWord(state)}
+    </span>
+  );
+}
+
+interface Props {
+  unitId: string;
+  commands: ReadonlyMap<string, CommandView>;
+}
+
+/** On a person's card: what is asked of this person now. */
+export function OpenCommands({ unitId, commands }: Props) {
+  const open = openTo(unitId, commands.values());
+  if (open.length === 0) return null;
+  return (
+    <ul class="card-commands" aria-label="Open commands to this person">
+      {open.map(({ command, delivery }) => (
+        <li key={command.command_id}>
+          <span class="command-word">{commandWord(command)}</span>
+          <CommandState state={delivery.state} />
+        </li>
+      ))}
+    </ul>
+  );
+}
