@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime
+from math import isfinite
 
-from edge.calibration.model import Calibration
+from numpy.linalg import LinAlgError
+
+from edge.calibration.model import Calibration, Magnetometer
 from edge.calibration.solve import (
     solve_accelerometer,
     solve_gyroscope,
@@ -18,6 +21,8 @@ from shared.clock import NS_PER_S
 from shared.errors import UserError
 
 _ASKED_EVERY_NS = NS_PER_S // 2
+_OFF_SPHERE = 0.1  # of the field: no unit turned in one place is so far off
+_HARD_IRON_STD_UT = 3.0  # 5 degrees of heading where the field is flat
 
 
 def guide(
@@ -64,20 +69,29 @@ def check(step: Step) -> None:
 
 
 def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Calibration:
-    """The calibration that complete steps determine."""
+    """The calibration that complete steps determine; raises UserError where they do not fit."""
     warm_up = next((step for step in steps if isinstance(step, WarmUpStep)), None)
     warmth = None if warm_up is None else solve_warmth(warm_up.windows())
     turned_over = next((step for step in steps if isinstance(step, PosesStep)), None)
     poses = [] if turned_over is None else turned_over.poses()
+    still = next((step for step in steps if isinstance(step, StillStep)), None)
+    windows = [] if still is None else still.windows()
+    if warmth is not None and not all(
+        isfinite(window.temperature_degc) for window in (*windows, *poses)
+    ):
+        raise UserError(
+            "the still and poses recordings do not tell the sensor's temperature, without which "
+            "the warm-up is of no use: record it with them, or leave the warm-up out"
+        )
     accelerometer = gyroscope = magnetometer = None
     for step in steps:
         match step:
             case StillStep():
-                gyroscope = solve_gyroscope(step.windows(), poses, warmth)
+                gyroscope = solve_gyroscope(windows, poses, warmth)
             case PosesStep():
                 accelerometer = solve_accelerometer(poses, warmth)
             case TurningStep():
-                magnetometer = solve_magnetometer(step.fields_ut())
+                magnetometer = _magnetometer(step)
     return Calibration(
         unit=unit,
         sensor=sensor,
@@ -87,3 +101,20 @@ def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Cali
         magnetometer=magnetometer,
         warmth=warmth,
     )
+
+
+def _magnetometer(step: TurningStep) -> Magnetometer:
+    try:
+        found = solve_magnetometer(step.fields_ut())
+    except LinAlgError:
+        found = None
+    if (
+        found is None
+        or not max(found.hard_iron_std_ut) < _HARD_IRON_STD_UT
+        or found.residual_ut > _OFF_SPHERE * found.field_ut
+    ):
+        raise UserError(
+            "the turning step cannot be used: its readings do not lie on an ellipsoid; turn the "
+            "unit away from steel, about all of its axes, and begin again"
+        )
+    return found

@@ -219,6 +219,28 @@ def test_a_unit_without_the_sensor_is_told_to_leave_the_step_out():
     assert "leave the warm-up out" in refusal(WarmUpStep(), [batch])
 
 
+def test_a_field_that_changes_on_the_way_is_refused():
+    unit = HandledUnit(0)
+    rng = np.random.default_rng(1)
+    batches = [
+        replace(batch, mag_ut=known(batch.mag_ut) * rng.uniform(0.3, 1.7, (len(batch), 1)))
+        for batch in unit.turning(45)
+    ]
+    for batch in batches:
+        known(batch.mag_ut)[:] += rng.normal(0.0, 30.0, 3)
+    step = gathered(TurningStep(), batches)
+    with pytest.raises(UserError, match="do not lie on an ellipsoid"):
+        solved(step)
+
+
+def test_a_warm_up_needs_the_temperature_of_the_other_steps():
+    unit = HandledUnit(0)
+    still = gathered(StillStep(), [replace(unit.rest(14.0), imu_temperature_degc=None)])
+    warm_up = gathered(WarmUpStep(), unit.warm_up(400.0))
+    with pytest.raises(UserError, match="leave the warm-up out"):
+        solved(still, warm_up)
+
+
 def test_too_little_warmth_is_refused_with_the_figure():
     said = refusal(WarmUpStep(), HandledUnit(0).warm_up(100.0, from_degc=21.5))
     assert "changed by only 1.2 degC; 10 are needed" in said
