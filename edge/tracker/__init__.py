@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from edge.samples import SensorDescription
 from edge.tracker.eskf import EskfTracker
+from edge.tracker.huang import HuangTracker
 from edge.tracker.port import Tracker
 from shared.errors import ConfigError
 
@@ -20,6 +21,9 @@ class TrackerEntry:
 
 TRACKERS: tuple[TrackerEntry, ...] = (
     TrackerEntry("eskf", "error-state filter with stride-adaptive stance (default)", EskfTracker),
+    TrackerEntry(
+        "huang", "the thesis's method: pitch-rate stance, quasi-static resets", HuangTracker
+    ),
 )
 
 

@@ -14,8 +14,9 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
+from edge.tracker.quasi_static import turn_upright
 from edge.tracker.state import Ring
-from edge.tracker.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
+from edge.tracker.strapdown import rotate_attitude
 
 
 @njit()
@@ -67,7 +68,7 @@ def level(
         for j in range(3):
             mean_b[j] += ring[i & mask].accel_mps2[j] / (end - begin)
     turn_by_gyro(ring, first, middle, quaternion_nb)
-    _turn_upright(quaternion_nb, mean_b)
+    turn_upright(quaternion_nb, mean_b)
     turn_by_gyro(ring, middle, first, quaternion_nb)
     return config.start_tilt_std_rad + config.start_tilt_per_motion * min(math.sqrt(motion), 5.0)
 
@@ -84,23 +85,3 @@ def turn_by_gyro(ring: Ring, first: int, last: int, quaternion_nb: Floats) -> No
         for j in range(3):
             angle_rad[j] = 0.5 * dt_s * (ring[here].gyro_radps[j] + ring[there].gyro_radps[j])
         rotate_attitude(quaternion_nb, angle_rad)
-
-
-@njit()
-def _turn_upright(quaternion_nb: Floats, force_b_mps2: Floats) -> None:
-    """Turn an attitude the shortest way so that the force at rest points up."""
-    rotation_nb = np.zeros((3, 3))
-    for _ in range(4):  # rotate_navigation is exact for small turns only
-        rotation_matrix(quaternion_nb, rotation_nb)
-        x = (rotation_nb[0] * force_b_mps2).sum()
-        y = (rotation_nb[1] * force_b_mps2).sum()
-        z = (rotation_nb[2] * force_b_mps2).sum()
-        horizontal = math.sqrt(x * x + y * y)
-        angle = math.atan2(horizontal, -z)
-        if horizontal > 0.0:
-            y, x = y / horizontal, x / horizontal
-        else:
-            y, x = 1.0, 0.0
-        # Up is (0, 0, -1); the axis of the shortest turn is force x up = (-y, x, 0).
-        half = 2.0 * math.tan(0.5 * angle) if angle < 3.1 else 40.0
-        rotate_navigation(quaternion_nb, -y * half, x * half, 0.0)

@@ -19,7 +19,7 @@ from edge.tracker.conditioning import GATE, admit, limits_of, regular_time
 from edge.tracker.config import EskfConfig
 from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
-from edge.tracker.rows import empty_rows, join_rows
+from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
 from edge.tracker.state import RING, Progress, Ring, new_filter_state, new_progress, reach
 from edge.tracker.zero_velocity import motion_statistic, stride_minimum
@@ -75,24 +75,7 @@ class EskfTracker:
     def _work(self, *, final: bool) -> TrackBatch:
         first = int(self._progress["released"][0])
         stop = work(self._ring, self._progress, self._state, self.config, final)
-        return self._rows(first, stop) if stop > first else empty_rows()
-
-    def _rows(self, first: int, stop: int) -> TrackBatch:
-        ring = self._ring
-        slots = np.arange(first, stop) & (len(ring) - 1)
-        return TrackBatch(
-            t_ns=ring["t_ns"][slots],
-            position_n_m=ring["position_n_m"][slots],
-            velocity_n_mps=ring["velocity_n_mps"][slots],
-            quaternion_nb=ring["quaternion_nb"][slots],
-            position_cov_m2=ring["covariance"][slots, :3, :3],
-            heading_std_rad=ring["heading_std_rad"][slots],
-            stationary=ring["stationary"][slots],
-            distance_m=ring["distance_m"][slots],
-            steps=ring["steps"][slots],
-            quality=ring["quality"][slots],
-            reasons=ring["reasons"][slots],
-        )
+        return rows_of(self._ring, first, stop)
 
 
 @njit(cache=True)

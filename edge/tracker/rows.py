@@ -1,4 +1,4 @@
-"""Putting row batches together."""
+"""Row batches: out of the ring, and put together."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import fields
 import numpy as np
 
 from edge.tracker.port import TrackBatch
+from edge.tracker.state import Ring
 
 
 def empty_rows() -> TrackBatch:
@@ -23,6 +24,24 @@ def empty_rows() -> TrackBatch:
         steps=np.zeros(0, np.int64),
         quality=np.zeros(0, np.uint8),
         reasons=np.zeros(0, np.uint32),
+    )
+
+
+def rows_of(ring: Ring, first: int, stop: int) -> TrackBatch:
+    """Return copies of the rows of samples ``first`` to ``stop - 1``."""
+    slots = np.arange(first, stop) & (len(ring) - 1)
+    return TrackBatch(
+        t_ns=ring["t_ns"][slots],
+        position_n_m=ring["position_n_m"][slots],
+        velocity_n_mps=ring["velocity_n_mps"][slots],
+        quaternion_nb=ring["quaternion_nb"][slots],
+        position_cov_m2=ring["covariance"][slots, :3, :3],
+        heading_std_rad=ring["heading_std_rad"][slots],
+        stationary=ring["stationary"][slots],
+        distance_m=ring["distance_m"][slots],
+        steps=ring["steps"][slots],
+        quality=ring["quality"][slots],
+        reasons=ring["reasons"][slots],
     )
 
 

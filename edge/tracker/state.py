@@ -31,6 +31,7 @@ RING = np.dtype(
         ("t_s", np.float64),  # regular
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
+        ("mag_ut", np.float64, 3),  # NaN where there is none
         ("hidden_noise", np.float64, 3),  # rad^2/s in doubt about each axis after clipping
         ("flags", np.int64),  # Reason bits of the sample itself
         ("motion_m2ps4", np.float64),  # stillness statistic

@@ -69,10 +69,10 @@ def test_shapes_and_units_are_plausible(name):
 def test_a_straight_walk_comes_out_straight_and_as_long(name):
     rows = run(name, WALK.imu)
     reached_m = np.linalg.norm(rows.position_n_m[-1, :2])
-    assert reached_m == pytest.approx(5 * 1.3, rel=0.05)
+    assert reached_m == pytest.approx(5 * 1.3, rel=0.1)
     assert rows.steps[-1] == 5
-    assert rows.distance_m[-1] == pytest.approx(5 * 1.3, rel=0.05)
-    assert abs(rows.position_n_m[-1, 2]) < 0.2
+    assert rows.distance_m[-1] == pytest.approx(5 * 1.3, rel=0.1)
+    assert abs(rows.position_n_m[-1, 2]) < 0.6
 
 
 def test_nothing_in_nothing_out(name):

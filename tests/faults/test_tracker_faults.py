@@ -180,3 +180,24 @@ def test_a_start_on_the_move_finds_its_feet():
     missing_m = WALK.position_n_m[first, 0]
     assert reached_m(rows) == pytest.approx(LENGTH_M - missing_m, abs=0.5)
     assert rows.quality[-1] == Quality.GOOD
+
+
+@pytest.mark.parametrize("spike_mps2", [60.0, 150.0, 1e5])
+def test_a_spike_does_no_lasting_harm(spike_mps2):
+    t_ns, accel, gyro = copy()
+    accel[index(IN_SWING), 0] += spike_mps2
+    accel[index(IN_STANCE), 2] -= spike_mps2
+    rows = run(t_ns, accel, gyro)
+    assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.5)
+    assert rows.quality[-1] == Quality.GOOD
+    absurd = spike_mps2 > 4000.0
+    assert flagged(rows, Reason.BAD_SAMPLES)[index(IN_SWING)] == absurd
+
+
+def test_memory_does_not_grow():
+    tracker = EskfTracker(WALK.description)
+    held = tracker._ring.nbytes
+    for lap in range(4):
+        shifted = WALK.imu.t_ns + lap * (WALK.imu.t_ns[-1] + 5_000_000)
+        tracker.push(ImuBatch(shifted, WALK.imu.accel_mps2, WALK.imu.gyro_radps))
+    assert tracker._ring.nbytes == held
