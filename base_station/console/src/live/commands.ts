@@ -6,7 +6,7 @@ export interface UnitCommand {
   delivery: DeliveryView;
 }
 
-/** The open commands to a unit, oldest first. */
+/** The open commands to a unit, in the order given. */
 export function openTo(unitId: string, commands: Iterable<CommandView>): UnitCommand[] {
   return [...commands].flatMap((command) =>
     command.open

@@ -35,7 +35,7 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
     .filter((unit) => unit?.registered);
   return (
     <form
-      class="row"
+      class="row command-form"
       onSubmit={(event) => {
         const form = event.currentTarget;
         const { target = "everyone", text = "" } = fields(event);
@@ -84,7 +84,7 @@ function targetOf(value: string): Target {
 
 function Deliveries({ command, picture }: { command: CommandView; picture: Picture }) {
   return (
-    <table>
+    <table class="deliveries">
       <caption>
         {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by})
       </caption>

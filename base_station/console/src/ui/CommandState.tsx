@@ -1,4 +1,4 @@
-import { commandWord, openTo, stateWord } from "../live/commands";
+import { commandWord, newestFirst, openTo, stateWord } from "../live/commands";
 import type { CommandView, DeliveryState } from "../wire";
 import { Icon, type IconName } from "./Icon";
 
@@ -28,7 +28,7 @@ interface Props {
 
 /** On a person's card: what is asked of this person now. */
 export function OpenCommands({ unitId, commands }: Props) {
-  const open = openTo(unitId, commands.values());
+  const open = openTo(unitId, newestFirst(commands.values()));
   if (open.length === 0) return null;
   return (
     <ul class="card-commands" aria-label="Open commands to this person">
