@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import uuid
 from enum import StrEnum
-from typing import Annotated, Self
+from typing import Annotated, Literal
 
 import msgspec
 from fastapi import APIRouter
-from pydantic import BaseModel, Field, model_validator
+from pydantic import BaseModel, Discriminator, Field, Tag
 
 from base_station.api.forms import Form, Id, Note, UnitIdText, Word
 from base_station.api.problems import Problem
@@ -29,18 +29,33 @@ class Kind(StrEnum):
     SET_POSITION_RATE = "set_position_rate"
 
 
-class Target(Form):
-    """One of the three."""
+class UnitTarget(Form):
+    unit_id: UnitIdText
 
-    unit_id: UnitIdText | None = None
-    crew: Annotated[Word, Field(min_length=1)] | None = None
-    everyone: bool = False
 
-    @model_validator(mode="after")
-    def _is_one(self) -> Self:
-        if (self.unit_id is not None) + (self.crew is not None) + self.everyone != 1:
-            raise ValueError("say one of: unit_id, crew, everyone")
-        return self
+class CrewTarget(Form):
+    crew: Annotated[Word, Field(min_length=1)]
+
+
+class EveryoneTarget(Form):
+    everyone: Literal[True]
+
+
+def _kind_of_target(target: object) -> object:
+    """The one key that says which it is; None where there is not just one."""
+    return next(iter(target)) if isinstance(target, dict) and len(target) == 1 else None
+
+
+Target = Annotated[
+    Annotated[UnitTarget, Tag("unit_id")]
+    | Annotated[CrewTarget, Tag("crew")]
+    | Annotated[EveryoneTarget, Tag("everyone")],
+    Discriminator(
+        _kind_of_target,
+        custom_error_type="target",
+        custom_error_message="say one of: unit_id, crew, everyone",
+    ),
+]
 
 
 class NewCommand(Form):
@@ -94,9 +109,9 @@ def send(new: NewCommand, station: Station, who: Commander) -> Command:
     action = SendCommand(
         command_id=uuid.uuid4().hex,
         kind=CommandKind[new.kind.name],
-        unit_id=new.target.unit_id or "",
-        crew=new.target.crew or "",
-        everyone=new.target.everyone,
+        unit_id=new.target.unit_id if isinstance(new.target, UnitTarget) else "",
+        crew=new.target.crew if isinstance(new.target, CrewTarget) else "",
+        everyone=isinstance(new.target, EveryoneTarget),
         text=new.text,
         position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
         lasts_s=new.expires_s,
