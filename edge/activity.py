@@ -47,7 +47,7 @@ class ActivityMonitor:
         self._strides: deque[Stride] = deque()
         self._stairs: list[Stride] = []  # the strides in a row that were stairs
         self._doing = Activity.STILL
-        self._steps = 0
+        self._stride_count = 0
         self._stirring_s = 0.0
         self._window_ns = 0
         self._fall_told = False
@@ -59,15 +59,13 @@ class ActivityMonitor:
 
     @property
     def steps(self) -> int:
-        """Of both feet; the unit counts the strides of one."""
-        return self._steps
+        """Of both feet; the unit counts the strides of one, also those on the spot."""
+        return 2 * self._stride_count
 
     def push(self, imu: ImuBatch, track: TrackBatch) -> int:
         """Take one batch and the rows that came out of it; return the falls confirmed."""
         for stride in self._cutter.push(track):
             self._take_stride(stride)
-        if len(track):
-            self._steps = 2 * int(track.steps[-1])
         if not len(imu):
             return 0
         self._air.push(imu)
@@ -103,6 +101,7 @@ class ActivityMonitor:
     def _take_stride(self, stride: Stride) -> None:
         self._posture.take_stride(stride)
         self._doing = self._kind(stride)
+        self._stride_count += 1
         self._strides.append(stride)
         while self._strides[0].end_ns < stride.end_ns - _CADENCE_OVER_NS:
             self._strides.popleft()

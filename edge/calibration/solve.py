@@ -27,13 +27,15 @@ def solve_gyroscope(windows: list[Window], poses: list[Window], warmth: Warmth |
     spread = rates.std(axis=0, ddof=1)
     per_force = per_force_std = None
     bias = rates.mean(axis=0)
+    variance = spread**2 / len(rates)
     if poses:
         slope, std = _force_slope(poses, _at_one_warmth(poses, mean.temperature_degc, warmth))
         bias = bias - slope @ mean.accel_mps2
+        variance = variance + std**2 @ mean.accel_mps2**2
         per_force, per_force_std = matrix(slope), matrix(std)
     return Gyroscope(
         bias_radps=vector(bias),
-        bias_std_radps=vector(spread / np.sqrt(len(rates))),
+        bias_std_radps=vector(np.sqrt(variance)),
         per_force=per_force,
         per_force_std=per_force_std,
         at_degc=or_none(mean.temperature_degc),

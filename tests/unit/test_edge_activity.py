@@ -15,7 +15,8 @@ from edge.falls import FallDetector
 from edge.samples import ImuBatch
 from edge.simulation import open_simulation
 from edge.sources import open_source
-from edge.sources.recording import RecordedTruth, RecordingSource
+from edge.sources.recording import RecordedTruth, RecordingSource, read_truth
+from edge.sources.simulated import SimulatedSource
 from edge.strides import StrideCutter
 from edge.tracker import make_tracker
 from edge.tracker.rows import empty_rows
@@ -251,3 +252,30 @@ def test_a_reference_labels_by_its_speed_or_not_at_all(speed_mps, kind):
     strides = RecordedTruth(t_s[::20], truth.position_n_m[::20])
     expected = None if kind is Activity.STILL else kind
     assert recorded_label(strides, sampled=False)(5.0) is expected
+
+
+def steps_counted(source) -> int:
+    tracker = make_tracker("eskf", source.description)
+    monitor = ActivityMonitor()
+    for batch in source.batches():
+        monitor.push(batch.imu, tracker.push(batch.imu))
+    monitor.push(samples(0.0), tracker.finish())
+    return monitor.steps
+
+
+@pytest.mark.parametrize("scenario", ["stairs?seed=71", "rectangle?seed=72"])
+def test_every_step_counts_also_on_the_spot(scenario):
+    source = open_source(f"simulated:{scenario}")
+    assert isinstance(source, SimulatedSource)
+    taken = 2 * len(source.simulation.plan.footfall_s)
+    assert abs(steps_counted(source) - taken) <= 2
+
+
+def test_recorded_footprints_are_counted(walks):
+    folders = sorted(path.parent for path in walks.glob("footprints/*/truth.csv"))[::4]
+    assert folders
+    for folder in folders:
+        truth = read_truth(folder)
+        assert truth is not None
+        taken = 2 * (len(truth.t_s) - 1)
+        assert abs(steps_counted(RecordingSource(folder)) - taken) <= 2, folder
