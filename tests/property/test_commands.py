@@ -1,0 +1,111 @@
+"""Whatever the radio loses or repeats and however often the unit starts again: done once."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from base_station.command_book import unanswered
+from edge.commands import CommandDesk
+from shared.channels import COMMAND
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.messages import STATION_ID, Command, CommandKind, CommandReply, CommandState
+from shared.messages.station import SendCommand
+from tests.station_script import Script
+
+U = "FF-01"
+FOREVER_S = 80_000.0
+KINDS = [CommandKind.SET_POSITION_RATE, CommandKind.PAR_REQUEST, CommandKind.LOCATE]
+
+
+class Radio:
+    """A station and a unit; each exchange says how often what is said arrives (0: lost)."""
+
+    def __init__(self) -> None:
+        self.station = Script()
+        self.station.register(U)
+        self.journal: list[CommandReply] = []
+        self.rates: Counter[float] = Counter()
+        self.clock = ManualClock()
+        self.boot_id = 0
+        self.restart()
+
+    def restart(self) -> None:
+        self.boot_id += 1
+        stamper = Stamper(U, self.boot_id, self.clock)
+        self.desk = CommandDesk(stamper, lambda rate_hz: self.rates.update([rate_hz]), self.journal)
+
+    def send(self, kind: CommandKind) -> None:
+        number = len(self.station.pipeline.state.commands) + 1
+        rate_hz = float(number) if kind is CommandKind.SET_POSITION_RATE else 0.0
+        self.station.act(SendCommand(f"c{number}", kind, U, "", False, "", rate_hz, FOREVER_S))
+
+    def exchange(self, down: int, up: int) -> None:
+        """The station says what is unanswered; the unit replies."""
+        for order in unanswered(self.station.pipeline.state):
+            header = self.station.header(STATION_ID)
+            command = Command(
+                header, order.command_id, order.kind, "chief", order.expires_ns,
+                position_rate_hz=order.position_rate_hz,
+            )  # fmt: skip
+            self.station.record(COMMAND.key(U), encode(command))
+            for _ in range(down):
+                self.reply((self.desk.take(command),), up)
+
+    def press(self, up: int) -> None:
+        self.reply(self.desk.acknowledge(), up)
+
+    def reply(self, replies: tuple[CommandReply, ...], times: int) -> None:
+        self.journal.extend(replies)
+        self.clock.advance(0.1)
+        for reply in replies:
+            for _ in range(times):
+                self.station.now_s += 0.1
+                self.station.say(reply)
+
+    def backfill(self) -> None:
+        """The station fetches what it missed."""
+        for reply in self.journal:
+            self.station.say(reply)
+
+
+TIMES = st.integers(0, 2)
+STEPS = st.one_of(
+    st.tuples(st.just("send"), st.sampled_from(KINDS)),
+    st.tuples(st.just("exchange"), TIMES, TIMES),
+    st.tuples(st.just("press"), TIMES),
+    st.tuples(st.just("restart")),
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(STEPS, max_size=30))
+def test_every_command_is_done_once_and_known_to_be(steps: list[tuple[object, ...]]) -> None:
+    radio = Radio()
+    for name, *arguments in steps:
+        if name == "send" and len(radio.station.pipeline.state.commands) >= 8:
+            continue  # more than these are not kept at hand
+        getattr(radio, str(name))(*arguments)
+    assert all(count == 1 for count in radio.rates.values())
+    radio.exchange(1, 1)
+    radio.backfill()
+    commands = radio.station.pipeline.state.commands.values()
+    rates = [c.position_rate_hz for c in commands if c.kind is CommandKind.SET_POSITION_RATE]
+    assert radio.rates == Counter(rates)
+    pressed = {r.command_id for r in radio.journal if r.state is CommandState.ACKNOWLEDGED}
+    for command in commands:
+        expected = "acknowledged" if command.command_id in pressed else "received"
+        assert command.state_of(command.deliveries[U]) == expected
+    radio.press(1)
+    assert not any(command.is_open for command in commands)
+    assert radio.station.t_ns < commands_end_ns(radio)
+
+
+def commands_end_ns(radio: Radio) -> int:
+    """Nothing expired meanwhile, or the test says nothing."""
+    ends = [command.expires_ns for command in radio.station.pipeline.state.commands.values()]
+    return min(ends, default=radio.station.t_ns + NS_PER_S)
