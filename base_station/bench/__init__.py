@@ -1,1 +1,1 @@
-"""What ``muster bench bus`` is made of: units that speak, consoles that listen, and a station."""
+"""``muster bench bus`` and ``muster bench fusion``: this station measured on this machine."""

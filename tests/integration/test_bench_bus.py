@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.progress import Progress
 
 from base_station.bench.console import latencies_ms
-from base_station.bench_bus import measure
+from base_station.bench.bus import measure
 
 MS = 1_000_000
 

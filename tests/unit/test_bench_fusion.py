@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench_fusion import bench_fusion, measure
+from base_station.bench.fusion import bench_fusion, measure
 from base_station.fusion import FUSERS
 
 
