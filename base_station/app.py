@@ -60,6 +60,7 @@ _log = logging.getLogger(__name__)
 
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    joining = station_endpoint(config.data, config.bus.listen)  # refuses before anything is made
     clock = SystemClock()
     with ExitStack() as closing:
         folder = DataFolder(config.data)
@@ -83,7 +84,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         feed = LiveFeed(steady)
         router = RouterProcess(folder.path, config.bus.listen)
         closing.callback(router.close)
-        bus = ZenohBus(station_endpoint(folder.path, config.bus.listen))
+        bus = ZenohBus(joining)
         closing.callback(bus.close)
         hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
         backfill = Backfill(bus, feed.deliver, clock)

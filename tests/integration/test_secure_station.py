@@ -94,10 +94,11 @@ def test_what_ends_soon_is_among_the_problems(
 
 
 def test_without_an_authority_the_station_says_how_to_make_one(
-    serve: Callable[..., Command],
+    serve: Callable[..., Command], data: Path
 ) -> None:
     station = serve()
     assert station.wait() == 2
+    assert not data.exists()
     assert "make one with `muster pki init`" in station.said()
     assert "Traceback" not in station.said()
 
