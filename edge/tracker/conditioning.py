@@ -13,10 +13,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from edge.samples import Floats, SensorDescription
+from edge.samples import Floats, ImuBatch, SensorDescription
 from edge.tracker.kernel_cache import SOURCES
 from edge.tracker.port import Reason
 from edge.tracker.state import Ring
+from shared.errors import ConfigError
 
 ACCEL_SATURATED = int(Reason.ACCEL_SATURATED)
 BAD_SAMPLES = int(Reason.BAD_SAMPLES)
@@ -61,6 +62,42 @@ def limits_of(description: SensorDescription, saturation_ratio: float) -> Limits
         accel_absurd_mps2=1.5 * accel if accel else 4000.0,
         gyro_absurd_radps=1.5 * gyro if gyro else 150.0,
     )
+
+
+def new_gate(description: SensorDescription) -> NDArray[Any]:
+    """Return one record of ``GATE``; ``ConfigError`` when the described rate is none."""
+    if not 0.0 < description.rate_hz < np.inf:
+        raise ConfigError(
+            f"sensor '{description.name}' is described with {description.rate_hz:g} samples per "
+            "second; give its rate"
+        )
+    gate = np.zeros(1, GATE)
+    gate["period_s"] = 1.0 / description.rate_hz
+    return gate
+
+
+def admit_batch(
+    ring: Ring, received: int, gate: NDArray[Any], limits: Limits, gap_s: float, batch: ImuBatch
+) -> None:
+    """Append a batch to the ring that has taken ``received`` samples before."""
+    admit(
+        ring,
+        received,
+        gate,
+        limits,
+        gap_s,
+        _plain(batch.t_ns, np.int64),
+        _plain(batch.accel_mps2, np.float64),
+        _plain(batch.gyro_radps, np.float64),
+    )
+
+
+def _plain(values: NDArray[Any], dtype: type) -> NDArray[Any]:
+    """Return ``values`` in the one layout that ``admit`` is compiled for."""
+    flags = values.flags
+    if flags.c_contiguous and flags.writeable and values.dtype == dtype:
+        return values
+    return np.array(values, dtype, order="C")
 
 
 @njit(cache=True)

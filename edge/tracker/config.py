@@ -23,15 +23,15 @@ class EskfConfig(NamedTuple):
     gap_s: float = 0.1  # a longer silence counts as a gap
 
     # Stance detection (zero_velocity.py).
-    half_window_s: float = 0.025
-    rate_weight_m2ps2: float = 50.0  # weight of (rad/s)^2 against (m/s^2)^2
+    half_window_s: float = 0.03
+    rate_weight_m2ps2: float = 40.0  # weight of (rad/s)^2 against (m/s^2)^2
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
     rest_off_mps2: float = 1.2  # further off is no rest
     rest_weight: float = 0.03  # of one sample
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
     threshold_min_m2ps4: float = 1.0
-    threshold_max_m2ps4: float = 150.0
+    threshold_max_m2ps4: float = 400.0
 
     # Pseudo-measurements in stance.
     # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.

@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.conditioning import GATE, admit, limits_of, regular_time
+from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_time
 from edge.tracker.config import EskfConfig
 from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
@@ -35,6 +35,7 @@ class EskfTracker:
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description
         self.config = config or EskfConfig()
+        self._gate = new_gate(description)
         rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = np.zeros(slots, RING)
@@ -42,8 +43,6 @@ class EskfTracker:
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._progress["gyro_clip_radps"] = self._limits.gyro_clip_radps
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
-        self._gate = np.zeros(1, GATE)
-        self._gate["period_s"] = 1.0 / description.rate_hz
         self._state = new_filter_state()
         self._block = slots // 4
 
@@ -51,18 +50,10 @@ class EskfTracker:
         """Take samples; return the rows that have become final."""
         released = []
         for first in range(0, len(batch), self._block):
-            stop = first + self._block
-            admit(
-                self._ring,
-                int(self._progress["received"][0]),
-                self._gate,
-                self._limits,
-                self.config.gap_s,
-                batch.t_ns[first:stop],
-                batch.accel_mps2[first:stop],
-                batch.gyro_radps[first:stop],
-            )
-            self._progress["received"] += len(batch.t_ns[first:stop])
+            part = batch.part(slice(first, first + self._block))
+            received = int(self._progress["received"][0])
+            admit_batch(self._ring, received, self._gate, self._limits, self.config.gap_s, part)
+            self._progress["received"] += len(part)
             rows = self._work(final=False)
             if len(rows):
                 released.append(rows)

@@ -16,7 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
-from edge.tracker.conditioning import GATE, admit, limits_of, regular_time
+from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_time
 from edge.tracker.huang_stance import follow_pitch_axis, is_stance, pitch_rate
 from edge.tracker.huang_state import HUANG, HuangConfig, HuangState
 from edge.tracker.port import Quality, Reason, TrackBatch
@@ -38,10 +38,9 @@ class HuangTracker:
     def __init__(self, description: SensorDescription, config: HuangConfig | None = None) -> None:
         self.description = description
         self.config = config or HuangConfig()
+        self._gate = new_gate(description)
         rate_hz = max(description.rate_hz, MIN_RATE_HZ)
         self._ring = np.zeros(1 << int(np.ceil(np.log2(SLOTS_S * rate_hz))), RING)
-        self._gate = np.zeros(1, GATE)
-        self._gate["period_s"] = 1.0 / description.rate_hz
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._state = np.zeros(1, HUANG)
         self._state["quaternion_nb"][0, 0] = 1.0
@@ -56,16 +55,7 @@ class HuangTracker:
             received = int(self._state["received"][0])
             slots = np.arange(received, received + len(part)) & (len(self._ring) - 1)
             self._ring["mag_ut"][slots] = np.nan if part.mag_ut is None else part.mag_ut
-            admit(
-                self._ring,
-                received,
-                self._gate,
-                self._limits,
-                self.config.gap_s,
-                part.t_ns,
-                part.accel_mps2,
-                part.gyro_radps,
-            )
+            admit_batch(self._ring, received, self._gate, self._limits, self.config.gap_s, part)
             self._state["received"] += len(part)
             released.append(self._work(final=False))
         return join_rows(released)

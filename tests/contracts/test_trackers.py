@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from edge.samples import ImuBatch
+from edge.samples import ImuBatch, SensorDescription
 from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality
 from edge.tracker.rows import join_rows
@@ -94,6 +94,21 @@ def test_samples_that_are_all_missing_still_get_rows(name):
     assert len(rows) == 300
     assert np.isfinite(rows.position_n_m).all()
     assert not np.any(rows.quality == Quality.GOOD)
+
+
+def test_any_array_layout_will_do(name):
+    whole = run(name, WALK.imu)
+    views = np.zeros((len(WALK.imu), 7))
+    views[:, 1:4], views[:, 4:7] = WALK.imu.accel_mps2, WALK.imu.gyro_radps
+    views.setflags(write=False)
+    rows = run(name, ImuBatch(WALK.imu.t_ns, views[:, 1:4], views[:, 4:7]))
+    assert np.array_equal(rows.position_n_m, whole.position_n_m)
+
+
+@pytest.mark.parametrize("rate_hz", [0.0, -1.0, np.nan, np.inf])
+def test_a_description_without_a_rate_is_refused(name, rate_hz):
+    with pytest.raises(ConfigError, match="rate"):
+        make_tracker(name, SensorDescription("odd", rate_hz))
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones():
