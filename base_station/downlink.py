@@ -18,7 +18,6 @@ from shared.channels import COMMAND
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.errors import BusError
 from shared.messages import Command
 
 logger = logging.getLogger(__name__)
@@ -42,6 +41,7 @@ class Downlink:
         self._orders: Sequence[Order] = ()
         self._changed = False
         self._closed = False
+        self._failing = False
         self._thread = Thread(target=self._run, name="downlink", daemon=True)
 
     def start(self) -> None:
@@ -70,10 +70,18 @@ class Downlink:
                 if self._closed:
                     return
                 orders, self._changed = self._orders, False
-            try:
-                self._say_all(orders)
-            except BusError as error:
-                logger.warning("commands cannot be sent: %s", error)
+            self._try(orders)
+
+    def _try(self, orders: Sequence[Order]) -> None:
+        """No failure may end the thread: the next look tries again."""
+        try:
+            self._say_all(orders)
+        except Exception:
+            if not self._failing:
+                logger.exception("commands cannot be sent; trying again")
+            self._failing = True
+        else:
+            self._failing = False
 
     def _say_all(self, orders: Sequence[Order]) -> None:
         now_ns = self._clock.monotonic_ns()

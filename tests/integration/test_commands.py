@@ -18,6 +18,7 @@ from shared.channels import COMMAND, REPLY
 from shared.clock import ManualClock, SystemClock
 from shared.codec import decode, encode
 from shared.envelope import Stamper
+from shared.errors import BusError
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply
 from shared.messages.station import ConfirmCommand, RegisterUnit, SendCommand
 from tests.live_station import LiveStation, make_pipeline, until
@@ -131,6 +132,26 @@ def test_what_nobody_heard_expires_and_is_said_no_more(tmp_path: Path) -> None:
         station.act(ConfirmCommand("c1", U))
         assert state(station) == "acknowledged"
         assert unit.heard == []
+
+
+def test_a_bus_that_fails_for_a_while_ends_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        unit = Unit(station.router)
+        unit.come()
+        tries = []
+
+        def fail(*_: object) -> None:
+            tries.append(1)
+            raise BusError("no")
+
+        with monkeypatch.context() as broken:
+            broken.setattr(station.bus, "publish", fail)
+            station.act(order(CommandKind.EVACUATE))
+            until(lambda: len(tries) > 2)
+        until(lambda: state(station) == "received")
 
 
 def test_a_station_that_starts_again_goes_on_telling(tmp_path: Path) -> None:
