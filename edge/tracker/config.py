@@ -28,6 +28,7 @@ class EskfConfig(NamedTuple):
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
     rest_off_mps2: float = 1.2  # further off is no rest
     rest_weight: float = 0.03  # of one sample
+    scale_share: float = 0.7  # of a rest norm that is off, the scale's; the bias has the others
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
     threshold_min_m2ps4: float = 1.0

@@ -94,6 +94,7 @@ def work(
         slot = k & (len(ring) - 1)
         stop = min(memory.timed, reach(ring, k))
         ring[slot].motion_m2ps4 = motion_statistic(ring, memory, k, stop, config)
+        ring[slot].rest_norm_mps2 = memory.rest_norm_mps2
         before = ring[(k - 1) & (len(ring) - 1)].motion_sum_m2ps4
         ring[slot].motion_sum_m2ps4 = before + ring[slot].motion_m2ps4
         memory.measured = k + 1

@@ -93,7 +93,7 @@ def _predict(
         return
     if dt_s == 0.0:
         return
-    mean_readings(ring, progress, state, k)
+    mean_readings(ring, progress, state, k, config)
     advance(
         state.position_n_m,
         state.velocity_n_mps,

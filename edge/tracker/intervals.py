@@ -12,18 +12,22 @@ from __future__ import annotations
 from numba import njit
 
 from edge.samples import Floats
+from edge.tracker.config import EskfConfig
 from edge.tracker.state import FilterState, Progress, Ring
 
 BEND = 1.0 / 12.0  # of the cubic through four evenly spaced samples
 
 
 @njit()
-def mean_readings(ring: Ring, progress: Progress, state: FilterState, k: int) -> None:
+def mean_readings(
+    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+) -> None:
     """Write mean rate and force, sensor axes, free of bias, of the interval ending at ``k``."""
     mask = len(ring) - 1
     last, first = k & mask, (k - 1) & mask
     dt_s = ring[last].t_s - ring[first].t_s
     bend = _bend(ring, progress, k, dt_s)
+    scale = 1.0 + config.scale_share * (config.gravity_mps2 / ring[last].rest_norm_mps2 - 1.0)
     before, after = (k - 2) & mask, (k + 1) & mask
     for i in range(3):
         mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
@@ -31,7 +35,8 @@ def mean_readings(ring: Ring, progress: Progress, state: FilterState, k: int) ->
         state.gyro_radps[i] = mean + bend * (mean - outer) - state.gyro_bias_radps[i]
         mean = 0.5 * (ring[first].accel_mps2[i] + ring[last].accel_mps2[i])
         outer = 0.5 * (ring[before].accel_mps2[i] + ring[after].accel_mps2[i])
-        state.accel_mps2[i] = mean + bend * (mean - outer) - state.accel_bias_mps2[i]
+        force = scale * (mean + bend * (mean - outer))
+        state.accel_mps2[i] = force - state.accel_bias_mps2[i]
     _add_cross(state.gyro_radps, ring[first].gyro_radps, ring[last].gyro_radps, dt_s / 12.0)
 
 

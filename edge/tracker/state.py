@@ -45,6 +45,7 @@ RING = np.dtype(
         ("stationary", np.bool_),
         ("quality", np.uint8),
         ("reasons", np.uint32),
+        ("rest_norm_mps2", np.float64),  # what was known of it when this was measured
         ("motion_sum_m2ps4", np.float64),  # of this and all samples before
         ("unrest_m2ps4", np.float64),  # mean statistic over a longer time around
         # What the smoother needs to go back over this sample.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from edge.plain_filter import turn
+from edge.tracker.config import EskfConfig
 from edge.tracker.intervals import mean_readings
 from edge.tracker.state import RING, new_filter_state, new_progress
 
@@ -13,12 +14,13 @@ from edge.tracker.state import RING, new_filter_state, new_progress
 def means_of(t_s, gyro, accel, k):
     ring = np.zeros(8, RING)
     ring["t_s"][: len(t_s)] = t_s
+    ring["rest_norm_mps2"] = EskfConfig().gravity_mps2
     ring["gyro_radps"][: len(t_s)] = gyro
     ring["accel_mps2"][: len(t_s)] = accel
     progress = new_progress()
     progress["measured"] = len(t_s)
     state = new_filter_state()[0]
-    mean_readings(ring, progress[0], state, k)
+    mean_readings(ring, progress[0], state, k, EskfConfig())
     return state["gyro_radps"], state["accel_mps2"]
 
 

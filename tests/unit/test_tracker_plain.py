@@ -54,7 +54,7 @@ def test_both_come_to_the_same_state():
     means = new_filter_state()[0]  # its biases stay zero
     for k in range(len(WALK.imu)):
         if k:
-            mean_readings(ring, tracker._progress[0], means, k)
+            mean_readings(ring, tracker._progress[0], means, k, CONFIG)
             plain.predict(means["accel_mps2"], means["gyro_radps"], ring[k]["interval_s"])
         if ring[k]["stationary"]:
             plain.stand(ring[k]["gyro_radps"], *stance_variances(ring, k))
