@@ -98,3 +98,31 @@ def test_the_filter_covariance_stays_symmetric_positive():
         covariance = tracker._state["covariance"][0]
         np.testing.assert_allclose(covariance, covariance.T, rtol=1e-7, atol=1e-14)
         assert np.linalg.eigvalsh(0.5 * (covariance + covariance.T)).min() >= -1e-12
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    seed=st.integers(0, 10_000),
+    steps_ns=st.lists(
+        st.sampled_from([-(10**10), -5_000_000, 0, 1, 5_000_000, 200_000_000, 10**12]),
+        min_size=1,
+        max_size=8,
+    ),
+    scale=st.sampled_from([0.0, 1.0, 50.0, 3000.0]),
+)
+def test_whatever_comes_every_sample_has_a_finite_row(seed, steps_ns, scale):
+    noise = np.random.default_rng(seed)
+    n = 600
+    regular = np.full(n, 5_000_000)
+    odd = noise.random(n) < 0.05
+    regular[odd] = noise.choice(steps_ns, odd.sum())
+    accel = noise.normal(0.0, 1.0, (n, 3)) * scale + [0.0, 0.0, -9.8]
+    gyro = noise.normal(0.0, 0.01, (n, 3)) * scale
+    accel[noise.random((n, 3)) < 0.03] = noise.choice([np.nan, np.inf, -1e300, 0.0])
+    t_ns = np.cumsum(regular)
+    rows = run(ImuBatch(t_ns, accel, gyro), cuts=(100, 101, 350))
+    assert np.array_equal(rows.t_ns, t_ns)
+    for values in (rows.position_n_m, rows.velocity_n_mps, rows.quaternion_nb):
+        assert np.isfinite(values).all()
+    assert np.isfinite(rows.position_cov_m2).all()
+    assert np.isfinite(rows.heading_std_rad).all()
