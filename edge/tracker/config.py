@@ -28,7 +28,7 @@ class EskfConfig(NamedTuple):
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
     rest_off_mps2: float = 1.2  # further off is no rest
     rest_weight: float = 0.03  # of one sample
-    scale_share: float = 0.7  # of a rest norm that is off, the scale's; the bias has the others
+    rest_bias_mps2: float = 0.2  # a rest norm further off is the scale's, not a bias
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
     threshold_min_m2ps4: float = 1.0
@@ -59,10 +59,11 @@ class EskfConfig(NamedTuple):
     gyro_bias_walk_radps2_rthz: float = 5e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
 
-    # What a clipped gyroscope hides (clipping.py).
+    # What clipping hides (clipping.py).
     hidden_rate_limit_radps: float = 6.0
     hidden_rate_floor_radps: float = 0.5
     hidden_rate_doubt: float = 1.0  # of the bridged peak
+    hidden_force_mps2_rthz: float = 1.0  # by a clipped accelerometer
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005

@@ -8,7 +8,7 @@ from numba import njit
 
 from edge.tracker.alignment import level
 from edge.tracker.clipping import bridge_clipping
-from edge.tracker.conditioning import BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
+from edge.tracker.conditioning import ACCEL_SATURATED, BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
@@ -108,10 +108,13 @@ def _predict(
     )
     propagate(state.covariance, state.rotation_nb, state.force_n_mps2, dt_s)
     gyro_noise = config.gyro_noise_radps_rthz**2
+    accel_noise = config.accel_noise_mps2_rthz**2
+    if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
+        accel_noise += config.hidden_force_mps2_rthz**2
     if ring[slot].flags & GYRO_SATURATED:
         _doubt_clipped(ring, state, slot, dt_s)
     for i in range(3):
-        state.covariance[VELOCITY + i, VELOCITY + i] += dt_s * config.accel_noise_mps2_rthz**2
+        state.covariance[VELOCITY + i, VELOCITY + i] += dt_s * accel_noise
         state.covariance[ATTITUDE + i, ATTITUDE + i] += dt_s * gyro_noise
         state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] += (
             dt_s * config.gyro_bias_walk_radps2_rthz**2

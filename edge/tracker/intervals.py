@@ -27,7 +27,7 @@ def mean_readings(
     last, first = k & mask, (k - 1) & mask
     dt_s = ring[last].t_s - ring[first].t_s
     bend = _bend(ring, progress, k, dt_s)
-    scale = 1.0 + config.scale_share * (config.gravity_mps2 / ring[last].rest_norm_mps2 - 1.0)
+    scale = _scale(ring[last].rest_norm_mps2, config)
     before, after = (k - 2) & mask, (k + 1) & mask
     for i in range(3):
         mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
@@ -38,6 +38,16 @@ def mean_readings(
         force = scale * (mean + bend * (mean - outer))
         state.accel_mps2[i] = force - state.accel_bias_mps2[i]
     _add_cross(state.gyro_radps, ring[first].gyro_radps, ring[last].gyro_radps, dt_s / 12.0)
+
+
+@njit()
+def _scale(rest_norm_mps2: float, config: EskfConfig) -> float:
+    """Return the factor that puts the accelerometer's scale right as far as rest shows it."""
+    off_mps2 = rest_norm_mps2 - config.gravity_mps2
+    if abs(off_mps2) <= config.rest_bias_mps2:
+        return 1.0
+    side = 1.0 if off_mps2 > 0.0 else -1.0
+    return config.gravity_mps2 / (rest_norm_mps2 - side * config.rest_bias_mps2)
 
 
 @njit()

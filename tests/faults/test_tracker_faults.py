@@ -201,3 +201,11 @@ def test_memory_does_not_grow():
         shifted = WALK.imu.t_ns + lap * (WALK.imu.t_ns[-1] + 5_000_000)
         tracker.push(ImuBatch(shifted, WALK.imu.accel_mps2, WALK.imu.gyro_radps))
     assert tracker._ring.nbytes == held
+
+
+@pytest.mark.parametrize("scale", [0.96, 1.07])
+def test_a_wrong_accelerometer_scale_is_mostly_put_right(scale):
+    t_ns, accel, gyro = copy()
+    rows = run(t_ns, scale * accel, gyro)
+    wrong_m = abs(scale - 1.0) * LENGTH_M
+    assert abs(reached_m(rows) - LENGTH_M) < 0.6 * wrong_m
