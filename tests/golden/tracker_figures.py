@@ -10,7 +10,7 @@ import json
 import os
 from pathlib import Path
 
-from edge.bench_track import score_trial
+from edge.bench.track import score_trial
 
 GOLDEN = Path(__file__).with_name("tracker_figures.json")
 TRIALS = (

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from edge.activity_scoring import Confusion
-from edge.bench_activity import bench_activity
+from edge.bench.activity import bench_activity
+from edge.bench.activity_scoring import Confusion
 from shared.messages import Activity
 
 

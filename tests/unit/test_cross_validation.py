@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from edge.cross_validation import candidates, leave_one_out
+from edge.bench.cross_validation import candidates, leave_one_out
 from edge.tracker.config import EskfConfig
 
 

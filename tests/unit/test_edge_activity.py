@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from edge.activity import ActivityMonitor
-from edge.activity_scoring import ActivityScore, recorded_label, score_activity
+from edge.bench.activity_scoring import ActivityScore, recorded_label, score_activity
 from edge.body_motion import BodyMotion
 from edge.falls import FallDetector
 from edge.samples import ImuBatch

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.scoring import fit_yaw, horizontal_nees, rows_at, score_track
+from edge.bench.scoring import fit_yaw, horizontal_nees, rows_at, score_track
 from edge.sources.recording import RecordedTruth
 from edge.tracker.port import TrackBatch
 

@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from edge.bench_track import bench_track, find_trials
+from edge.bench.track import bench_track, find_trials
 from edge.track_command import COLUMNS, track
 from shared.errors import UserError
 from tests.walking import walk

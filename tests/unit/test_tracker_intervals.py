@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.plain_filter import turn
+from edge.bench.plain_filter import turn
 from edge.tracker.config import EskfConfig
 from edge.tracker.intervals import mean_readings
 from edge.tracker.state import RING, new_filter_state, new_progress

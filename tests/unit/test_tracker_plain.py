@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from edge.plain_filter import PlainFilter
+from edge.bench.plain_filter import PlainFilter
 from edge.samples import SensorDescription
 from edge.tracker.alignment import level
 from edge.tracker.config import EskfConfig

@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from edge.plain_filter import PlainFilter
+from edge.bench.plain_filter import PlainFilter
 from edge.samples import Floats, ImuBatch
 from edge.sources.recording import RecordingSource
 from edge.tracker import make_tracker

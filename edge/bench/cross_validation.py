@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
-from edge.scoring import score_track
+from edge.bench.scoring import score_track
 from edge.sources.recording import RecordingSource, read_truth
 from edge.tracker.config import EskfConfig
 from edge.tracker.eskf import EskfTracker

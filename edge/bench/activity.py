@@ -12,14 +12,14 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
-from edge.activity_scoring import (
+from edge.bench.activity_scoring import (
     ActivityScore,
     Confusion,
     kinds_in,
     recorded_label,
     score_activity,
 )
-from edge.bench_track import find_trials
+from edge.bench.track import find_trials
 from edge.simulation import open_simulation
 from edge.sources.recording import RecordingSource, read_truth
 from shared.messages import Activity

@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
-from edge.bench_speed import measure_speed, print_speed
-from edge.cross_validation import cross_validate, left_out_table
-from edge.scoring import Score, score_track
+from edge.bench.cross_validation import cross_validate, left_out_table
+from edge.bench.scoring import Score, score_track
+from edge.bench.speed import measure_speed, print_speed
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
 from edge.tracker import TRACKERS
