@@ -11,6 +11,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,7 +51,11 @@ class StationProcess:
         self._usage = psutil.Process(process.pid)
         self._cpu_s = 0.0
         self._since = 0.0
-        self.api = Api(_ready_url(process, data / _SAID), *_first_login(self._data.first_login))
+        self._url = _ready_url(process, data / _SAID)
+
+    @cached_property
+    def api(self) -> Api:
+        return Api(self._url, *_first_login(self._data.first_login))
 
     def begin_measuring(self) -> None:
         self._cpu_s, self._since = self._cpu_now_s(), time.perf_counter()
@@ -110,15 +115,20 @@ class Membership:
 
 
 @contextmanager
-def station_process(data: Path, bus_address: str) -> Iterator[StationProcess]:
-    """Runs ``muster base serve``; ended hard where ``stop`` was not called."""
+def station_process(
+    data: Path, bus_address: str, inside: Sequence[str] = ()
+) -> Iterator[StationProcess]:
+    """Runs ``muster base serve``; ended hard where ``stop`` was not called.
+
+    ``inside``: what to put before the command so that it runs in another network.
+    """
     command = "from base_station.cli import app; app()"
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
     with (
         (data / _SAID).open("w") as said,
         subprocess.Popen(
-            [sys.executable, "-c", command, *arguments],
+            [*inside, sys.executable, "-c", command, *arguments],
             stdout=subprocess.PIPE,
             stderr=said,
             text=True,
