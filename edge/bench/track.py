@@ -6,6 +6,7 @@ import json
 import statistics
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -16,6 +17,7 @@ from rich.table import Table
 
 from edge.bench.cross_validation import cross_validate, left_out_table
 from edge.bench.scoring import Score, score_track
+from edge.bench.simulated import score_simulated, simulated_walks
 from edge.bench.speed import measure_speed, print_speed
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
@@ -60,6 +62,9 @@ def bench_track(
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
+    simulated: Annotated[
+        bool, typer.Option("--simulated", help="Also score the thesis's walks, simulated.")
+    ] = False,
     speed: Annotated[
         bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
     ] = False,
@@ -71,10 +76,13 @@ def bench_track(
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
     console = Console(width=max(Console().width, 150))
     trials = find_trials(data)
+    scorings = [partial(score_trial, path, tracker) for path in trials]
+    if simulated:
+        scorings += [partial(score_simulation, walk, tracker) for walk in simulated_walks()]
     scores = [
-        score_trial(path, tracker)
-        for path in progress_bar(
-            trials, description="Scoring", console=Console(stderr=True), transient=True
+        scoring()
+        for scoring in progress_bar(
+            scorings, description="Scoring", console=Console(stderr=True), transient=True
         )
     ]
     console.print(trial_table(scores))
@@ -114,6 +122,10 @@ def score_trial(path: Path, tracker: str) -> TrialScore:
         trial=source.trial.trial or path.name,
         score=score_track(rows, read_truth(path), closed_loop=closed_loop),
     )
+
+
+def score_simulation(walk: str, tracker: str) -> TrialScore:
+    return TrialScore("simulated", walk, score_simulated(walk, tracker))
 
 
 def trial_table(scores: Iterable[TrialScore]) -> Table:
