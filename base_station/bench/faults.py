@@ -47,17 +47,19 @@ class Fault(NamedTuple):
     name: str
     link: Conditions  # both ways
     seconds: float
-    stays: bool = False  # until all has arrived, not only for ``seconds``
+    after: Conditions = CLEAN  # from then on, until all that was said has arrived
+    slow: bool = False  # takes minutes to catch up
 
 
+THIN = Conditions(delay_s=0.05, rate_bps=20_000.0)
 FAULTS = (
     Fault("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
     Fault("outage of 1 s", DARK, 1.0),
     Fault("outage of 30 s", DARK, 30.0),
     Fault("outage of 600 s", DARK, 600.0),
-    Fault("20 kbit/s", Conditions(delay_s=0.05, rate_bps=20_000.0), 20.0, stays=True),
+    Fault("20 kbit/s", THIN, 15.0, after=THIN),
+    Fault("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, slow=True),
 )
-LONG_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,8 +146,7 @@ class Site:
         self._link.set(fault.link)
         self._ask_par()
         time.sleep(fault.seconds)
-        if not fault.stays:
-            self._link.set(CLEAN)
+        self._link.set(fault.after)
         back_ns, said_then = time.time_ns(), self._said()
         self._wait_logged(said_then, patience_s)
         memory_mb = self._station.memory_mb()
