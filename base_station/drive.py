@@ -325,10 +325,15 @@ class StationDrive:
             self._do(STATION_ID, report)
 
     def _held(self) -> Report:
+        state = self._pipeline.state
         return {
-            unit.unit_id: tuple(Held(boot.boot_id, tuple(boot.seen.runs())) for boot in unit.boots)
-            for unit in self._pipeline.state.units.values()
-            if unit.registered and unit.link == "live"
+            sender.unit_id: tuple(
+                Held(boot.boot_id, tuple(boot.seen.runs())) for boot in sender.boots
+            )
+            for unit in state.units.values()
+            if unit.registered
+            for sender in (unit, unit.tracker)
+            if sender is not None and sender.link_at(state.t_ns) == "live"
         }
 
     def _guarded(self, part: str, function: Callable[[], None]) -> None:

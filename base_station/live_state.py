@@ -13,7 +13,7 @@ import msgspec
 
 from base_station.command_state import SentCommand
 from base_station.plan import Plan
-from shared.channels import GPS, Channel
+from shared.channels import GPS, NO_TRACKER, Channel
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import (
@@ -114,6 +114,7 @@ class UnitState(msgspec.Struct):
     fault: Fault | None = None
     stopped_ns: int | None = None  # said goodbye in an orderly way
     inside_since_ns: int | None = None
+    tracker: UnitState | None = None  # what is known of its tracking agent as a sender
     duplicates: int = 0
     out_of_order: int = 0
     not_used: dict[str, int] = msgspec.field(default_factory=dict)  # fixes, path jumps; by reason
@@ -122,6 +123,17 @@ class UnitState(msgspec.Struct):
     def name(self) -> str:
         """What a person would call the unit."""
         return self.person.name if self.person else self.label or self.unit_id
+
+    @property
+    def is_tracked_remotely(self) -> bool:
+        """It says itself that it does not track; nobody may do it for another unit."""
+        return self.description is not None and self.description.tracker == NO_TRACKER
+
+    @property
+    def path_boot(self) -> BootState:
+        """In whose clock, and since whose start, its positions are."""
+        remote = self.tracker if self.is_tracked_remotely else None
+        return self.boots[-1] if remote is None else remote.boots[-1]
 
     def link_at(self, t_ns: int) -> Link:
         if self.heard_ns is None:

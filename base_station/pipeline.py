@@ -30,7 +30,7 @@ from base_station.fusion.port import FuserKind
 from base_station.live_state import Alarm, Fault, StationState, UnitState
 from base_station.positioning import Positioning
 from base_station.thermal import dose_of
-from shared.channels import Direction, channel_of
+from shared.channels import Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import (
@@ -139,10 +139,13 @@ class StationPipeline:
     def _hear(self, unit_id: str, message: Message, backfilled: bool) -> list[Output]:
         state = self.state
         state.counts.messages += 1
-        unit = state.units.get(unit_id) or self._stranger(unit_id)
+        tracked = tracked_unit(unit_id)
+        unit = state.units.get(tracked or unit_id) or self._stranger(tracked or unit_id)
         if unit is None:
             state.counts.units_left_out += 1
             return []
+        if tracked is not None:
+            return self._hear_tracker(unit, message, backfilled)
         if backfilled:
             news = unit.recall(message.header)
         else:
@@ -158,6 +161,30 @@ class StationPipeline:
         outputs.append(UnitTouched(unit_id))
         outputs.extend(self._review(unit))
         return outputs
+
+    def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:
+        """Where the wearer is, and falls, from the agent that tracks for the unit.  Neither is a
+        sign of life of the unit, nor is anything else that the agent says.
+        """
+        state = self.state
+        if unit.tracker is None:
+            unit.tracker = UnitState(message.header.unit_id)
+        if backfilled:
+            news = unit.tracker.recall(message.header)
+        else:
+            news = unit.tracker.accept(channel_of(message), message.header, state.t_ns)
+        if news == "repeat" or not unit.is_tracked_remotely:
+            return []
+        outputs: list[Output] = []
+        if isinstance(message, Position) and news == "new":
+            outputs.extend(self._observe(unit, message))
+        elif isinstance(message, Position) and unit.registered:
+            outputs.extend(self._recall(unit, message))
+        elif isinstance(message, UnitEvent) and message.kind is EventKind.FALL:
+            outputs.extend(self._observe(unit, message))
+        else:
+            return []
+        return [*outputs, UnitTouched(unit.unit_id), *self._review(unit)]
 
     def _stranger(self, unit_id: str) -> UnitState | None:
         """Kept and shown, not believed."""

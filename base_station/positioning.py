@@ -77,7 +77,7 @@ class Positioning:
     ) -> FusedPosition | None:
         """Where the wearer was at a position that came late; the trail is filled in there."""
         estimate = self._fuser(unit).recall(position)
-        boot = unit.boots[-1]
+        boot = unit.path_boot
         if estimate is None or boot.boot_id != position.header.boot_id or boot.offset_t_ns == 0:
             return None
         floor = state.plan.floor_at(estimate.down_m, None) if state.plan is not None else None
@@ -101,7 +101,7 @@ class Positioning:
         if state.anchor is None and not self._anchor_itself(state, unit, fix):
             return FixVerdict(False, "the site has no anchor")
         assert state.anchor is not None
-        place = in_incident_frame(fix, state.anchor)
+        place = in_incident_frame(_in_clock_of_path(unit, fix), state.anchor)
         return place if isinstance(place, FixVerdict) else self._fuser(unit).correct(place)
 
     def _anchor_itself(self, state: StationState, unit: UnitState, fix: GpsFix) -> bool:
@@ -132,6 +132,16 @@ def _moved(step: TrailStep, turn_rad: float, shift_m: tuple[float, float, float]
     return msgspec.structs.replace(step, north_m=north_m + shift_m[0], east_m=east_m + shift_m[1])
 
 
+def _in_clock_of_path(unit: UnitState, fix: GpsFix) -> GpsFix:
+    """A unit that is tracked remotely has its fixes in its own clock, its path in another."""
+    ahead_ns = unit.boots[-1].offset_ns - unit.path_boot.offset_ns
+    if ahead_ns == 0:
+        return fix
+    t_mono_ns = fix.header.t_mono_ns + ahead_ns
+    header = msgspec.structs.replace(fix.header, t_mono_ns=t_mono_ns)
+    return msgspec.structs.replace(fix, header=header)
+
+
 def _count(unit: UnitState, reason: str) -> None:
     if reason:
         unit.not_used[reason] = unit.not_used.get(reason, 0) + 1
@@ -143,7 +153,7 @@ def _as_message(
     return FusedPosition(
         header=header,
         unit_id=unit.unit_id,
-        t_meas_ns=min(unit.boots[-1].station_ns(estimate.t_mono_ns), header.t_utc_ns),
+        t_meas_ns=min(unit.path_boot.station_ns(estimate.t_mono_ns), header.t_utc_ns),
         north_m=estimate.north_m,
         east_m=estimate.east_m,
         down_m=estimate.down_m,

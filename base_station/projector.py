@@ -8,6 +8,7 @@ import msgspec
 
 from base_station.events import Output, Received, Refused, StationEvent
 from base_station.sinks import Projection
+from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
 
@@ -35,7 +36,7 @@ class Projector:
         if isinstance(message, OperatorAction):
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
-        elif outputs and message.header.unit_id != STATION_ID:
+        elif outputs and message.header.unit_id != STATION_ID and not tracked_unit(event.unit_id):
             self._heard[event.unit_id] = event.t_ns
             if isinstance(message, UnitDescription):
                 self._descriptions.append(message)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import importlib.metadata
 import logging
 import secrets
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from datetime import UTC, datetime
 from queue import SimpleQueue
-from threading import Event
+from threading import Event, Timer
 
 from edge.black_box import BlackBox
 from edge.calibration import Calibration, identity, read_calibration, write_calibration
@@ -22,20 +22,27 @@ from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, sensor_of
+from edge.raw_uplink import RawUplink
 from edge.runtime import Agent, Parts
 from edge.samples import SensorDescription
 from edge.source_reader import SourceReader
 from edge.sources import open_source
+from edge.sources.bus import BusSource
 from edge.sources.port import Source
 from edge.spool import open_spool
 from edge.tracker import make_tracker
+from edge.tracker.none import NoTracker
+from edge.unit_listener import UnitListener
 from shared.bus import Bus
+from shared.channels import NO_TRACKER, tracked_unit, tracker_id
 from shared.clock import SystemClock
 from shared.envelope import Stamper
 from shared.errors import ConfigError
 from shared.messages import EventKind, UnitEvent
 
 logger = logging.getLogger(__name__)
+
+_PATIENCE_S = 2.0  # with a router that is not there; then it is tried again
 
 
 def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bool) -> None:
@@ -44,17 +51,57 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     Raises MusterError where the settings cannot work; nothing has been sent then.
     """
     member = membership(config)
+    station = ZenohStation(member)
+    if member.identity is None:
+        logger.warning("the link is not secured: anyone on this network can listen and forge")
     source = open_source(config.source)
+    if isinstance(source, BusSource):
+        if config.tracker == NO_TRACKER:
+            raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
+        listener = UnitListener(source.unit_id, station.open_listening_bus)
+        with closing(listener):
+            _track_for(config, source, listener, station, stop, for_s)
+        return
+    speed = config.speed if paced else None
+    _run_once(config, member.unit_id, source, station, stop, for_s, speed)
+
+
+def _track_for(
+    config: EdgeConfig,
+    source: BusSource,
+    listener: UnitListener,
+    station: ZenohStation,
+    stop: Event,
+    for_s: float | None,
+) -> None:
+    """Each time the unit starts, its path begins anew, and so does everything here."""
+    if for_s is not None:
+        timer = Timer(for_s, stop.set)
+        timer.daemon = True
+        timer.start()
+    if not listener.open(stop):
+        return
+    while source.follow(listener, stop):
+        _run_once(config, tracker_id(source.unit_id), source, station, stop, None, None)
+        if stop.is_set():
+            return
+        source = BusSource(source.unit_id)
+
+
+def _run_once(
+    config: EdgeConfig,
+    unit_id: str,
+    source: Source,
+    station: ZenohStation,
+    stop: Event,
+    for_s: float | None,
+    speed: float | None,
+) -> None:
     with ExitStack() as held:
         held.callback(source.close)
-        folder = DataFolder(config.data / member.unit_id)
+        folder = DataFolder(config.data / unit_id)
         held.callback(folder.close)
-        speed = config.speed if paced else None
-        agent = compose_agent(
-            config, member.unit_id, folder, source, ZenohStation(member), speed=speed
-        )
-        if member.identity is None:
-            logger.warning("the link is not secured: anyone on this network can listen and forge")
+        agent = compose_agent(config, unit_id, folder, source, station, speed=speed)
         agent.run(stop, for_s=for_s)
 
 
@@ -73,7 +120,8 @@ def compose_agent(
     )
     raw = RawStream(unit_id, spool.boot_id)
     stamper = Stamper(unit_id, spool.boot_id, clock)
-    calibration = _calibration(config, unit_id, source.description, datetime.now(UTC))
+    worn = tracked_unit(unit_id) or unit_id
+    calibration = _calibration(config, worn, source.description, datetime.now(UTC))
     if calibration is not None:
         folder.calibrations.mkdir(exist_ok=True)
         write_calibration(calibration, folder.calibrations / f"{identity(calibration)}.toml")
@@ -85,12 +133,14 @@ def compose_agent(
         calibration="" if calibration is None else identity(calibration),
     )
     sensor = sensor_of(description)
+    tracks = config.tracker != NO_TRACKER
     pipeline = TrackerPipeline(
         UnitIdentity(_version(), config.source, config.tracker, sensor, calibration),
-        make_tracker(config.tracker, sensor),
+        make_tracker(config.tracker, sensor) if tracks else NoTracker(),
         stamper,
         config.position_rate_hz,
         mayday=mayday_before(spool),
+        raw_uplink=None if tracks else RawUplink(stamper),
     )
     black_box = BlackBox(
         folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
@@ -135,6 +185,12 @@ class ZenohStation:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
         return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
+
+    def open_listening_bus(self) -> Bus:
+        """Hears other units, which an endpoint for speaking does not."""
+        from shared.bus_zenoh import ClientEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
+
+        return ZenohBus(ClientEndpoint(self._member.connect, self._member.identity, _PATIENCE_S))
 
     def why_no_link(self) -> str:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load

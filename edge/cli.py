@@ -37,7 +37,10 @@ def run(
     data: Annotated[
         Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
     ] = None,
-    tracker: Annotated[str | None, typer.Option(help="`muster edge trackers` lists them.")] = None,
+    tracker: Annotated[
+        str | None,
+        typer.Option(help="`muster edge trackers` lists them; none: track on another machine."),
+    ] = None,
     calibration: Annotated[
         Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
     ] = None,

@@ -23,12 +23,12 @@ class StorageConfig:
 class EdgeConfig:
     """One agent, one wearable."""
 
-    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH
+    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
     connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447
     data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
-    tracker: str = "eskf"
+    tracker: str = "eskf"  # none: an agent elsewhere tracks, from the raw samples (bus:UNIT)
     calibration: Path | None = None  # from `muster edge calibrate`; none: sensors as they are
     position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0
     speed: Annotated[float, Meta(ge=0.01, le=1000.0)] = 1.0  # at which recordings are played

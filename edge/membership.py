@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from edge.config import EdgeConfig
-from shared.channels import validate_unit_id
+from shared.channels import tracker_id, validate_unit_id
 from shared.errors import ConfigError
 from shared.tls import TlsIdentity
 
@@ -16,46 +16,72 @@ _NEAREST_STATION = "tcp/127.0.0.1:7447"
 
 @dataclass(frozen=True, slots=True)
 class Membership:
-    unit_id: str
+    unit_id: str  # under which it speaks; a tracking agent's is its unit's with a suffix
     connect: tuple[str, ...]
     identity: TlsIdentity | None  # None: the link is not secured
 
 
 def membership(config: EdgeConfig) -> Membership:
     """Raises ConfigError where the settings contradict each other or leave something open."""
+    followed = bus_unit(config)
     if config.enrolment is None:
-        if not config.unit:
+        if followed is not None:
+            found = _tracking_openly(config, followed)
+        elif not config.unit:
             raise ConfigError(
                 "the unit has no name: give --unit, or --enrolment with the file that the station "
                 "made for it"
             )
-        found = Membership(
-            validate_unit_id(config.unit), config.connect or (_NEAREST_STATION,), None
-        )
+        else:
+            found = Membership(
+                validate_unit_id(config.unit), config.connect or (_NEAREST_STATION,), None
+            )
     else:
-        found = _enrolled(config)
+        found = _enrolled(config, followed)
     for endpoint in found.connect:
         _check_endpoint(endpoint, secured=found.identity is not None)
     return found
 
 
-def _enrolled(config: EdgeConfig) -> Membership:
+def bus_unit(config: EdgeConfig) -> str | None:
+    """The unit that this agent tracks for; None of one that has sensors of its own."""
+    scheme, colon, unit_id = config.source.partition(":")
+    return validate_unit_id(unit_id) if colon and scheme == "bus" else None
+
+
+def _tracking_openly(config: EdgeConfig, followed: str) -> Membership:
+    if config.unit not in ("", followed):
+        raise ConfigError(
+            f"an agent with bus:{followed} speaks for {followed}, not for {config.unit}; leave "
+            "the name out"
+        )
+    return Membership(tracker_id(followed), config.connect or (_NEAREST_STATION,), None)
+
+
+def _enrolled(config: EdgeConfig, followed: str | None) -> Membership:
     from shared.enrolment import Holder, read_enrolment  # noqa: PLC0415  # slow to load
 
     assert config.enrolment is not None
     enrolment = read_enrolment(config.enrolment)
-    if enrolment.holder is not Holder.UNIT:
+    wanted = Holder.UNIT if followed is None else Holder.TRACKER
+    if enrolment.holder is not wanted:
         raise ConfigError(
-            f"{config.enrolment} enrols the {enrolment.holder.value} {enrolment.name}, not a unit"
+            f"{config.enrolment} enrols the {enrolment.holder.value} {enrolment.name}, not a "
+            f"{wanted.value}, which --source {config.source} needs"
+        )
+    if followed not in (None, enrolment.name):
+        raise ConfigError(
+            f"{config.enrolment} is for tracking {enrolment.name}, not {followed}; take "
+            f"--source bus:{enrolment.name} or the right file"
         )
     if config.unit not in ("", enrolment.name):
         raise ConfigError(
             f"{config.enrolment} enrols unit {enrolment.name}, not {config.unit}; leave the name "
             "out or take the right file"
         )
-    return Membership(
-        validate_unit_id(enrolment.name), config.connect or enrolment.connect, enrolment.identity
-    )
+    name = validate_unit_id(enrolment.name)
+    speaks_as = name if followed is None else tracker_id(name)
+    return Membership(speaks_as, config.connect or enrolment.connect, enrolment.identity)
 
 
 def _check_endpoint(endpoint: str, *, secured: bool) -> None:

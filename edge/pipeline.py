@@ -14,6 +14,7 @@ from edge.calibration import Calibration, identity
 from edge.decimation import Decimator
 from edge.position_stream import PositionStream
 from edge.raw_stream import gps_fix
+from edge.raw_uplink import RawUplink
 from edge.samples import (
     CANCEL,
     MAYDAY,
@@ -34,6 +35,7 @@ from shared.envelope import Stamper
 from shared.messages import EventKind, Message, Status, Temperature, UnitDescription, UnitEvent
 
 LIVE = Timeline()
+_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +60,11 @@ class TrackerPipeline:
         position_rate_hz: float,
         *,
         mayday: bool = False,
+        raw_uplink: RawUplink | None = None,
     ) -> None:
-        """``mayday``: one was latched when the unit last came to a sudden end."""
+        """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
+        of a unit that sends its samples for somebody else to track with.
+        """
         self._identity = identity
         self._tracker = tracker
         self._stamper = stamper
@@ -67,7 +72,10 @@ class TrackerPipeline:
         self._monitor = ActivityMonitor()
         self._health = SensorHealth()
         self._status_times = _decimator(STATUS)
+        self._raw_uplink = raw_uplink
         self._description_times = _decimator(DESCRIPTION)
+        if raw_uplink is not None:
+            self._description_times.set_rate(_DESCRIPTION_FOR_TRACKER_HZ)
         self._gps_times = _decimator(GPS)
         self._temperature_times = _decimator(TEMPERATURE)
         self._battery: float | None = None
@@ -92,6 +100,8 @@ class TrackerPipeline:
         ]
         for sample in batch.others:
             messages += self._take_other(sample, timeline)
+        if self._raw_uplink is not None:
+            messages += self._raw_uplink.push(batch.imu, timeline)
         self._positions.take_pressure(batch.imu)
         messages += self._positions.push(track, timeline)
         if self._monitor.push(imu, track):
@@ -101,8 +111,11 @@ class TrackerPipeline:
         return tuple(messages)
 
     def finish(self, timeline: Timeline = LIVE) -> tuple[Message, ...]:
-        """The rows that the tracker still held back."""
-        return tuple(self._positions.push(self._tracker.finish(), timeline))
+        """The rows that the tracker still held back, or the samples that were not sent yet."""
+        rest: list[Message] = [*self._positions.push(self._tracker.finish(), timeline)]
+        if self._raw_uplink is not None:
+            rest += self._raw_uplink.finish(timeline)
+        return tuple(rest)
 
     def set_position_rate(self, rate_hz: float) -> None:
         self._positions.set_rate(rate_hz)

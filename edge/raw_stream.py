@@ -63,7 +63,7 @@ class RawStream:
         raw: list[Message] = []
         if len(imu):
             header = self._header(int(imu.t_ns[0]))
-            raw.append(_through_wire(_raw_imu(header, imu)))
+            raw.append(_through_wire(raw_imu(header, imu)))
         for sample in batch.others:
             message = _message_of(self._header(sample.t_ns), sample)
             if message is not None:
@@ -147,7 +147,8 @@ def gps_fix(header: Header, sample: GpsSample) -> GpsFix:
     )
 
 
-def _raw_imu(header: Header, imu: ImuBatch) -> RawImu:
+def raw_imu(header: Header, imu: ImuBatch) -> RawImu:
+    """Not rounded yet; the wire does that."""
     return RawImu(
         header=header,
         t_ns=imu.t_ns,

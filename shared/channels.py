@@ -35,7 +35,9 @@ from shared.messages import (
 
 ROOT = "muster/v1"
 EVERY_UNIT = "all"
+NO_TRACKER = "none"  # in a description: the unit's tracking agent computes its positions
 _BACKFILLED = "journal/"
+_TRACKER_OF = "@tracker"  # "@" is in no unit's id
 
 
 class Qos(Enum):
@@ -138,6 +140,16 @@ def is_backfilled(key: str) -> bool:
 def alive_key(unit_id: str) -> str:
     """The key of the liveliness token that a unit holds while it is linked."""
     return f"{ROOT}/{unit_id}/alive"
+
+
+def tracker_id(unit_id: str) -> str:
+    """The id under which a unit's tracking agent speaks; no unit can have it."""
+    return unit_id + _TRACKER_OF
+
+
+def tracked_unit(sender_id: str) -> str | None:
+    """The unit that the tracking agent with this id tracks for; None of any other sender."""
+    return sender_id.removesuffix(_TRACKER_OF) if sender_id.endswith(_TRACKER_OF) else None
 
 
 def validate_unit_id(unit_id: str) -> str:

@@ -33,6 +33,7 @@ class Holder(Enum):
     """What kind of participant a certificate is for."""
 
     UNIT = "unit"
+    TRACKER = "tracking agent"  # of the unit of its name
     OPERATOR = "operator"
     STATION = "station"
 

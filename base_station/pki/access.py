@@ -10,7 +10,16 @@ from collections.abc import Iterable
 from typing import Any
 
 from base_station.pki.registry import Entry, Registry
-from shared.channels import CHANNELS, EVERY_UNIT, ROOT, Direction, alive_key
+from shared.channels import (
+    CHANNELS,
+    DESCRIPTION,
+    EVERY_UNIT,
+    IMU,
+    ROOT,
+    Direction,
+    alive_key,
+    tracker_id,
+)
 from shared.enrolment import Holder
 
 _EVERYTHING = [f"{ROOT}/**"]
@@ -44,6 +53,7 @@ _RULES_OF_KIND = {
     Holder.STATION: (_rule("station", ["ingress", "egress"], _ALL_MESSAGES, _EVERYTHING),),
     # A unit learns what the station listens to, so that it sends that and nothing else.
     Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING),),
+    Holder.TRACKER: (_rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),),
     # An operator's program looks on: it hears everything and says nothing.
     Holder.OPERATOR: (
         _rule("operator-asks", ["ingress"], _INTERESTS, _EVERYTHING),
@@ -60,7 +70,7 @@ def access_control(registry: Registry) -> dict[str, Any]:
     for entry in registry.entries:
         if entry.revoked is not None:
             continue
-        own_rules = _unit_rules(entry) if entry.holder is Holder.UNIT else []
+        own_rules = _own_rules(entry)
         rules += own_rules
         allowed = [rule["id"] for rule in (*_RULES_OF_KIND[entry.holder], *own_rules)]
         subjects.append({"id": entry.common_name, "cert_common_names": [entry.common_name]})
@@ -74,8 +84,26 @@ def access_control(registry: Registry) -> dict[str, Any]:
     }
 
 
-def _unit_rules(entry: Entry) -> list[dict[str, Any]]:
-    unit_id = entry.name
+def _own_rules(entry: Entry) -> list[dict[str, Any]]:
+    """What only the holder of this one certificate may do."""
+    if entry.holder is Holder.UNIT:
+        return _unit_rules(entry, entry.name)
+    if entry.holder is Holder.TRACKER:
+        return [*_unit_rules(entry, tracker_id(entry.name)), *_tracking_rules(entry)]
+    return []
+
+
+def _tracking_rules(entry: Entry) -> list[dict[str, Any]]:
+    """It hears the raw stream of its unit, and speaks under its own key only."""
+    raw = [channel.key(entry.name) for channel in (IMU, DESCRIPTION)]
+    name = entry.common_name
+    return [
+        _rule(f"{name}-follows", ["ingress"], ["declare_subscriber"], raw),
+        _rule(f"{name}-hears", ["egress"], ["put"], raw),
+    ]
+
+
+def _unit_rules(entry: Entry, unit_id: str) -> list[dict[str, Any]]:
     subtree = f"{ROOT}/{unit_id}/**"
     commands = [c for c in CHANNELS if c.direction is Direction.DOWN]
     to_all = [channel.key(EVERY_UNIT) for channel in commands]

@@ -21,6 +21,9 @@ Days = Annotated[int, typer.Option(min=1, max=3650, help="How long the certifica
 Operator = Annotated[
     bool, typer.Option("--operator", help="An operator's program, which only listens.")
 ]
+Tracker = Annotated[
+    bool, typer.Option("--tracker", help="The agent that tracks for the unit of this name.")
+]
 Connect = Annotated[
     list[str] | None,
     typer.Option(help="tls/HOST:PORT to write into the enrolment, if not the station's own."),
@@ -62,9 +65,12 @@ def init(
 
 @app.command()
 def enroll(
-    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
+    name: Annotated[
+        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
+    ],
     data: Data = _DATA,
     operator: Operator = False,
+    tracker: Tracker = False,
     days: Days = 365,
     connect: Connect = None,
     out: Out = None,
@@ -74,18 +80,20 @@ def enroll(
     """Make a certificate for a unit, as one file or QR code to carry to it."""
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
 
-    target = _free_target(name, out, png, qr=qr)
-    enrolment = PkiFolder(data).enroll(
-        name, _holder(operator=operator), timedelta(days=days), connect or ()
-    )
+    holder = _holder(operator=operator, tracker=tracker)
+    target = _free_target(name, holder, out, png, qr=qr)
+    enrolment = PkiFolder(data).enroll(name, holder, timedelta(days=days), connect or ())
     _hand_over(enrolment, target, png, qr=qr)
 
 
 @app.command()
 def renew(
-    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
+    name: Annotated[
+        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
+    ],
     data: Data = _DATA,
     operator: Operator = False,
+    tracker: Tracker = False,
     days: Days = 365,
     connect: Connect = None,
     out: Out = None,
@@ -95,10 +103,9 @@ def renew(
     """Make a new certificate for somebody enrolled; the old one works until it ends."""
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
 
-    target = _free_target(name, out, png, qr=qr)
-    enrolment = PkiFolder(data).renew(
-        name, _holder(operator=operator), timedelta(days=days), connect or ()
-    )
+    holder = _holder(operator=operator, tracker=tracker)
+    target = _free_target(name, holder, out, png, qr=qr)
+    enrolment = PkiFolder(data).renew(name, holder, timedelta(days=days), connect or ())
     _hand_over(enrolment, target, png, qr=qr)
 
 
@@ -122,14 +129,17 @@ def renew_station(
 
 @app.command()
 def revoke(
-    name: Annotated[str, typer.Argument(help="The unit, or with --operator the person.")],
+    name: Annotated[
+        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
+    ],
     data: Data = _DATA,
     operator: Operator = False,
+    tracker: Tracker = False,
 ) -> None:
     """Shut a lost unit out: within seconds where a router runs."""
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
 
-    holder = _holder(operator=operator)
+    holder = _holder(operator=operator, tracker=tracker)
     PkiFolder(data).revoke(name, holder)
     typer.echo(f"{holder.value} {name} is shut out; a running router takes it up within seconds")
 
@@ -158,18 +168,25 @@ def _station_hosts(given: list[str] | None, port: int) -> tuple[list[str], str]:
     return hosts, tls_endpoint(hosts[0] if hosts else "127.0.0.1", port)
 
 
-def _holder(*, operator: bool) -> Holder:
+def _holder(*, operator: bool, tracker: bool) -> Holder:
+    if operator and tracker:
+        raise typer.BadParameter("choose --operator or --tracker, nobody is both")
+    if tracker:
+        return Holder.TRACKER
     return Holder.OPERATOR if operator else Holder.UNIT
 
 
-def _free_target(name: str, out: Path | None, png: Path | None, *, qr: bool) -> Path | None:
+def _free_target(
+    name: str, holder: Holder, out: Path | None, png: Path | None, *, qr: bool
+) -> Path | None:
     """Where the file goes; asked before a certificate is made that could not be handed over."""
-    from shared.channels import validate_unit_id  # noqa: PLC0415
+    from shared.channels import tracker_id, validate_unit_id  # noqa: PLC0415
     from shared.errors import ConfigError  # noqa: PLC0415
 
     validate_unit_id(name)
     only_code = out is None and (qr or png is not None)
-    target = None if only_code else out or Path(f"{name}.enrolment.toml")
+    file_name = tracker_id(name) if holder is Holder.TRACKER else name
+    target = None if only_code else out or Path(f"{file_name}.enrolment.toml")
     for path in (target, png):
         if path is not None and (path.exists() or not path.absolute().parent.is_dir()):
             problem = "is there already" if path.exists() else "is in no folder that exists"
@@ -188,6 +205,9 @@ def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, q
         )
         if enrolment.holder is Holder.UNIT:
             typer.echo(f"start the unit with `muster edge run --enrolment {target.name}`")
+        elif enrolment.holder is Holder.TRACKER:
+            source = f"--source bus:{enrolment.name}"
+            typer.echo(f"start it with `muster edge run --enrolment {target.name} {source}`")
     if png is not None:
         save_png(qr_code(enrolment), png)
         typer.echo(f"{png}: the enrolment as a QR code")

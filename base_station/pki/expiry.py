@@ -57,6 +57,8 @@ def _expiry_sentence(entry: Entry, now: datetime) -> str:
         who, command = "this station", "muster pki renew-station, then start the station again"
     elif entry.holder is Holder.OPERATOR:
         who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
+    elif entry.holder is Holder.TRACKER:
+        who, command = f"{entry.name}'s tracking agent", f"muster pki renew --tracker {entry.name}"
     else:
         who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
     if entry.valid_to <= now:

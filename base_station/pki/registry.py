@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from base_station.pki.files import write_atomically
+from shared.channels import tracker_id
 from shared.enrolment import Holder
 from shared.errors import ConfigError
 
@@ -48,10 +49,13 @@ class Registry(msgspec.Struct, frozen=True):
         """One that no certificate of this authority has had.
 
         A revoked certificate stays valid until it expires, so a name that is enrolled again
-        gets another common name: what was stolen gains nothing from it.  ``:`` and ``#`` are
-        in no unit's name.
+        gets another common name: what was stolen gains nothing from it.  ``:``, ``@`` and
+        ``#`` are in no unit's name.
         """
-        plain = name if holder is not Holder.OPERATOR else f"operator:{name}"
+        if holder is Holder.TRACKER:
+            plain = tracker_id(name)
+        else:
+            plain = f"operator:{name}" if holder is Holder.OPERATOR else name
         before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
         return plain if before == 0 else f"{plain}#{before + 1}"
 

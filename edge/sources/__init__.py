@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 from edge.sources.bench import BenchSource
 from edge.sources.black_box import BlackBoxSource
+from edge.sources.bus import BusSource
 from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
 from edge.sources.simulated import SimulatedSource
@@ -28,6 +29,7 @@ SOURCES: tuple[SourceKind, ...] = (
     SourceKind("simulated", SimulatedSource, "SCENARIO"),
     SourceKind("mcap", BlackBoxSource, "PATH"),
     SourceKind("bench", BenchSource, "SEED"),
+    SourceKind("bus", BusSource, "UNIT"),
 )
 
 

@@ -16,7 +16,17 @@ from cryptography import x509
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
-from shared.channels import COMMAND, EVERY_UNIT, POSITION, Qos, alive_key
+from shared.channels import (
+    COMMAND,
+    DESCRIPTION,
+    EVERY_UNIT,
+    GPS,
+    IMU,
+    POSITION,
+    Qos,
+    alive_key,
+    tracker_id,
+)
 from shared.enrolment import Enrolment, Holder
 from shared.errors import BusError
 from shared.tls import TlsIdentity
@@ -167,6 +177,46 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     unit.serve("muster/v1/bert/journal/**", lambda *_: [b"forged"])
     time.sleep(QUIET_S)
     assert list(site.station.query("muster/v1/bert/journal/range", b"", QUIET_S)) == []
+    token.close()
+
+
+def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(site: Site) -> None:
+    anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
+    enrolment = site.pki.enroll("anna", Holder.TRACKER)
+    site.open()
+    units = {"anna": site.unit(anna), "bert": site.unit(bert)}
+    ears = site.join(ClientEndpoint(enrolment.connect, enrolment.identity))
+    bystander = site.join(ClientEndpoint(bert.connect, bert.identity))
+    heard: list[str] = []
+    overheard: list[str] = []
+    for expression in ("muster/v1/**", IMU.key("anna"), DESCRIPTION.key("anna"), IMU.key("bert")):
+        ears.subscribe(expression, lambda key, _: heard.append(key))
+        bystander.subscribe(expression, lambda key, _: overheard.append(key))
+
+    def raw_is_heard() -> bool:
+        for name, unit in units.items():
+            for channel in (IMU, DESCRIPTION, GPS, POSITION):
+                unit.publish(channel.key(name), b"of " + name.encode(), Qos.LIVE)
+        return {IMU.key("anna"), DESCRIPTION.key("anna")} <= set(heard)
+
+    until(raw_is_heard, "the raw stream")
+    mouth = site.unit(enrolment)
+    publish_until_heard(site, mouth, tracker_id("anna"))
+    time.sleep(QUIET_S)
+    assert set(heard) == {IMU.key("anna"), DESCRIPTION.key("anna")}
+    assert IMU.key("anna") not in overheard
+    token = mouth.declare_alive(alive_key("anna"))
+    mouth.serve("muster/v1/anna/journal/**", lambda *_: [b"forged"])
+    for key in (POSITION.key("anna"), POSITION.key(tracker_id("bert")), COMMAND.key("anna")):
+        mouth.publish(key, b"forged", Qos.ALERT)
+    units["bert"].publish(POSITION.key(tracker_id("anna")), b"forged", Qos.ALERT)
+    units["anna"].publish(POSITION.key(tracker_id("anna")), b"forged", Qos.ALERT)
+    publish_until_heard(site, mouth, tracker_id("anna"))
+    publish_until_heard(site, units["bert"], "bert")
+    time.sleep(QUIET_S)
+    assert b"forged" not in {payload for _, payload in site.heard}
+    assert alive_key("anna") not in site.alive
+    assert list(site.station.query("muster/v1/anna/journal/range", b"", QUIET_S)) == []
     token.close()
 
 

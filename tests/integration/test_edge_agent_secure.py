@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,9 @@ from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from edge.warm_up import compile_trackers
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
-from shared.channels import HEARTBEAT, POSITION, ROOT, alive_key
+from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, tracker_id
+from shared.codec import decode
+from shared.enrolment import Holder
 
 RUN = "from edge.cli import app; app(prog_name='edge')"
 
@@ -41,7 +44,15 @@ class Site:
         self._address = address
         self._stack = stack
         self.positions: list[str] = []
+        self.boot_ids: set[int] = set()
         self.alive: list[bool] = []
+
+    def _note(self, key: str, payload: bytes) -> None:
+        self.positions.append(key)
+        self.boot_ids.add(decode(POSITION, payload).header.boot_id)
+
+    def has_heard_boots(self, count: int) -> bool:
+        return len(self.boot_ids) == count
 
     def open(self) -> None:
         identity = self.pki.station_identity()
@@ -50,8 +61,9 @@ class Site:
         self._stack.callback(router.close)
         self.bus = ZenohBus(ClientEndpoint((self._address,), identity))
         self._stack.callback(self.bus.close)
-        self.bus.subscribe(POSITION.key("*"), lambda key, _: self.positions.append(key))
+        self.bus.subscribe(POSITION.key("*"), self._note)
         self.bus.subscribe(HEARTBEAT.key("*"), lambda key, _: None)
+        self.bus.subscribe(IMU.key("*"), lambda key, _: None)
         self.bus.watch_alive(alive_key("*"), lambda _, alive: self.alive.append(alive))
 
 
@@ -158,3 +170,43 @@ def test_a_secure_station_needs_an_enrolment(start):
     agent = start("--unit", "u1", "--connect", "tls/127.0.0.1:1")
     assert agent.process.wait(30) != 0
     wait_until(lambda: "needs the unit's enrolment" in agent.said, "the reason")
+
+
+def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, start, tmp_path):
+    file = tmp_path / "u1@tracker.toml"
+    site.pki.enroll("u1", Holder.TRACKER).write(file)
+    site.open()
+    tracker = start("--enrolment", str(file), "--source", "bus:u1")
+    wait_until(lambda: "waiting for the raw stream of u1" in tracker.said, "the agent")
+    for boots in (1, 2):
+        unit = start("--enrolment", str(site.enrolment), "--tracker", "none")
+        wait_until(partial(site.has_heard_boots, boots), "positions of this run")
+        assert unit.end() == 0
+    assert "u1 has started again" in tracker.said
+    assert set(site.positions) == {POSITION.key(tracker_id("u1"))}
+    assert list(site.bus.query(f"{ROOT}/{tracker_id('u1')}/journal/index", b"", 10.0))
+    assert tracker.end() == 0
+
+
+@pytest.mark.parametrize(
+    ("holder", "source", "said"),
+    [
+        (Holder.UNIT, "bus:u2", "not a tracking agent, which --source bus:u2 needs"),
+        (Holder.TRACKER, "bus:u3", "is for tracking u2, not u3"),
+        (Holder.TRACKER, "simulated:straight", "not a unit"),
+    ],
+)
+def test_an_enrolment_is_good_for_what_it_was_made_for_only(
+    site, start, tmp_path, holder, source, said
+):
+    file = tmp_path / "u2.toml"
+    site.pki.enroll("u2", holder).write(file)
+    agent = start("--enrolment", str(file), "--source", source)
+    assert agent.process.wait(30) != 0
+    wait_until(lambda: said in " ".join(agent.said.split()), said)
+
+
+def test_an_agent_that_waits_for_its_unit_ends_when_told(start, port):
+    agent = start("--source", "bus:u1", "--connect", f"tcp/127.0.0.1:{port}")
+    wait_until(lambda: "trying again every second" in agent.said, "the agent")
+    assert agent.end() == 0

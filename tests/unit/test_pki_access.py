@@ -9,7 +9,7 @@ import pytest
 
 from base_station.pki.access import access_control
 from base_station.pki.registry import Entry, Registry
-from shared.channels import CHANNELS, COMMAND, EVERY_UNIT, Direction, alive_key
+from shared.channels import CHANNELS, COMMAND, EVERY_UNIT, Direction, alive_key, tracker_id
 from shared.enrolment import Holder
 
 THEN = datetime(2026, 3, 1, tzinfo=UTC)
@@ -31,6 +31,7 @@ def rules() -> dict[str, Any]:
                 entry(Holder.UNIT, "anna", "anna", revoked=THEN),
                 entry(Holder.UNIT, "anna", "anna#2"),
                 entry(Holder.UNIT, "bert", "bert"),
+                entry(Holder.TRACKER, "bert", "bert@tracker"),
                 entry(Holder.OPERATOR, "chief", "operator:chief"),
             ),
         )
@@ -82,6 +83,19 @@ def test_a_unit_reads_its_own_and_what_is_said_to_all(rules: dict[str, Any]) -> 
     readable = {"muster/v1/bert/**", COMMAND.key(EVERY_UNIT)}
     assert allowed(rules, "bert", "ingress", "declare_subscriber") == readable
     assert allowed(rules, "bert", "egress", "put") == readable
+
+
+def test_a_tracking_agent_is_a_unit_of_its_own_that_hears_the_raw_stream_of_another(
+    rules: dict[str, Any],
+) -> None:
+    name = tracker_id("bert")
+    upwards = {c.key(name) for c in CHANNELS if c.direction is Direction.UP}
+    assert allowed(rules, name, "ingress", "put") == upwards
+    assert allowed(rules, name, "ingress", "liveliness_token") == {alive_key(name)}
+    raw = {"muster/v1/bert/up/imu", "muster/v1/bert/up/description"}
+    readable = {f"muster/v1/{name}/**", COMMAND.key(EVERY_UNIT)} | raw
+    assert allowed(rules, name, "ingress", "declare_subscriber") == readable
+    assert allowed(rules, name, "egress", "put") == readable
 
 
 def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:

@@ -1,0 +1,119 @@
+"""Hears the raw stream of another unit on the bus, for the agent that tracks for it.
+
+One thread takes; a thread of the bus puts in.  What comes faster than it is taken is dropped,
+newest first, and counted: the tracker sees a hole in time and says so.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable
+from contextlib import ExitStack
+from threading import Condition, Event
+
+from edge.raw_stream import sensor_of
+from edge.samples import SensorDescription
+from shared.bus import Bus
+from shared.channels import DESCRIPTION, IMU, NO_TRACKER
+from shared.codec import decode
+from shared.errors import BusError, WireError
+from shared.messages import RawImu, UnitDescription
+
+logger = logging.getLogger(__name__)
+
+_KEPT = 4096  # messages: some minutes
+_RETRY_S = 1.0
+_LOOK_S = 0.1
+
+
+class UnitListener:
+    """``open`` it once; ``take`` gives the messages in the order in which they came."""
+
+    def __init__(self, unit_id: str, open_bus: Callable[[], Bus]) -> None:
+        self.unit_id = unit_id
+        self._open_bus = open_bus
+        self._changed = Condition()
+        self._waiting: deque[RawImu] = deque()
+        self._descriptions: dict[int, UnitDescription] = {}  # by boot; the newest few
+        self._declared = ExitStack()
+        self.dropped = 0  # messages that came faster than they were taken
+        self.not_understood = 0
+
+    def open(self, stop: Event) -> bool:
+        """Try until it can be done; False when told to stop before."""
+        told = False
+        while not stop.is_set():
+            try:
+                bus = self._open_bus()
+            except BusError as error:
+                if not told:
+                    logger.warning("%s; trying again every second", error)
+                told = True
+                stop.wait(_RETRY_S)
+                continue
+            self._declared.callback(bus.close)
+            for channel, handler in ((DESCRIPTION, self._describe), (IMU, self._put)):
+                self._declared.callback(bus.subscribe(channel.key(self.unit_id), handler).close)
+            return True
+        return False
+
+    def close(self) -> None:
+        self._declared.close()
+
+    def next_boot(self, stop: Event) -> tuple[int, SensorDescription] | None:
+        """Wait for samples of a run of the unit whose sensor is known; None when told to stop."""
+        logger.info("waiting for the raw stream of %s", self.unit_id)
+        while not stop.is_set():
+            with self._changed:
+                self._changed.wait_for(self._is_described, timeout=_LOOK_S)
+                if self._is_described():
+                    boot_id = self._waiting[0].header.boot_id
+                    return boot_id, sensor_of(self._descriptions[boot_id])
+        return None
+
+    def take(self, boot_id: int, timeout_s: float) -> RawImu | None:
+        """The next message of this boot; None when there is none in time, or of another boot."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting, timeout=timeout_s)
+            if not self._waiting or self._waiting[0].header.boot_id != boot_id:
+                return None
+            return self._waiting.popleft()
+
+    def has_restarted(self, boot_id: int) -> bool:
+        """What comes next is of another boot than this."""
+        with self._changed:
+            return bool(self._waiting) and self._waiting[0].header.boot_id != boot_id
+
+    def _is_described(self) -> bool:
+        return bool(self._waiting) and self._waiting[0].header.boot_id in self._descriptions
+
+    def _describe(self, _: str, payload: bytes) -> None:
+        try:
+            description = decode(DESCRIPTION, payload)
+        except WireError:
+            self.not_understood += 1
+            return
+        assert isinstance(description, UnitDescription)
+        if description.tracker != NO_TRACKER:
+            logger.warning("%s tracks itself; nothing is tracked for it", self.unit_id)
+            return
+        with self._changed:
+            self._descriptions[description.header.boot_id] = description
+            for oldest in list(self._descriptions)[:-4]:
+                del self._descriptions[oldest]
+            self._changed.notify_all()
+
+    def _put(self, _: str, payload: bytes) -> None:
+        try:
+            raw = decode(IMU, payload)
+        except WireError:
+            self.not_understood += 1
+            return
+        assert isinstance(raw, RawImu)
+        with self._changed:
+            if len(self._waiting) >= _KEPT:
+                self.dropped += 1
+                return
+            self._waiting.append(raw)
+            self._changed.notify_all()

@@ -1,0 +1,175 @@
+"""A unit that sends its raw samples, and an agent that tracks for it, over a bus in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from threading import Event
+
+import msgspec
+import pytest
+
+from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.raw_stream import RawStream, batch_of
+from edge.raw_uplink import RawUplink
+from edge.samples import SensorBatch
+from edge.sources import open_source
+from edge.sources.bus import BusSource
+from edge.tracker import make_tracker
+from edge.tracker.none import NoTracker
+from edge.unit_listener import UnitListener
+from shared.bus_memory import MemoryRouter
+from shared.channels import IMU, NO_TRACKER, channel_of, tracker_id
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.messages import GpsFix, Message, Position, RawImu, Status, Temperature
+from shared.quality import Reason
+
+U = "FF-01"
+WALK = "simulated:stairs?seed=3"
+
+
+def batches(one_by_one: bool = False) -> Iterator[SensorBatch]:
+    """What a unit's pipeline gets: rounded as the wire does."""
+    raw = RawStream(U, 1)
+    for batch in open_source(WALK).batches():
+        if not one_by_one:
+            yield batch_of(raw.messages(batch))
+            continue
+        for row in range(len(batch.imu)):
+            others = batch.others if row == 0 else ()
+            part = SensorBatch(batch.imu.part(slice(row, row + 1)), others)
+            yield batch_of(raw.messages(part))
+
+
+def run(pipeline: TrackerPipeline, from_: Iterable[SensorBatch]) -> list[Message]:
+    messages = list(pipeline.start())
+    for batch in from_:
+        messages += pipeline.step(batch)
+    return [*messages, *pipeline.finish()]
+
+
+def pipeline(unit_id: str, tracker: str, boot_id: int = 7) -> TrackerPipeline:
+    sensor = open_source(WALK).description
+    stamper = Stamper(unit_id, boot_id, ManualClock())
+    weak = tracker == NO_TRACKER
+    return TrackerPipeline(
+        UnitIdentity("1", WALK, tracker, sensor),
+        NoTracker() if weak else make_tracker(tracker, sensor),
+        stamper,
+        5.0,
+        raw_uplink=RawUplink(stamper) if weak else None,
+    )
+
+
+class Air:
+    """The bus between the unit and its tracking agent."""
+
+    def __init__(self) -> None:
+        router = MemoryRouter()
+        self._unit = router.attach_unit()
+        self.listener = UnitListener(U, router.attach_station)
+        assert self.listener.open(Event())
+
+    def send(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            channel = channel_of(message)
+            self._unit.publish(channel.key(U), encode(message), channel.qos)
+
+    def track(self) -> list[Position]:
+        """What the agent computes for one run of the unit that has ended."""
+        source = BusSource(U)
+        assert source.follow(self.listener, Event())
+        said = run(pipeline(tracker_id(U), "eskf", boot_id=9), source.batches())
+        return positions(said)
+
+
+def positions(messages: Iterable[Message]) -> list[Position]:
+    return [message for message in messages if isinstance(message, Position)]
+
+
+def contents(found: Iterable[Position]) -> list[tuple[object, ...]]:
+    """All but who says it, to the last bit."""
+    return [(p.header.t_mono_ns, *msgspec.structs.astuple(p)[1:]) for p in found]
+
+
+@pytest.fixture
+def air() -> Air:
+    return Air()
+
+
+def weak_unit(one_by_one: bool = False, boot_id: int = 7) -> list[Message]:
+    return run(pipeline(U, NO_TRACKER, boot_id), batches(one_by_one))
+
+
+def end_of_run() -> list[Message]:
+    """The unit starts again, which ends the run before."""
+    return weak_unit(boot_id=8)[:40]
+
+
+def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate() -> None:
+    said = weak_unit(one_by_one=True)
+    itself = run(pipeline(U, "eskf"), batches())
+    raw = [message for message in said if isinstance(message, RawImu)]
+    assert not positions(said)
+    for kind in (Temperature, GpsFix, Status):
+        count = sum(isinstance(message, kind) for message in itself)
+        assert sum(isinstance(message, kind) for message in said) == count
+    duration_s = (raw[-1].t_ns[-1] - raw[0].t_ns[0]) / NS_PER_S
+    assert len(raw) / duration_s == pytest.approx(IMU.rate_hz, rel=0.05)
+    seqs = [message.header.seq for message in said]
+    assert seqs == list(range(1, len(said) + 1))
+
+
+@pytest.mark.parametrize("one_by_one", [False, True])
+def test_the_positions_are_those_of_a_unit_that_tracks_itself(air: Air, one_by_one: bool) -> None:
+    air.send(weak_unit(one_by_one))
+    air.send(end_of_run())
+    itself = positions(run(pipeline(U, "eskf"), batches()))
+    assert len(itself) > 50
+    assert contents(air.track()) == contents(itself)
+
+
+def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
+    said = weak_unit()
+    raw = [message for message in said if isinstance(message, RawImu)]
+    lost = raw[200:240]
+    air.send(message for message in said if not any(message is one for one in lost))
+    air.send(end_of_run())
+    found = air.track()
+    doubted = [p for p in found if Reason.SAMPLE_GAP in p.reasons]
+    assert doubted
+    assert all(p.header.t_mono_ns >= lost[0].header.t_mono_ns - NS_PER_S for p in doubted)
+
+
+def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:
+    said = weak_unit()
+    raw = [message for message in said if isinstance(message, RawImu)]
+    for message in said:
+        air.send((message,))
+        if message is raw[50]:
+            air.send((raw[50], raw[20]))
+    air.send(end_of_run())
+    itself = positions(run(pipeline(U, "eskf"), batches()))
+    assert contents(air.track()) == contents(itself)
+
+
+def test_when_the_unit_starts_again_the_path_begins_anew_and_nothing_is_missed(air: Air) -> None:
+    second = weak_unit(boot_id=8)
+    air.send(weak_unit())
+    air.send(second[:40])
+    first = air.track()
+    air.send(second[40:])
+    air.send(weak_unit(boot_id=9)[:40])
+    assert contents(air.track()) == contents(first)
+
+
+def test_raw_samples_wait_for_the_description(air: Air) -> None:
+    said = weak_unit()
+    air.send(message for message in said if isinstance(message, RawImu))
+    stop = Event()
+    stop.set()
+    assert not BusSource(U).follow(air.listener, stop)
+    air.send(said[:2])
+    air.send(end_of_run())
+    assert len(air.track()) > 50

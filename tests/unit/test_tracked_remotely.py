@@ -1,0 +1,199 @@
+"""A unit whose positions an agent elsewhere computes, as the station sees it."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.alarms import ALARMS
+from base_station.events import TrailFilled, event_of
+from base_station.fusion import FUSERS
+from base_station.pipeline import StationPipeline, read_checkpoint
+from base_station.projector import Projector
+from shared.channels import NO_TRACKER, POSITION, backfilled_key, tracker_id
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.messages import EventKind, Header, UnitDescription
+from tests.station_script import Script, new_pipeline
+
+U = "FF-01"
+AGENT = tracker_id(U)
+AGENT_BOOT = 40
+AGENT_CLOCK_S = 5_000.0  # of another machine, which has been on for longer
+
+
+class Remote(Script):
+    """The script with an agent that tracks for U, on a machine with a clock of its own."""
+
+    def __init__(self, tracker: str = NO_TRACKER) -> None:
+        super().__init__()
+        self.boot_ids[AGENT] = AGENT_BOOT
+        self.register(U)
+        self.describe(tracker)
+
+    def header(self, unit_id: str, captured_s: float | None = None) -> Header:
+        header = super().header(unit_id, captured_s)
+        if unit_id != AGENT:
+            return header
+        ahead_ns = round((AGENT_CLOCK_S - 1000.0) * NS_PER_S)
+        return msgspec.structs.replace(header, t_mono_ns=header.t_mono_ns + ahead_ns)
+
+    def describe(self, tracker: str, unit_id: str = U) -> None:
+        self.say(
+            UnitDescription(
+                header=self.header(unit_id),
+                software_version="1",
+                source="test",
+                sensor_name="test",
+                rate_hz=100.0,
+                accel_full_scale_mps2=None,
+                gyro_full_scale_radps=None,
+                tracker=tracker,
+                calibration="",
+                has_magnetometer=False,
+                has_barometer=False,
+                has_gps=True,
+            )
+        )
+
+    @property
+    def unit(self):
+        return self.pipeline.state.units[U]
+
+
+@pytest.fixture
+def script() -> Remote:
+    return Remote()
+
+
+def walk(script: Remote, duration_s: int = 10) -> None:
+    start_m = script.now_s
+
+    def step() -> None:
+        script.status(U)
+        way_m = script.now_s - start_m
+        script.position(AGENT, way_m, 0.0, distance_m=way_m)
+
+    script.wait(duration_s, step)
+
+
+def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remote) -> None:
+    walk(script)
+    itself = Remote(tracker="eskf")
+    start_m = itself.now_s
+    itself.wait(
+        10,
+        lambda: (
+            itself.status(U),
+            itself.position(U, itself.now_s - start_m, 0.0, distance_m=itself.now_s - start_m),
+        ),
+    )
+    assert script.unit.trail == itself.unit.trail
+    assert len(script.unit.trail) == 10
+    assert {fused.unit_id for fused in script.fused} == {U}
+    assert set(script.pipeline.state.units) == {U}, "the agent is no unit"
+
+
+def test_the_agent_is_no_sign_of_life_of_the_unit(script: Remote) -> None:
+    walk(script)
+    heard_ns = script.unit.heard_ns
+    script.wait(40, lambda: script.position(AGENT, 10.0, 0.0))
+    assert script.unit.heard_ns == heard_ns
+    assert script.unit.link == "lost"
+    assert any(alarm.unit_id == U for alarm in script.alarms)
+
+
+def test_nobody_gives_positions_for_a_unit_that_tracks_itself() -> None:
+    script = Remote(tracker="eskf")
+    script.position(U, 1.0, 2.0)
+    script.position(AGENT, 50.0, 50.0)
+    assert script.unit.position is not None
+    assert script.unit.position.north_m == 1.0
+    assert len(script.fused) == 1
+
+
+def test_what_else_the_agent_says_of_itself_is_not_taken_for_the_units(script: Remote) -> None:
+    walk(script)
+    before = msgspec.structs.replace(script.unit, tracker=None)
+    script.status(AGENT, battery=0.1, mayday=True)
+    script.temperature(AGENT, 300.0)
+    script.event(AGENT, EventKind.STOPPED)
+    script.event(AGENT, EventKind.MAYDAY)
+    script.gps(AGENT, 1.0, 1.0)
+    assert msgspec.structs.replace(script.unit, tracker=None) == before
+
+
+def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:
+    script.event(AGENT, EventKind.FALL)
+    assert script.unit.fall_ns == script.t_ns
+
+
+def test_fixes_of_the_unit_meet_the_path_at_their_time_on_the_agents_clock(
+    script: Remote,
+) -> None:
+    walk(script)
+    script.gps(U, 49.0, 8.0)
+    script.wait(1, lambda: script.position(AGENT, 11.0, 0.0, distance_m=11.0))
+    itself = Remote(tracker="eskf")
+    start_m = itself.now_s
+    itself.wait(
+        10,
+        lambda: (
+            itself.status(U),
+            itself.position(U, itself.now_s - start_m, 0.0, distance_m=itself.now_s - start_m),
+        ),
+    )
+    itself.gps(U, 49.0, 8.0)
+    itself.wait(1, lambda: itself.position(U, 11.0, 0.0, distance_m=11.0))
+    assert script.fused[-1].since_gps_s is not None
+    assert script.fused[-1].since_gps_s == pytest.approx(itself.fused[-1].since_gps_s)
+    assert script.fused[-1].north_m == pytest.approx(itself.fused[-1].north_m)
+
+
+def test_positions_that_came_late_fill_the_trail_at_their_time(script: Remote) -> None:
+    walk(script, 5)
+    walked = script.header(AGENT)
+    script.wait(10, lambda: script.status(U))
+    walk(script, 5)
+    late = Script.said(script, type(script.unit.position))[-1]
+    header = msgspec.structs.replace(walked, t_mono_ns=walked.t_mono_ns + 5 * NS_PER_S)
+    payload = encode(msgspec.structs.replace(late, header=header, north_m=8.0))
+    outputs = script.record(backfilled_key(AGENT, POSITION.suffix), payload)
+    assert any(isinstance(one, TrailFilled) and one.unit_id == U for one in outputs)
+    assert [step.t_ns for step in script.unit.trail] == sorted(s.t_ns for s in script.unit.trail)
+
+
+def test_a_second_copy_changes_nothing(script: Remote) -> None:
+    walk(script)
+    fused = len(script.fused)
+    _, key, payload = next(r for r in reversed(script.records) if r[1] == POSITION.key(AGENT))
+    assert script.record(key, payload) == []
+    assert len(script.fused) == fused
+
+
+def test_the_log_replays_the_same_also_from_a_checkpoint(script: Remote) -> None:
+    walk(script)
+    saved = script.pipeline.checkpoint()
+    half = len(script.records)
+    walk(script)
+    again = new_pipeline()
+    outputs = [output for record in script.records for output in again.step(event_of(*record))]
+    assert outputs == script.outputs
+    resumed = StationPipeline(ALARMS, FUSERS[0], read_checkpoint(saved))
+    for record in script.records[half:]:
+        resumed.step(event_of(*record))
+    assert resumed.checkpoint() == script.pipeline.checkpoint()
+
+
+def test_the_store_hears_of_the_unit_and_of_no_agent(script: Remote) -> None:
+    walk(script, 1)
+    projector = Projector()
+    for record in script.records:
+        event = event_of(*record)
+        projector.note(event, script.outputs)
+    script.describe("eskf", AGENT)
+    projector.note(event_of(*script.records[-1]), script.outputs)
+    projection = projector.take(script.t_ns)
+    assert projection is not None
+    assert dict(projection.heard).keys() == {U}
+    assert {one.header.unit_id for one in projection.descriptions} == {U}
