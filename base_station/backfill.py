@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from threading import Condition, Thread
 from typing import NamedTuple
 
+from base_station.pace import Pace
 from shared.bus import Bus
 from shared.channels import ROOT, backfilled_key
 from shared.clock import NS_PER_S, Clock
@@ -25,8 +26,7 @@ logger = logging.getLogger(__name__)
 _INDEX_EVERY_NS = 30 * NS_PER_S
 _SETTLED_REPORTS = 2  # a number missing in so many reports in a row is lost, not under way
 _TIMEOUT_S = 10.0
-_MOST_PER_QUERY = 500  # so that a thin link answers within the time
-_REPLY_BYTES = 8192  # what a thin link carries without holding up an alert
+_REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
 
 Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
 
@@ -112,7 +112,9 @@ class Backfill:
         while first <= gap.last:
             asked_from = first
             question = {"epoch": gap.boot_id, "from": first, "to": gap.last}
-            limits = {"max": _MOST_PER_QUERY, "bytes": _REPLY_BYTES}
+            total = journal.pace.answer_bytes
+            limits = {"total": total, "bytes": min(total, _REPLY_BYTES)}
+            asked_ns = self._clock.monotonic_ns()
             for reply in self._ask(gap.unit_id, "range", question | limits):
                 chunk = JournalChunk.from_bytes(reply)
                 for entry in chunk.entries:
@@ -120,8 +122,12 @@ class Backfill:
                 self.fetched += len(chunk.entries)
                 self.gone += journal.account(chunk)
                 first = chunk.to_seq + 1
-            if first == asked_from or self._closed:
+            if first == asked_from:
+                journal.pace.note_nothing()
                 return  # the unit has gone again; what is still missing stands in a later report
+            if self._closed:
+                return
+            journal.pace.note(self._clock.monotonic_ns() - asked_ns)
 
     def _ask(self, unit_id: str, what: str, parameters: Mapping[str, int]) -> Iterator[bytes]:
         question = ";".join(f"{name}={value}" for name, value in parameters.items())
@@ -133,6 +139,7 @@ class _Journal:
     """What is known of one unit's journal."""
 
     def __init__(self, unit_id: str) -> None:
+        self.pace = Pace()
         self._unit_id = unit_id
         self._index = JournalIndex(())
         self._asked_ns: int | None = None

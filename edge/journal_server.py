@@ -14,6 +14,7 @@ logger = logging.getLogger(__name__)
 
 _MAX_MESSAGES = 10_000
 _REPLY_BYTES = 16_384
+_TOTAL_BYTES = 1_048_576
 _ENTRY_OVERHEAD_BYTES = 24
 
 
@@ -54,15 +55,19 @@ class JournalServer:
             last = min(last, self._spool.last_seq)  # what is not written yet is not lost
         most = int(values.get("max", _MAX_MESSAGES))
         reply_bytes = int(values.get("bytes", _REPLY_BYTES))
+        bytes_left = int(values.get("total", _TOTAL_BYTES))
         entries: list[JournalEntry] = []
         size = 0
         for count, entry in enumerate(self._spool.read(boot_id, first, last), start=1):
             entries.append(entry)
-            size += len(entry.payload) + _ENTRY_OVERHEAD_BYTES
-            if size >= reply_bytes or count >= most:
+            entry_bytes = len(entry.payload) + _ENTRY_OVERHEAD_BYTES
+            size += entry_bytes
+            bytes_left -= entry_bytes
+            ends = count >= most or bytes_left <= 0
+            if ends or size >= reply_bytes:
                 yield JournalChunk(boot_id, first, entry.seq, tuple(entries)).to_bytes()
                 first, entries, size = entry.seq + 1, [], 0
-            if count >= most:
+            if ends:
                 return
         if first <= last:
             yield JournalChunk(boot_id, first, last, tuple(entries)).to_bytes()

@@ -48,7 +48,7 @@ class Fault(NamedTuple):
     link: Conditions  # both ways
     seconds: float
     after: Conditions = CLEAN  # from then on, until all that was said has arrived
-    slow: bool = False  # takes minutes to catch up
+    slow: bool = False  # takes a minute and more with the catching up
 
 
 THIN = Conditions(delay_s=0.05, rate_bps=20_000.0)
@@ -56,9 +56,9 @@ FAULTS = (
     Fault("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
     Fault("outage of 1 s", DARK, 1.0),
     Fault("outage of 30 s", DARK, 30.0),
-    Fault("outage of 600 s", DARK, 600.0),
-    Fault("20 kbit/s", THIN, 15.0, after=THIN),
+    Fault("20 kbit/s", THIN, 10.0, after=THIN),
     Fault("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, slow=True),
+    Fault("outage of 600 s", DARK, 600.0, slow=True),
 )
 
 
@@ -82,7 +82,7 @@ class FaultReport:
 
 def bench_faults(
     longest: Annotated[
-        float, typer.Option(help="Leave out faults of more than so many seconds.")
+        float, typer.Option(min=1.0, help="Leave out faults of more than so many seconds.")
     ] = 600.0,
     patience: Annotated[
         float, typer.Option(help="How long to wait, after a fault, for the rest to arrive.")

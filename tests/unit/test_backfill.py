@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from base_station.backfill import Backfill, Held
+from base_station.pace import LEAST_BYTES
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
 from shared.bus_memory import MemoryRouter
@@ -27,7 +28,13 @@ class Bench:
         self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
         self.spool.append([Journaled(n, POSITION, n, b"%d" % n) for n in numbers])
         server = JournalServer("FF-01", self.spool)
-        self.unit_bus.serve(server.key_expression, server.replies)
+        self.questions: list[str] = []
+
+        def replies(key: str, parameters: str, payload: bytes):
+            self.questions.append(parameters)
+            return server.replies(key, parameters, payload)
+
+        self.unit_bus.serve(server.key_expression, replies)
         self.delivered: list[tuple[str, bytes]] = []
         self.backfill = Backfill(
             router.attach_station(), lambda *record: self.delivered.append(record), ManualClock()
@@ -100,3 +107,17 @@ def test_numbers_that_no_journal_has_are_counted_and_not_asked_for_again(tmp_pat
     until(lambda: bench.spool.pending == 0)
     bench.backfill.close()
     bench.spool.close()
+
+
+def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(tmp_path):
+    bench = Bench(tmp_path, range(1, 301))
+    for _ in range(4):
+        bench.report(Run(1, 1))
+    until(lambda: len(bench.delivered) == 299)
+    bench.backfill.close()
+    bench.spool.close()
+    asked = [dict(pair.split("=") for pair in one.split(";")) for one in bench.questions if one]
+    totals = [int(one["total"]) for one in asked if "total" in one]
+    assert totals == [LEAST_BYTES * 2**number for number in range(len(totals))]
+    assert len(totals) > 1
+    assert bench.numbers == list(range(2, 301))

@@ -37,6 +37,13 @@ def test_chunks_follow_on_each_other_and_hold_everything(spool):
     assert kept == [seq for seq in range(1, 101) if seq != 50]
 
 
+def test_total_bounds_the_answer_but_lets_one_message_through(spool):
+    answers = chunks(spool, "epoch=9;from=1;to=100;bytes=500;total=1000")
+    assert [(chunk.from_seq, chunk.to_seq) for chunk in answers] == [(1, 5), (6, 9)]
+    (chunk,) = chunks(spool, "epoch=9;from=1;to=100;total=1")
+    assert (chunk.from_seq, chunk.to_seq) == (1, 1)
+
+
 def test_max_bounds_the_answer_and_its_end_says_where_to_go_on(spool):
     (chunk,) = chunks(spool, "epoch=9;from=41;to=100;max=10")
     assert [entry.seq for entry in chunk.entries] == [41, 42, 43, 44, 45, 46, 47, 48, 49, 51]

@@ -1,0 +1,32 @@
+"""How much to ask a unit for at a time, so that the answer never fills a thin link.
+
+Zenoh closes a link on which an answer waits for five seconds to be sent, and a queue of bulk data
+lets the keep-alives miss the lease of three: asked for too much, a thin link goes down before it
+has carried anything, again and again.  What it can carry nobody knows beforehand; so it is asked
+for little first, and for more as long as answers come quickly.
+"""
+
+from __future__ import annotations
+
+from shared.clock import NS_PER_S
+
+LEAST_BYTES, MOST_BYTES = 1024, 65_536
+_WANTED_NS = NS_PER_S // 2  # of one answer
+
+
+class Pace:
+    """Of one unit."""
+
+    def __init__(self) -> None:
+        self.answer_bytes = LEAST_BYTES
+
+    def note(self, took_ns: int) -> None:
+        """The last answer took this long."""
+        doubled, halved = 2 * self.answer_bytes, self.answer_bytes // 2
+        wanted = self.answer_bytes * _WANTED_NS // max(took_ns, 1)
+        fitting = max(halved, min(wanted, doubled))
+        self.answer_bytes = max(LEAST_BYTES, min(fitting, MOST_BYTES))
+
+    def note_nothing(self) -> None:
+        """No answer came at all."""
+        self.answer_bytes = LEAST_BYTES
