@@ -92,11 +92,14 @@ class _Demo:
             )
             self._screen.print("Ctrl-C ends everything." if for_s is None else "")
             self._watch(console, stop, for_s)
-            self._summarise(console)
+            heard = self._summarise(console)
             console.close_incident(incident)
         self._screen.print(
             f"To replay it: ./muster base replay {incident} --data {self._station_data}"
         )
+        missing = sorted({responder.unit for responder in self._crew.responder}.difference(heard))
+        if missing and not stop.is_set():
+            raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
 
     def _enrol_units(self) -> list[Path]:
         """Make the station's authority and, for each unit, the file that is carried to it."""
@@ -164,9 +167,9 @@ class _Demo:
             f"{health['messages_per_s']:.0f}/s, {len(alarms)} open alarms   "
         )
 
-    def _summarise(self, console: ConsoleClient) -> None:
+    def _summarise(self, console: ConsoleClient) -> tuple[str, ...]:
+        """Say how it went; the units that were heard."""
         health, heard = console.health(), console.units_heard()
-        expected = {responder.unit for responder in self._crew.responder}
         self._screen.print(
             f"{health['messages']} messages of {len(heard)} units, "
             f"{health['undecodable']} of them not understood"
@@ -175,8 +178,7 @@ class _Demo:
             self._screen.print(f"  {alarm['unit_id'] or 'station'}: {alarm['text']}")
         for problem in health["problems"]:
             self._screen.print(f"  station: {problem}")
-        if missing := sorted(expected - set(heard)):
-            raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
+        return heard
 
 
 def _recorded_walk() -> Path | None:

@@ -1,0 +1,64 @@
+"""The demo as a script runs it, and as a person ends it."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.station_command import free_port
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def start_demo(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    ports = ("--http-port", str(free_port()), "--bus-port", str(free_port()))
+    flags = ("--headless", "--data", str(folder), *ports, *arguments)
+    return subprocess.Popen(
+        [sys.executable, "-m", "shared.command_line", "demo", *flags],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def processes_of(folder: Path) -> list[str]:
+    """Command lines of what still runs on the demo's folder."""
+    found = []
+    for process in psutil.process_iter(["cmdline"]):
+        words = process.info["cmdline"] or []
+        if any(str(folder) in word for word in words):
+            found.append(" ".join(words))
+    return found
+
+
+def test_in_a_script_it_hears_five_units_and_leaves_nothing_running(tmp_path):
+    demo = start_demo(tmp_path, "--for", "12")
+    output, _ = demo.communicate(timeout=240)
+    assert demo.returncode == 0, output
+    heard = re.search(r"(\d+) messages of 5 units, 0 of them not understood", output)
+    assert heard is not None, output
+    assert int(heard[1]) > 100
+    assert "muster base replay" in output
+    assert processes_of(tmp_path) == []
+
+
+def test_ctrl_c_ends_everything(tmp_path):
+    demo = start_demo(tmp_path)
+    assert demo.stdout is not None
+    for line in demo.stdout:
+        if "password" in line:
+            break
+    deadline = time.monotonic() + 60.0
+    while "FF-05" not in str(processes_of(tmp_path)) and time.monotonic() < deadline:
+        time.sleep(0.2)
+    demo.send_signal(signal.SIGINT)
+    output, _ = demo.communicate(timeout=60)
+    assert demo.returncode == 0, output
+    assert processes_of(tmp_path) == []
