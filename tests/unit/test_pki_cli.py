@@ -65,6 +65,28 @@ def test_enroll_names_the_file_after_the_unit(
     assert read_enrolment(tmp_path / "FF-01.enrolment.toml").name == "FF-01"
 
 
+def test_a_tracking_agent_is_enrolled_beside_its_unit_and_ended_without_it(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    run("enroll", "FF-01", "--data", data)
+    said = run("enroll", "FF-01", "--tracker", "--data", data, "--days", "2")
+    file = "FF-01@tracker.enrolment.toml"
+    assert f"muster edge run --enrolment {file} --source bus:FF-01" in said
+    enrolment = read_enrolment(tmp_path / file)
+    assert (enrolment.holder, enrolment.name) == (Holder.TRACKER, "FF-01")
+    assert "muster pki renew --tracker FF-01" in run("show", "--data", data)
+    run("revoke", "FF-01", "--tracker", "--data", data)
+    registry = PkiFolder(data).registry()
+    assert registry.current(Holder.TRACKER, "FF-01") is None
+    assert registry.current(Holder.UNIT, "FF-01") is not None
+
+
+def test_nobody_is_enrolled_under_a_name_like_a_tracking_agents(data: Path) -> None:
+    with pytest.raises(ConfigError, match="cannot be used"):
+        run("enroll", "FF-01@tracker", "--data", data)
+
+
 def test_enroll_shows_a_code_and_writes_no_file(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
