@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from edge.activity import ActivityMonitor
 from edge.calibration import Calibration, identity
 from edge.decimation import Decimator
+from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
 from edge.raw_stream import gps_fix
 from edge.raw_uplink import RawUplink

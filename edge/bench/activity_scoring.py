@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from edge.activity import ActivityMonitor
+from edge.motion.activity import ActivityMonitor
 from edge.samples import Floats, SensorBatch, SensorDescription
 from edge.sources.recording import RecordedTruth
 from edge.tracker import make_tracker

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.activity import ActivityMonitor
 from edge.bench.activity_scoring import ActivityScore, recorded_label, score_activity
-from edge.body_motion import BodyMotion
-from edge.falls import FallDetector
+from edge.motion.activity import ActivityMonitor
+from edge.motion.body_motion import BodyMotion
+from edge.motion.falls import FallDetector
+from edge.motion.strides import StrideCutter
 from edge.samples import ImuBatch
 from edge.simulation import open_simulation
 from edge.sources import open_source
 from edge.sources.recording import RecordedTruth, RecordingSource, read_truth
 from edge.sources.simulated import SimulatedSource
-from edge.strides import StrideCutter
 from edge.tracker import make_tracker
 from edge.tracker.rows import empty_rows
 from shared.clock import NS_PER_S

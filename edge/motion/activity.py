@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections import deque
 
-from edge.air_height import AirHeight
-from edge.body_motion import BodyMotion, MotionWindow
-from edge.falls import FallDetector
-from edge.posture import Posture
+from edge.motion.air_height import AirHeight
+from edge.motion.body_motion import BodyMotion, MotionWindow
+from edge.motion.falls import FallDetector
+from edge.motion.posture import Posture
+from edge.motion.strides import Stride, StrideCutter
 from edge.samples import ImuBatch
-from edge.strides import Stride, StrideCutter
 from edge.tracker.port import TrackBatch
 from shared.clock import NS_PER_S
 from shared.messages import Activity

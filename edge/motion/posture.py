@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import deque
 
-from edge.body_motion import WINDOW_NS, MotionWindow, cosine
+from edge.motion.body_motion import WINDOW_NS, MotionWindow, cosine
+from edge.motion.strides import Stride
 from edge.samples import Floats
-from edge.strides import Stride
 from shared.clock import NS_PER_S
 
 _LONG_STRIDE_M = 0.8

@@ -1,0 +1,1 @@
+"""What the wearer is doing, told from the foot: strides, rest, lying, falls, height."""
