@@ -31,11 +31,21 @@ from base_station.projector import Projector
 from base_station.self_watch import SelfWatch
 from base_station.sinks import ActionDone, LiveSink, PhotoUrls, ProjectionSink
 from base_station.views import StationFacts
-from shared.channels import OPERATOR, TICK, Direction, Qos, channel_of, parse_key
+from shared.channels import (
+    OPERATOR,
+    TICK,
+    Channel,
+    Direction,
+    Qos,
+    channel_of,
+    is_backfilled,
+    parse_key,
+    tracked_unit,
+)
 from shared.clock import NS_PER_S, Clock
-from shared.codec import encode
+from shared.codec import decode, encode
 from shared.envelope import Stamper
-from shared.errors import StoreError, UnknownChannelError
+from shared.errors import StoreError, UnknownChannelError, WireError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, Tick
 from shared.messages.station import Action, SendCommand
 
@@ -225,8 +235,22 @@ class StationDrive:
         if channel is not None and channel.direction is Direction.STATION:
             self._failed["bus"] = f"Somebody on the bus speaks as the station ({key}): not believed"
             return
+        if channel is not None and is_backfilled(key) and self._is_kept(key, channel, payload):
+            return
         self._urgent = self._urgent or (channel is not None and channel.qos is Qos.ALERT)
         self._keep_and_step(t_ns, key, payload)
+
+    def _is_kept(self, key: str, channel: Channel, payload: bytes) -> bool:
+        """Whether what was fetched came live after all, while it was asked for."""
+        try:
+            message = decode(channel, payload)
+        except WireError:
+            return False  # kept, counted and shown as what could not be read
+        unit_id = parse_key(key)[0]
+        tracked = tracked_unit(unit_id)
+        unit = self._pipeline.state.units.get(tracked or unit_id)
+        sender = unit if unit is None or tracked is None else unit.tracker
+        return sender is not None and sender.has(message.header)
 
     def _take_actions(self) -> None:
         while self._inbox:

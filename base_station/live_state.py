@@ -160,6 +160,11 @@ class UnitState(msgspec.Struct):
         self.stopped_ns = None
         return "new"
 
+    def has(self, header: Header) -> bool:
+        """Whether this message came already, live or out of the journal."""
+        boot = self._known_boot(header.boot_id)
+        return boot is not None and header.seq in boot.seen
+
     def recall(self, header: Header) -> News:
         """Note that a message came out of the unit's journal; it says nothing of the present."""
         boot = self._known_boot(header.boot_id)

@@ -258,13 +258,14 @@ def _table(reports: Sequence[FaultReport]) -> Table:
     table = Table(
         title="Bad links",
         caption="heard: from the link's return to the first live message, to reach "
-        f"{_RECONNECT_S:.0f} s; complete: until all said before is in the log. "
+        f"{_RECONNECT_S:.0f} s; complete: until all said before is in the log; alert: the "
+        "worst, from being said to being in the log; memory: the station's. "
         "Lost and twice: to reach 0.",
     )
-    titles = ("sent", "arrived", "lost", "twice", "fetched", "heard", "complete", "worst alert")
+    titles = ("sent", "arrived", "lost", "twice", "fetched", "heard", "complete", "alert")
     table.add_column("fault")
-    for title in (*titles, "station"):
-        table.add_column(title, justify="right")
+    for title in (*titles, "memory"):
+        table.add_column(title, justify="right", min_width=min(len(title), 8))
     for one in reports:
         counts = (one.sent, one.arrived, one.lost, one.duplicates, one.fetched)
         times_s = (one.heard_s, one.complete_s, one.alert_worst_s)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from base_station.playback import compare
-from shared.channels import FUSED, OPERATOR, Qos
+from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
 from shared.codec import encode
 from shared.errors import StoreError
 from shared.messages import STATION_ID, EventKind, Header, OperatorAction, Position, UnitEvent
@@ -47,6 +47,25 @@ def test_a_message_becomes_a_log_record_a_row_and_a_card(
         keys = [key for _, key, _ in station.log.records()]
     assert "muster/v1/FF-01/up/position" in keys
     assert FUSED.key(STATION_ID) in keys
+
+
+def test_what_came_live_while_it_was_fetched_is_in_the_log_once(tmp_path: Path) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        station.say(mayday(1))
+        for seq in (1, 2, 2):
+            station.feed.deliver(backfilled_key(U, EVENT.suffix), encode(mayday(seq)))
+        station.say(mayday(3))
+        until(lambda: len(said_keys(station)) == 3)
+        assert said_keys(station) == [
+            EVENT.key(U),
+            backfilled_key(U, EVENT.suffix),
+            EVENT.key(U),
+        ]
+
+
+def said_keys(station: LiveStation) -> list[str]:
+    return [key for _, key, _ in station.log.records() if key.endswith(EVENT.suffix)]
 
 
 def test_deltas_are_numbered_and_a_snapshot_carries_the_last_number(
