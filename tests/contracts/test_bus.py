@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from threading import Event, Thread
 from typing import Protocol
 
@@ -112,6 +113,9 @@ class Heard:
     def __call__(self, key: str, payload: bytes) -> None:
         self.samples.append((key, payload))
 
+    def has(self, count: int) -> bool:
+        return len(self.samples) >= count
+
 
 def publish_until_heard(publisher: Bus, key: str, heard: Heard) -> None:
     """A subscription takes a moment to reach the other side; then it stands."""
@@ -132,9 +136,11 @@ def test_messages_arrive_once_whole_and_in_order(ends: Ends, qos: Qos) -> None:
     ends.station.subscribe("muster/v1/*/up/**", heard)
     publish_until_heard(ends.unit, KEY, heard)
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
-    for key, payload in sent:
-        ends.unit.publish(key, payload, qos)
-    until(lambda: len(heard.samples) >= len(sent), "every message")
+    for begin in range(0, len(sent), 2):
+        # Faster than the link takes them, messages are dropped: the journal brings those.
+        for key, payload in sent[begin : begin + 2]:
+            ends.unit.publish(key, payload, qos)
+        until(partial(heard.has, begin + 2), "the messages so far")
     assert heard.samples == sent
 
 
