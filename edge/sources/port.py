@@ -29,7 +29,10 @@ class Source(Protocol):
 
     @property
     def is_live(self) -> bool:
-        """True for hardware, which paces itself; false for anything replayed or simulated."""
+        """True for hardware of this machine, whose times are this machine's monotonic clock;
+        false where the times are another clock's and are laid onto it: recordings, simulations,
+        and what another unit sends.
+        """
         ...
 
     @property
