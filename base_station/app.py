@@ -27,7 +27,7 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store, copy_database
 from base_station.downlink import Downlink
-from base_station.drive import StationDrive, Surroundings
+from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
 from base_station.fusion import FUSERS
@@ -45,6 +45,7 @@ from base_station.router_process import RouterProcess
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, bind, serve_until_stopped
 from base_station.sinks import Projection
+from base_station.surroundings import Surroundings
 from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT

@@ -2,24 +2,43 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
+log = logging.getLogger(__name__)
 
 
 class SelfWatch:
     """Turns what is wrong now into reports of what has changed."""
 
     def __init__(self) -> None:
+        self._failed: dict[str, str] = {}  # since the last check: what is wrong, by part
         self._quiet: dict[str, int] = {}  # checks without a problem, of parts that had one
 
-    def check(self, now: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """``now``: what is wrong, by part, empty where nothing is; ``known``: what has been
+    def note(self, part: str, text: str) -> None:
+        """A part failed just now, which nobody sees who looks at it later."""
+        self._failed[part] = text
+
+    @contextmanager
+    def guarding(self, part: str) -> Iterator[None]:
+        """A mistake in one event's handling must not end the station."""
+        try:
+            yield
+        except Exception as error:
+            log.exception("the station's %s failed", part)
+            self.note(part, f"The station's {part} failed: {error!r}; please report it")
+
+    def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
+        """``seen``: what is wrong now, by part, empty where nothing is; ``known``: what has been
         reported.  A part that had never failed in this run, and is reported by others, is left
         to them.
         """
+        now = {**seen, **self._failed}
+        self._failed = {}
         for part, text in now.items():
             if text:
                 self._quiet[part] = 0

@@ -1,0 +1,110 @@
+"""Every event of the station goes into the log first and through the pipeline second, and so
+does what the pipeline decides.  The log alone gives the same run again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from base_station.events import Output, StationEvent, event_of
+from base_station.foxglove_topics import FoxgloveTopics
+from base_station.picture import Picture
+from base_station.pipeline import StationPipeline
+from base_station.playback import is_decision
+from base_station.projector import Projector
+from base_station.self_watch import SelfWatch
+from base_station.surroundings import Log, Record
+from shared.channels import channel_of
+from shared.codec import encode
+from shared.messages import STATION_ID, AlarmChange, FusedPosition
+
+
+class Keeping:
+    """``keep_and_step`` events; picture and projector are told what follows from them."""
+
+    def __init__(
+        self,
+        pipeline: StationPipeline,
+        log: Log,
+        picture: Picture,
+        projector: Projector,
+        watch: SelfWatch,
+    ) -> None:
+        self._pipeline = pipeline
+        self._log = log
+        self._picture = picture
+        self._projector = projector
+        self._watch = watch
+        self._foxglove = FoxgloveTopics()
+        self._events_at_t = 0  # stepped at the pipeline's present time
+        self._urgent = False  # something was written that must be on the disk before it is told
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """In the log: the time of the last event, and how many events had that time."""
+        return self._pipeline.state.t_ns, self._events_at_t
+
+    def rebuild(self, records: Iterable[Record], after: tuple[int, int]) -> int:
+        """Step what a log says happened after a place; gives the number of events stepped.
+
+        Decisions that a crash kept from the log are written to it now.
+        """
+        from_ns, skip = after
+        self._events_at_t = skip
+        unlogged: list[FusedPosition | AlarmChange] = []
+        told = False  # whether the log has a decision that followed the last event
+        stepped = 0
+        for t_ns, key, payload in records:
+            if is_decision(key):
+                del unlogged[:1]
+                told = True
+                continue
+            if t_ns == from_ns and skip > 0:
+                skip -= 1
+                continue
+            stepped += 1
+            if told:
+                unlogged.clear()
+                told = False
+            outputs = self._step(event_of(t_ns, key, payload))
+            unlogged += [o for o in outputs if isinstance(o, FusedPosition | AlarmChange)]
+        for output in unlogged:
+            self._keep_output(output)
+        return stepped
+
+    def keep_and_step(
+        self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False
+    ) -> list[Output]:
+        """Station time never goes back, whatever the machine's clock does."""
+        self._urgent = self._urgent or urgent
+        t_ns = max(t_ns, self._pipeline.state.t_ns)
+        self._log.write(t_ns, key, payload)
+        outputs = self._step(event_of(t_ns, key, payload))
+        for output in outputs:
+            if isinstance(output, FusedPosition | AlarmChange):
+                self._keep_output(output)
+        return outputs
+
+    def settle(self) -> None:
+        """What is urgent reaches the disk before anybody hears of it."""
+        if self._urgent:
+            self._urgent = False
+            self._log.flush()
+
+    def _step(self, event: StationEvent) -> list[Output]:
+        same_time = event.t_ns == self._pipeline.state.t_ns
+        self._events_at_t = self._events_at_t + 1 if same_time else 1
+        outputs: list[Output] = []
+        with self._watch.guarding("pipeline"):
+            outputs = self._pipeline.step(event)
+        self._picture.note(outputs)
+        self._projector.note(event, outputs)
+        return outputs
+
+    def _keep_output(self, output: FusedPosition | AlarmChange) -> None:
+        self._urgent = self._urgent or isinstance(output, AlarmChange)
+        t_ns = output.header.t_utc_ns
+        self._log.write(t_ns, channel_of(output).key(STATION_ID), encode(output))
+        shown = self._foxglove.of(output, self._pipeline.state.anchor)
+        if shown is not None:
+            self._log.write(t_ns, *shown)
