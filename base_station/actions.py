@@ -6,11 +6,16 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import assert_never
 
-from base_station import command_book
+import msgspec
+
+from base_station import accountability, command_book
+from base_station import pin_book
 from base_station.alarms.book import AlarmBook
 from base_station.command_state import SentCommand
+from base_station.events import PinsTouched
 from base_station.fusion.port import Start
-from base_station.live_state import Alarm, Incident, Person, StationState, UnitState
+from base_station.live_state import Alarm, Person, StationState, UnitState
+from base_station.pin_book import PinAction
 from base_station.plan import read_plan
 from base_station.positioning import Positioning
 from shared.errors import UserError
@@ -19,20 +24,24 @@ from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
     Assign,
+    CheckIn,
     CloseIncident,
     ConfirmCommand,
+    ForgetWearers,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
     SendCommand,
+    SetAccountability,
     SetAnchor,
     SetPlan,
+    SetRest,
     SetStart,
     Unassign,
 )
 
-Effect = Alarm | UnitState | SentCommand  # what an action changed
+Effect = Alarm | UnitState | SentCommand | PinsTouched  # what an action changed
 
 
 class Actions:
@@ -47,6 +56,8 @@ class Actions:
         return list(self._effects(state, by, action))
 
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
+        if isinstance(action, PinAction):
+            return [PinsTouched(tuple(sorted(pin_book.apply(state, by, action))))]
         effects: Iterable[Effect] = state.units.values()
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
@@ -61,20 +72,12 @@ class Actions:
                 self._positioning.set_anchor(state, _anchor(action))
             case SetPlan():
                 state.plan = read_plan(action.geojson)
-            case OpenIncident():
-                _open(state, action)
-            case CloseIncident():
-                _close(state, action)
-            case Assign():
-                effects = _assign(state, action)
-            case Unassign():
-                unit = _registered(state, action.unit_id)
-                unit.person = None
-                effects = [unit]
             case SendCommand() | ConfirmCommand():
-                effects = [_command(state, by, action)]
+                effects = self._command(state, by, action)
+            case ForgetWearers():
+                effects = self._forget(state, action)
             case _:
-                assert_never(action)
+                effects = self._reviewed(state, _people(state, by, action))
         return effects
 
     def _alarm(
@@ -89,8 +92,35 @@ class Actions:
         if unit is None:
             unit = state.units[action.unit_id] = UnitState(action.unit_id)
         unit.registered, unit.label = True, action.label
-        yield unit
-        yield from self._book.review(state, unit)
+        yield from self._reviewed(state, [unit])
+
+    def _reviewed(self, state: StationState, units: Iterable[UnitState]) -> Iterator[Effect]:
+        """What changed of units may raise or resolve alarms at once."""
+        for unit in units:
+            yield unit
+            yield from self._book.review(state, unit)
+
+    def _command(
+        self, state: StationState, by: str, action: SendCommand | ConfirmCommand
+    ) -> Iterator[Effect]:
+        if isinstance(action, SendCommand):
+            command = command_book.send(state, by, action)
+            touched = list(accountability.ask(state, command))
+        else:
+            command = command_book.confirm(state, by, action)
+            unit = state.units[action.unit_id]
+            touched = accountability.note_answer(state, unit, command, by)
+        yield command
+        yield from self._reviewed(state, touched)
+
+    def _forget(self, state: StationState, action: ForgetWearers) -> list[UnitState]:
+        unit = _registered(state, action.unit_id)
+        if unit.person is not None:
+            raise UserError(f"somebody wears {action.unit_id}; unassign that first")
+        self._positioning.forget(unit)
+        self._book.forget(state, unit)
+        command_book.forget(state, unit)
+        return [unit]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[Effect]:
         unit = _registered(state, action.unit_id)
@@ -110,23 +140,49 @@ class Actions:
         yield unit
 
 
-def _command(state: StationState, by: str, action: SendCommand | ConfirmCommand) -> SentCommand:
-    if isinstance(action, SendCommand):
-        return command_book.send(state, by, action)
-    return command_book.confirm(state, by, action)
+PeopleAction = (
+    OpenIncident | CloseIncident | Assign | Unassign | CheckIn | SetAccountability | SetRest
+)
 
 
-def _open(state: StationState, action: OpenIncident) -> None:
+def _people(state: StationState, by: str, action: PeopleAction) -> Iterable[UnitState]:
+    """Who is there, and who is accounted for."""
+    changed: Iterable[UnitState]
+    match action:
+        case OpenIncident():
+            changed = _open(state, by, action)
+        case CloseIncident():
+            changed = _close(state, action)
+        case Assign():
+            changed = _assign(state, by, action)
+        case Unassign():
+            changed = [_without_wearer(state, _registered(state, action.unit_id))]
+        case CheckIn():
+            changed = accountability.check_in(state, by, action)
+        case SetAccountability():
+            changed = accountability.change_times(state, action)
+        case SetRest():
+            unit = _registered(state, action.unit_id)
+            accountability.set_rest(state, unit, action.resting)
+            changed = [unit]
+        case _:
+            assert_never(action)
+    return changed
+
+
+def _open(state: StationState, by: str, action: OpenIncident) -> Iterable[UnitState]:
     running = state.incident
     if running is not None and running.closed_ns is None:
         raise UserError(f"the incident {running.name!r} is open; close it first")
-    state.incident = Incident(action.incident_id, action.name, state.t_ns)
+    state.incident = accountability.new_incident(state, action)
     for unit in state.units.values():
         unit.trail.clear()
         unit.inside_since_ns = None
+        accountability.begin(state, unit, by)
+    return state.units.values()
 
 
-def _close(state: StationState, action: CloseIncident) -> None:
+def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
     running = state.incident
     if (
         running is None
@@ -134,17 +190,28 @@ def _close(state: StationState, action: CloseIncident) -> None:
         or running.closed_ns is not None
     ):
         raise UserError(f"no open incident {action.incident_id}")
-    state.incident = Incident(running.incident_id, running.name, running.opened_ns, state.t_ns)
+    state.incident = msgspec.structs.replace(running, closed_ns=state.t_ns)
+    for unit in state.units.values():
+        accountability.end(state, unit)
+    return state.units.values()
 
 
-def _assign(state: StationState, action: Assign) -> Iterator[Effect]:
+def _assign(state: StationState, by: str, action: Assign) -> Iterator[UnitState]:
     unit = _registered(state, action.unit_id)
     for other in state.units.values():
         if other is not unit and other.person and other.person.person_id == action.person_id:
-            other.person = None
-            yield other
+            yield _without_wearer(state, other)
+    same = unit.person is not None and unit.person.person_id == action.person_id
     unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
+    if not same:
+        accountability.begin(state, unit, by)
     yield unit
+
+
+def _without_wearer(state: StationState, unit: UnitState) -> UnitState:
+    unit.person = None
+    accountability.end(state, unit)
+    return unit
 
 
 def _anchor(action: SetAnchor) -> Anchor:

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 
 from base_station.command_state import Delivery, Order, SentCommand
-from base_station.live_state import StationState, UnitState
+from base_station.live_state import FORGOTTEN, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import Command, CommandKind, CommandReply, CommandState
@@ -91,6 +91,15 @@ def expire(state: StationState) -> Iterator[SentCommand]:
             if command.awaits(delivery):
                 delivery.expired_ns = state.t_ns
         yield command
+
+
+def forget(state: StationState, unit: UnitState) -> None:
+    """Who of this unit's wearers acknowledged what, and texts to them."""
+    for command in state.commands.values():
+        delivery = command.deliveries.get(unit.unit_id)
+        if delivery is not None:
+            delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
+            command.text = FORGOTTEN if command.text else ""
 
 
 def unanswered(state: StationState) -> tuple[Order, ...]:

@@ -12,6 +12,7 @@ from typing import Literal
 import msgspec
 
 from base_station.command_state import SentCommand
+from base_station.pins import Beacon, Pin, PinVerdict
 from base_station.plan import Plan
 from shared.channels import GPS, NO_TRACKER, Channel
 from shared.clock import NS_PER_S
@@ -29,6 +30,9 @@ from shared.sequence_set import SequenceSet
 
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
+FORGOTTEN = "(forgotten)"  # in place of what was said of a person
+PAR_INTERVAL_S = 20 * 60.0  # departments use 10 to 30 minutes
+WORK_LIMIT_S = 40 * 60.0
 TRAIL_POINTS = 900  # a unit's trail in the console; the log has all of it
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
@@ -52,6 +56,20 @@ class Incident(msgspec.Struct, frozen=True):
     name: str
     opened_ns: int
     closed_ns: int | None = None
+    par_interval_s: float = PAR_INTERVAL_S  # everybody is to be heard from this often
+    work_limit_s: float = WORK_LIMIT_S  # of work, after which somebody should rest
+
+
+class Duty(msgspec.Struct):
+    """What is asked of somebody who wears a unit while an incident is open; station times."""
+
+    checked_in_ns: int  # when a person last vouched for the wearer
+    checked_in_by: str
+    asked_ns: int | None = None  # a roll call was asked for, and is not answered
+    work_since_ns: int | None = None
+    rest_since_ns: int | None = None
+    due_ns: int = 0  # of the next check-in
+    rest_due_ns: int | None = None
 
 
 class TrailStep(msgspec.Struct, frozen=True, array_like=True):
@@ -114,6 +132,8 @@ class UnitState(msgspec.Struct):
     fault: Fault | None = None
     stopped_ns: int | None = None  # said goodbye in an orderly way
     inside_since_ns: int | None = None
+    duty: Duty | None = None  # somebody wears it and an incident is open
+    off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
     duplicates: int = 0
     out_of_order: int = 0
@@ -261,5 +281,8 @@ class StationState(msgspec.Struct):
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
     start_set: bool = False  # somebody said where a unit began
+    pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
+    pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
+    beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     counts: Counts = msgspec.field(default_factory=Counts)

@@ -11,7 +11,7 @@ from typing import assert_never
 
 import msgspec
 
-from base_station import command_book
+from base_station import accountability, command_book
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
@@ -19,6 +19,7 @@ from base_station.command_state import SentCommand
 from base_station.events import (
     CommandTouched,
     Output,
+    PinsTouched,
     Received,
     Refused,
     Rejected,
@@ -38,6 +39,7 @@ from shared.messages import (
     AlarmChange,
     Command,
     CommandReply,
+    CommandState,
     EventKind,
     GpsFix,
     Header,
@@ -117,6 +119,8 @@ class StationPipeline:
             if link != unit.link or link in {"stale", "lost"}:  # an old position looks older
                 unit.link = link
                 outputs.append(UnitTouched(unit.unit_id))
+            if accountability.note_work(self.state, unit):
+                outputs.append(UnitTouched(unit.unit_id))
             outputs.extend(self._review(unit))
         outputs.extend(CommandTouched(one.command_id) for one in command_book.expire(self.state))
         return outputs
@@ -132,6 +136,8 @@ class StationPipeline:
                 outputs.append(self._change(effect))
             elif isinstance(effect, SentCommand):
                 outputs.append(CommandTouched(effect.command_id))
+            elif isinstance(effect, PinsTouched):
+                outputs.append(effect)
             else:
                 outputs.append(UnitTouched(effect.unit_id))
         return outputs
@@ -214,7 +220,10 @@ class StationPipeline:
             case UnitEvent():
                 _note_event(unit, message, t_ns)
             case CommandReply():
-                return _touched(command_book.note_reply(self.state, unit, message))
+                command = command_book.note_reply(self.state, unit, message)
+                if command is not None and message.state is CommandState.ACKNOWLEDGED:
+                    accountability.note_answer(self.state, unit, command, unit.name)
+                return _touched(command)
             case _:
                 pass  # raw samples and signs of life: that they came is all that counts here
         return []

@@ -44,6 +44,12 @@ class Positioning:
         state.start_set = True
         self._fuser(unit).start(start)
 
+    def forget(self, unit: UnitState) -> None:
+        """Where its wearers were, and what was learnt of their walk."""
+        self._fusers.pop(unit.unit_id, None)
+        unit.fused, unit.position = None, None
+        unit.trail.clear()
+
     def set_anchor(self, state: StationState, anchor: Anchor) -> None:
         """Say where the incident frame lies.  What was placed by hand stays where it is on the
         plan; what the first satellite fix had placed moves with the new anchor.

@@ -7,31 +7,39 @@ from collections.abc import Iterable
 
 import msgspec
 
+from base_station.accountability import warning_s
 from base_station.api.wire import (
     AlarmView,
     AnchorView,
+    BeaconView,
     CommandView,
     DeliveryView,
+    DutyView,
     HealthView,
     IncidentView,
     PersonView,
+    PinView,
     PositionView,
     ReplayView,
     Snapshot,
     StatusView,
     TrailPoint,
+    TrustView,
     UnitView,
 )
+from base_station.assessment.trust import trust_of
 from base_station.command_state import Delivery, SentCommand
 from base_station.live_state import (
     STALE_AFTER_S,
     Alarm,
+    Duty,
     Incident,
     Person,
     StationState,
     TrailStep,
     UnitState,
 )
+from base_station.pins import WAITING, Pin
 from base_station.sinks import PhotoUrls
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -70,12 +78,19 @@ def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> Un
         heat_level=heat.level if heat is not None and heat.is_open else "",
         position=_position_view(state, unit.fused) if unit.fused else None,
         inside_since_ms=_ms(unit.inside_since_ns),
+        duty=_duty_view(unit.duty) if unit.duty else None,
         alarms=tuple(
             alarm.alarm_id
             for alarm in state.alarms.values()
             if alarm.unit_id == unit.unit_id and alarm.is_open
         ),
+        trust=trust_view(state, unit),
     )
+
+
+def trust_view(state: StationState, unit: UnitState) -> TrustView:
+    trust = trust_of(state, unit)
+    return TrustView(trust.level, trust.reason)
 
 
 def person_view(person: Person, photo_urls: PhotoUrls) -> PersonView:
@@ -136,6 +151,68 @@ def incident_view(incident: Incident) -> IncidentView:
         name=incident.name,
         opened_ms=incident.opened_ns // NS_PER_MS,
         closed_ms=_ms(incident.closed_ns),
+        par_interval_s=incident.par_interval_s,
+        par_warning_s=warning_s(incident),
+        work_limit_s=incident.work_limit_s,
+    )
+
+
+def _duty_view(duty: Duty) -> DutyView:
+    return DutyView(
+        checked_in_ms=duty.checked_in_ns // NS_PER_MS,
+        checked_in_by=duty.checked_in_by,
+        due_ms=duty.due_ns // NS_PER_MS,
+        asked_ms=_ms(duty.asked_ns),
+        work_since_ms=_ms(duty.work_since_ns),
+        rest_since_ms=_ms(duty.rest_since_ns),
+        rest_due_ms=_ms(duty.rest_due_ns),
+    )
+
+
+def pin_views(state: StationState) -> tuple[PinView, ...]:
+    """All pins, in the order of setting."""
+    return tuple(_pin_view(state, pin) for pin in state.pins.values())
+
+
+def _pin_view(state: StationState, pin: Pin) -> PinView:
+    verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
+    beacon = state.beacons.get(pin.other_id)
+    seen_at = pin if pin.north_m is not None or beacon is None else beacon
+    return PinView(
+        pin_id=pin.pin_id,
+        kind=pin.kind,
+        unit_id=pin.unit_id,
+        other_id=pin.other_id,
+        t_ms=pin.t_ns // NS_PER_MS,
+        north_m=seen_at.north_m,
+        east_m=seen_at.east_m,
+        floor=seen_at.floor,
+        std_m=pin.std_m,
+        heading_rad=pin.heading_rad,
+        heading_std_rad=pin.heading_std_rad,
+        note=pin.note,
+        by=pin.by,
+        set_ms=pin.set_ns // NS_PER_MS,
+        state=verdict.state,
+        residual_m=verdict.residual_m,
+        sigmas=verdict.sigmas,
+        text=verdict.text,
+    )
+
+
+def beacon_views(state: StationState) -> tuple[BeaconView, ...]:
+    return tuple(
+        BeaconView(
+            beacon_id=beacon.beacon_id,
+            label=beacon.label,
+            north_m=beacon.north_m,
+            east_m=beacon.east_m,
+            floor=beacon.floor,
+            std_m=beacon.std_m,
+            reach_m=beacon.reach_m,
+            seen_ms=_ms(beacon.seen_ns),
+        )
+        for beacon in state.beacons.values()
     )
 
 
@@ -182,6 +259,8 @@ def snapshot(
         trails={
             unit.unit_id: trail_view(unit.trail) for unit in state.units.values() if unit.trail
         },
+        pins=pin_views(state),
+        beacons=beacon_views(state),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
         anchor=_anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),

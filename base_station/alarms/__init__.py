@@ -15,9 +15,11 @@ from base_station.alarms.fall import Fall
 from base_station.alarms.heat import Heat
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.mayday import Mayday
+from base_station.alarms.missed_check_in import MissedCheckIn
 from base_station.alarms.no_motion import NoMotion
 from base_station.alarms.port import AlarmRule
 from base_station.alarms.position_lost import PositionLost
+from base_station.alarms.rest_due import RestDue
 from base_station.alarms.tracker_degraded import TrackerDegraded
 from base_station.alarms.unit_fault import UnitFault
 from base_station.alarms.unknown_unit import UnknownUnit
@@ -26,6 +28,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     Mayday(),
     Fall(),
     NoMotion(),
+    MissedCheckIn(),
     Heat(),
     Battery(),
     LinkLost(),
@@ -34,4 +37,5 @@ ALARMS: tuple[AlarmRule, ...] = (
     UnitFault(),
     UnknownUnit(),
     Calibration(),
+    RestDue(),
 )

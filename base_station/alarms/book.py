@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from base_station.alarms.port import SOON, AlarmRule, Clear, Finding, Verdict
-from base_station.live_state import Alarm, StationState, UnitState
+from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState
 
@@ -82,6 +82,12 @@ class AlarmBook:
         if alarm.rule == STATION_RULE:
             state.problems.pop(alarm.level, None)
         return _resolve(state, alarm, f"{by}: {note}" if note else by)
+
+    def forget(self, state: StationState, unit: UnitState) -> None:
+        """What alarms say of who wore the unit; that there were alarms stays."""
+        for alarm in (*state.alarms.values(), *state.history):
+            if alarm.unit_id == unit.unit_id:
+                alarm.text = FORGOTTEN
 
     def _follow(
         self, state: StationState, rule: AlarmRule, key: str, unit_id: str, verdict: Verdict

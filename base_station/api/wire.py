@@ -65,6 +65,61 @@ class AlarmView(msgspec.Struct, frozen=True):
     changed_ms: int
 
 
+class DutyView(msgspec.Struct, frozen=True):
+    """While an incident is open: when somebody vouched for the wearer, and work and rest."""
+
+    checked_in_ms: int
+    checked_in_by: str
+    due_ms: int  # of the next check-in
+    asked_ms: int | None  # a roll call was asked for, and is not answered
+    work_since_ms: int | None
+    rest_since_ms: int | None
+    rest_due_ms: int | None
+
+
+class TrustView(msgspec.Struct, frozen=True):
+    """How far the place of a unit can be trusted, as a light."""
+
+    level: str  # green | amber | red
+    reason: str  # for a person; empty: green
+
+
+class PinView(msgspec.Struct, frozen=True):
+    """Where somebody was, as a person or a beacon told, and what became of it."""
+
+    pin_id: str
+    kind: str  # place | start | meeting | beacon | tag
+    unit_id: str
+    other_id: str  # the beacon or tag, or the other unit of a meeting; else empty
+    t_ms: int  # 0: where the unit's path begins
+    north_m: float | None  # None: a meeting, or a beacon that nobody has placed yet
+    east_m: float | None
+    floor: int | None
+    std_m: float
+    heading_rad: float | None
+    heading_std_rad: float
+    note: str
+    by: str  # who set it; the unit itself where that saw it
+    set_ms: int
+    state: str  # used | conflict | waiting
+    residual_m: float | None  # between the pin and the trail
+    sigmas: float | None  # the same in standard deviations of what was expected
+    text: str  # for a person: what it conflicts with, or what it waits for
+
+
+class BeaconView(msgspec.Struct, frozen=True):
+    """A beacon or tag that hangs at a known place."""
+
+    beacon_id: str
+    label: str
+    north_m: float
+    east_m: float
+    floor: int | None
+    std_m: float
+    reach_m: float
+    seen_ms: int | None  # when a unit last saw it
+
+
 class UnitView(msgspec.Struct, frozen=True):
     """Everything a card and the plan show of one unit; a delta carries it whole."""
 
@@ -80,7 +135,9 @@ class UnitView(msgspec.Struct, frozen=True):
     heat_level: str  # "" | caution | warning | critical
     position: PositionView | None
     inside_since_ms: int | None
+    duty: DutyView | None  # nobody wears it, or no incident is open: None
     alarms: tuple[str, ...]  # ids of the alarms that are not resolved
+    trust: TrustView
 
 
 class DeliveryView(msgspec.Struct, frozen=True):
@@ -114,6 +171,9 @@ class IncidentView(msgspec.Struct, frozen=True):
     name: str
     opened_ms: int
     closed_ms: int | None
+    par_interval_s: float  # everybody is to be heard from this often
+    par_warning_s: float  # how long before it is due a check-in is announced
+    work_limit_s: float
 
 
 class HealthView(msgspec.Struct, frozen=True):
@@ -164,6 +224,8 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     alarms: tuple[AlarmView, ...]  # all that are not resolved, and the last resolved ones
     commands: tuple[CommandView, ...]  # all that are open, and the last closed ones; oldest first
     trails: dict[str, tuple[TrailPoint, ...]]  # by unit
+    pins: tuple[PinView, ...]  # in the order of setting
+    beacons: tuple[BeaconView, ...]
     plan: msgspec.Raw | None  # GeoJSON as stored: see docs/messages
     anchor: AnchorView | None
     health: HealthView
@@ -176,7 +238,9 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     units: tuple[UnitView, ...] = ()
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
-    trails: dict[str, tuple[TrailPoint, ...]] = {}  # whole, of units whose past was filled in
+    trails: dict[str, tuple[TrailPoint, ...]] = {}  # whole, of units whose past changed
+    pins: tuple[PinView, ...] | None = None  # all of them, where any changed
+    beacons: tuple[BeaconView, ...] | None = None
     health: HealthView | None = None
     incident: IncidentView | None = None
     replay: ReplayView | None = None

@@ -27,15 +27,19 @@ from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDesc
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
+    CheckIn,
     CloseIncident,
     ConfirmCommand,
+    ForgetWearers,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
     SendCommand,
+    SetAccountability,
     SetAnchor,
     SetPlan,
+    SetRest,
     SetStart,
     Unassign,
 )
@@ -110,8 +114,10 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             _add(session, UnitStart, **key, **columns)
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
             pass  # what it changed of the alarms comes with the same step
-        case SendCommand() | ConfirmCommand():
+        case SendCommand() | ConfirmCommand() | CheckIn() | SetAccountability() | SetRest():
             pass  # the audit and the log have it
+        case ForgetWearers():
+            pass  # what is stored was rewritten before
 
 
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")

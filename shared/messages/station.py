@@ -5,9 +5,18 @@ from __future__ import annotations
 import msgspec
 
 from shared.messages.command import CommandKind
+from shared.messages.fields import get_fields, put_fields
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import station_pb2
+from shared.messages.pins import (
+    PlaceBeacon,
+    RemoveBeacon,
+    RemovePin,
+    SetMeeting,
+    SetPin,
+    StartTogether,
+)
 
 
 class Tick(msgspec.Struct, frozen=True):
@@ -36,6 +45,8 @@ class ResolveAlarm(msgspec.Struct, frozen=True):
 class OpenIncident(msgspec.Struct, frozen=True):
     incident_id: str
     name: str
+    par_interval_s: float = 0.0  # 0: the usual
+    work_limit_s: float = 0.0
 
 
 class CloseIncident(msgspec.Struct, frozen=True):
@@ -117,6 +128,50 @@ class ConfirmCommand(msgspec.Struct, frozen=True):
     unit_id: str
 
 
+class CheckIn(msgspec.Struct, frozen=True):
+    """Somebody has heard from the wearer, from a crew or from everyone: one of the three."""
+
+    unit_id: str
+    crew: str
+    everyone: bool
+
+
+class SetAccountability(msgspec.Struct, frozen=True):
+    """How often everybody is to be heard from in this incident, and when to send them to rest."""
+
+    par_interval_s: float
+    work_limit_s: float
+
+
+class SetRest(msgspec.Struct, frozen=True):
+    unit_id: str
+    resting: bool
+
+
+class ForgetWearers(msgspec.Struct, frozen=True):
+    """Nothing is to be remembered of who has worn this unit so far."""
+
+    unit_id: str
+
+
+class TakeOver(msgspec.Struct, frozen=True):
+    """From here on this station orders what happens; two stations' logs are compared by these."""
+
+    term: int  # higher than any before
+    station: str
+    after_t_ns: int  # the place behind which it stands: the last event's time,
+    after_count: int  # and how many events had that time
+
+
+class DoneApart(msgspec.Struct, frozen=True):
+    """What a person did at another station while the two were apart: kept, not applied."""
+
+    station: str
+    t_ns: int  # that station's time
+    who: str
+    what: str  # a sentence
+
+
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -131,6 +186,18 @@ Action = (
     | ReportProblem
     | SendCommand
     | ConfirmCommand
+    | SetPin
+    | StartTogether
+    | SetMeeting
+    | RemovePin
+    | PlaceBeacon
+    | RemoveBeacon
+    | CheckIn
+    | SetAccountability
+    | SetRest
+    | ForgetWearers
+    | TakeOver
+    | DoneApart
 )
 
 _FIELD_OF_ACTION: dict[type[Action], str] = {
@@ -147,6 +214,18 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     ReportProblem: "report_problem",
     SendCommand: "send_command",
     ConfirmCommand: "confirm_command",
+    SetPin: "set_pin",
+    StartTogether: "start_together",
+    SetMeeting: "set_meeting",
+    RemovePin: "remove_pin",
+    PlaceBeacon: "place_beacon",
+    RemoveBeacon: "remove_beacon",
+    CheckIn: "check_in",
+    SetAccountability: "set_accountability",
+    SetRest: "set_rest",
+    ForgetWearers: "forget_wearers",
+    TakeOver: "take_over",
+    DoneApart: "done_apart",
 }
 _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 
@@ -165,8 +244,7 @@ class OperatorAction(msgspec.Struct, frozen=True):
         )
         part = getattr(wire, _FIELD_OF_ACTION[type(self.action)])
         part.SetInParent()
-        for name in self.action.__struct_fields__:
-            setattr(part, name, getattr(self.action, name))
+        put_fields(part, self.action)
         return wire
 
     @staticmethod
@@ -177,7 +255,7 @@ class OperatorAction(msgspec.Struct, frozen=True):
             raise ValueError("an operator's action of a kind that this program does not know")
         part = getattr(wire, field)
         action_type = _ACTION_OF_FIELD[field]
-        values = {name: getattr(part, name) for name in action_type.__struct_fields__}
+        values = get_fields(part, action_type)
         if action_type is SendCommand:
             values["kind"] = known(CommandKind, part.kind)
         action = action_type(**values)

@@ -9,7 +9,7 @@ import pytest
 
 from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
-from base_station.live_state import Fault, UnitState
+from base_station.live_state import Duty, Fault, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
     Activity,
@@ -82,6 +82,10 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
     unit.mayday_ns = unit.fall_ns = seen_ns
     unit.fused = lost_place(seen_ns)
     unit.unplaced_since_ns = seen_ns - 60 * NS_PER_S
+    unit.duty = Duty(
+        seen_ns - 3600 * NS_PER_S, "chief", work_since_ns=seen_ns - 3600 * NS_PER_S,
+        due_ns=seen_ns - NS_PER_S, rest_due_ns=seen_ns - NS_PER_S,
+    )  # fmt: skip
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
     unit.description = UnitDescription(
         HEADER, "1", "", "sensor", 200.0, None, None, "eskf", "c1", False, False, False,

@@ -25,6 +25,7 @@ from shared.messages import (
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
+    CheckIn,
     CloseIncident,
     ConfirmCommand,
     OpenIncident,
@@ -32,6 +33,7 @@ from shared.messages.station import (
     SendCommand,
     SetAnchor,
     SetPlan,
+    SetRest,
     SetStart,
 )
 from shared.quality import Quality
@@ -52,7 +54,7 @@ def incident() -> Script:
     script.register("FF-01", "FF-02", "FF-03")
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.3))
     script.act(SetPlan(PLAN))
-    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(OpenIncident("i1", "Mill Lane", par_interval_s=100.0, work_limit_s=120.0))
     for number in (1, 2, 3):
         script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "red", "firefighter"))
     script.act(SetStart("FF-01", 5.0, 5.0, 0.0, 0.4, 0.5, 0.2))
@@ -88,6 +90,10 @@ def _second(script: Script, second: int) -> None:
     if second == 40:
         script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
     _commands(script, second)
+    if second in {120, 240}:
+        script.act(CheckIn("", "red", False))
+    if second == 130:
+        script.act(SetRest("FF-01", True))
     if second == 50:
         script.act(ResolveAlarm(script.alarms[0].alarm_id, "spoken to"))
     if second % 50 == 0:
@@ -132,7 +138,8 @@ def logged(script: Script) -> list[Record]:
 def test_the_incident_is_worth_replaying(told: Script) -> None:
     rules = {alarm.rule for alarm in told.alarms}
     assert rules >= {
-        "mayday", "no-motion", "heat", "link-lost", "tracker-degraded", "unknown-unit"
+        "mayday", "no-motion", "heat", "link-lost", "tracker-degraded", "unknown-unit",
+        "missed-check-in", "rest-due",
     }  # fmt: skip
     assert len(told.fused) > 500
     assert {fused.floor for fused in told.fused} == {0, 1}

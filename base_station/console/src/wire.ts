@@ -56,6 +56,57 @@ export interface AlarmView {
   changed_ms: number;
 }
 
+/** While an incident is open: when somebody vouched for the wearer, and work and rest. */
+export interface DutyView {
+  checked_in_ms: number;
+  checked_in_by: string;
+  due_ms: number; // of the next check-in
+  asked_ms: number | null; // a roll call was asked for, and is not answered
+  work_since_ms: number | null;
+  rest_since_ms: number | null;
+  rest_due_ms: number | null;
+}
+
+/** How far the place of a unit can be trusted, as a light. */
+export interface TrustView {
+  level: "green" | "amber" | "red";
+  reason: string; // empty: green
+}
+
+/** Where somebody was, as a person or a beacon told, and what became of it. */
+export interface PinView {
+  pin_id: string;
+  kind: "place" | "start" | "meeting" | "beacon" | "tag";
+  unit_id: string;
+  other_id: string; // the beacon or tag, or the other unit of a meeting; else empty
+  t_ms: number; // 0: where the unit's path begins
+  north_m: number | null; // null: a meeting, or a beacon that nobody has placed yet
+  east_m: number | null;
+  floor: number | null;
+  std_m: number;
+  heading_rad: number | null;
+  heading_std_rad: number;
+  note: string;
+  by: string; // who set it; the unit itself where that saw it
+  set_ms: number;
+  state: "used" | "conflict" | "waiting";
+  residual_m: number | null; // between the pin and the trail
+  sigmas: number | null; // the same in standard deviations of what was expected
+  text: string; // for a person: what it conflicts with, or what it waits for
+}
+
+/** A beacon or tag that hangs at a known place. */
+export interface BeaconView {
+  beacon_id: string;
+  label: string;
+  north_m: number;
+  east_m: number;
+  floor: number | null;
+  std_m: number;
+  reach_m: number;
+  seen_ms: number | null; // when a unit last saw it
+}
+
 export interface UnitView {
   unit_id: string;
   label: string;
@@ -69,7 +120,9 @@ export interface UnitView {
   heat_level: string; // "" | caution | warning | critical
   position: PositionView | null;
   inside_since_ms: number | null;
+  duty: DutyView | null;
   alarms: string[]; // ids of the alarms that are not resolved
+  trust: TrustView;
 }
 
 export type DeliveryState =
@@ -109,6 +162,9 @@ export interface IncidentView {
   name: string;
   opened_ms: number;
   closed_ms: number | null;
+  par_interval_s: number; // everybody is to be heard from this often
+  par_warning_s: number; // how long before it is due a check-in is announced
+  work_limit_s: number;
 }
 
 export interface HealthView {
@@ -160,6 +216,8 @@ export interface Snapshot {
   alarms: AlarmView[];
   commands: CommandView[]; // all that are open, and the last closed ones; oldest first
   trails: Record<string, TrailPoint[]>;
+  pins: PinView[]; // in the order of setting
+  beacons: BeaconView[];
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
@@ -175,6 +233,8 @@ export interface Delta {
   alarms?: AlarmView[];
   commands?: CommandView[];
   trails?: Record<string, TrailPoint[]>;
+  pins?: PinView[]; // all of them, where any changed
+  beacons?: BeaconView[];
   health?: HealthView;
   incident?: IncidentView;
   replay?: ReplayView;

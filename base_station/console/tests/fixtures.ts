@@ -67,6 +67,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     heat_level: "",
     position: null,
     inside_since_ms: null,
+    duty: null,
     alarms: [],
     ...change,
   };

@@ -1,0 +1,38 @@
+"""Nobody has heard from a person for longer than the incident's roll call (PAR) allows.
+
+Only a person's word ends it: the wearer's button or somebody at the console.  Raised once; the
+next check-in arms it again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import IMMEDIATE, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class MissedCheckIn:
+    name: str = "missed-check-in"
+    levels: tuple[str, ...] = ("overdue",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        duty = unit.duty
+        if duty is None:
+            return Clear(unit.off_duty_ns, "off duty")
+        if t_ns < duty.due_ns:
+            return Clear(duty.checked_in_ns, f"heard from, says {duty.checked_in_by}")
+        silent_min = (duty.due_ns - duty.checked_in_ns) / NS_PER_S / 60.0
+        asked = ", and was asked for" if duty.asked_ns is not None else ""
+        return Finding(
+            "overdue",
+            IMMEDIATE,
+            f"{unit.name} has not been heard from for {silent_min:.0f} min{asked}: PAR overdue",
+            seen_ns=duty.checked_in_ns,
+            onset_ns=duty.due_ns,
+        )

@@ -1,0 +1,35 @@
+"""A person has worked for long and should be sent to rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import INFORMATION, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class RestDue:
+    name: str = "rest-due"
+    levels: tuple[str, ...] = ("due",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = 600.0
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        duty = unit.duty
+        if duty is None:
+            return Clear(unit.off_duty_ns, "off duty")
+        if duty.rest_since_ns is not None:
+            return Clear(duty.rest_since_ns, "rests")
+        if duty.work_since_ns is None or duty.rest_due_ns is None or t_ns < duty.rest_due_ns:
+            return Clear(duty.checked_in_ns, "not due")
+        worked_min = (duty.rest_due_ns - duty.work_since_ns) / NS_PER_S / 60.0
+        return Finding(
+            "due",
+            INFORMATION,
+            f"{unit.name} has worked for {worked_min:.0f} min: send to rest",
+            seen_ns=duty.work_since_ns,
+            onset_ns=duty.rest_due_ns,
+        )
