@@ -27,6 +27,7 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     ConfirmCommand,
+    DoneApart,
     ForgetWearers,
     OpenIncident,
     RegisterUnit,
@@ -38,6 +39,7 @@ from shared.messages.station import (
     SetPlan,
     SetRest,
     SetStart,
+    TakeOver,
     Unassign,
 )
 
@@ -72,6 +74,10 @@ class Actions:
                 self._positioning.set_anchor(state, _anchor(action))
             case SetPlan():
                 state.plan = read_plan(action.geojson)
+            case TakeOver():
+                state.take_overs.append(action)
+            case DoneApart():
+                effects = ()  # people are told of it by a report of the station
             case SendCommand() | ConfirmCommand():
                 effects = self._command(state, by, action)
             case ForgetWearers():

@@ -122,13 +122,20 @@ class StationDrive:
         """Take what came, then do whatever is due."""
         clock, due = self._around.clock, self._due
         wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
-        for t_ns, key, payload in self._around.feed.take(max(wait_ns, 0) / NS_PER_S):
-            self._hear(t_ns, key, payload)
+        records = self._around.feed.take(max(wait_ns, 0) / NS_PER_S)
+        follows = self._around.feed.follows
+        for t_ns, key, payload in records:
+            if follows:
+                self._keeping.keep_and_step(t_ns, key, payload)
+            else:
+                self._hear(t_ns, key, payload)
         self._take_actions()
         now_ns = clock.monotonic_ns()
         if now_ns >= due.tick_ns:
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
-            self._tick()
+            if not follows:  # else time passes by the other station's ticks
+                self._tick()
+            self._look_around()
         if now_ns >= due.checkpoint_ns:
             due.checkpoint_ns = now_ns + CHECKPOINT_NS
             self._save_checkpoint()
@@ -176,6 +183,8 @@ class StationDrive:
         if not self._around.log.is_behind:  # what is reported may be acknowledged to its unit
             self._around.report(self._held())
         self._around.say(command_book.unanswered(self._pipeline.state))
+
+    def _look_around(self) -> None:
         messages = self._pipeline.state.counts.messages
         self._picture.facts = msgspec.structs.replace(
             self._around.facts(), messages_per_s=float(messages - self._messages_before)

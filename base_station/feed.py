@@ -33,6 +33,11 @@ class SteadyClock:
         self._lock = Lock()
         self._offset_ns = not_before_ns - clock.monotonic_ns()
 
+    def not_before(self, utc_ns: int) -> None:
+        """Another clock has said ``utc_ns``: go on from there."""
+        with self._lock:
+            self._offset_ns = max(self._offset_ns, utc_ns - self._clock.monotonic_ns())
+
     def monotonic_ns(self) -> int:
         return self._clock.monotonic_ns()
 
@@ -70,6 +75,11 @@ class LiveFeed:
     def overflowed(self) -> int:
         """Messages that were dropped because they came faster than they were taken."""
         return self._overflowed
+
+    @property
+    def follows(self) -> bool:
+        """What comes is from the bus."""
+        return False
 
     def offer(self, key: str, payload: bytes) -> None:
         """What a bus calls: stamps the message with station time and returns at once."""

@@ -26,6 +26,7 @@ from shared.messages import (
     Temperature,
     UnitDescription,
 )
+from shared.messages.station import TakeOver
 from shared.sequence_set import SequenceSet
 
 STALE_AFTER_S = 10.0
@@ -285,4 +286,5 @@ class StationState(msgspec.Struct):
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
+    take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)

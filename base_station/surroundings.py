@@ -19,6 +19,13 @@ Record = tuple[int, str, bytes]  # station time, key, payload
 class Feed(Protocol):
     """Where records come from while the station is live."""
 
+    @property
+    def follows(self) -> bool:
+        """Whether what ``take`` gave last is another station's log, ticks and actions included:
+        it is kept and stepped as it is, and nothing is decided here.
+        """
+        ...
+
     def take(self, timeout_s: float) -> Sequence[Record]:
         """What came since, in order; waits for something to come or for ``wake``."""
         ...

@@ -30,6 +30,7 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     ConfirmCommand,
+    DoneApart,
     ForgetWearers,
     OpenIncident,
     RegisterUnit,
@@ -41,6 +42,7 @@ from shared.messages.station import (
     SetPlan,
     SetRest,
     SetStart,
+    TakeOver,
     Unassign,
 )
 
@@ -118,6 +120,9 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             pass  # the audit and the log have it
         case ForgetWearers():
             pass  # what is stored was rewritten before
+
+        case TakeOver() | DoneApart():
+            pass  # the audit and the log have it
 
 
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
