@@ -7,6 +7,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from queue import SimpleQueue
+from threading import Thread
 from typing import Any
 
 import zenoh
@@ -20,6 +21,7 @@ from shared.tls import TlsIdentity
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
 _LEASE_MS = 3000
 _KEEP_ALIVES_A_LEASE = 4
+_SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,7 @@ class ClientEndpoint:
     patience_s: float = 10.0
 
 
+_Samples = zenoh.handlers.Handler[zenoh.Sample]
 Endpoint = StationEndpoint | UnitEndpoint | ClientEndpoint
 
 
@@ -91,12 +94,11 @@ class ZenohBus:
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
         self._require_open()
         gate = HandlerGate(require_key_expression(key_expression), handler)
-
-        def on_sample(sample: zenoh.Sample) -> None:
-            if sample.kind == zenoh.SampleKind.PUT:
-                gate(str(sample.key_expr), sample.payload.to_bytes())
-
-        return _Declared(gate, self._session.declare_subscriber(key_expression, _direct(on_sample)))
+        subscriber = self._session.declare_subscriber(
+            key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING)
+        )
+        Thread(target=_hand_over, args=(subscriber, gate), name="bus-samples", daemon=True).start()
+        return _Declared(gate, subscriber)
 
     def declare_alive(self, key: str) -> Subscription:
         self._require_open()
@@ -185,6 +187,24 @@ class _Declared:
         if self._declared is not None:
             self._declared.undeclare()
             self._declared = None
+
+
+def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> None:
+    """Until the subscription ends.  The link's own thread would have to wait for the interpreter
+    with every sample, milliseconds where another thread is at work, and what comes meanwhile
+    is dropped at the far end.  So samples wait on this side, and all that are there are taken
+    in one go.
+    """
+    samples = subscriber.handler  # the subscriber itself could not be closed while it receives
+    try:
+        while True:
+            sample: zenoh.Sample | None = samples.recv()
+            while sample is not None:
+                if sample.kind == zenoh.SampleKind.PUT:
+                    gate(str(sample.key_expr), sample.payload.to_bytes())
+                sample = samples.try_recv()
+    except zenoh.ZError:
+        return
 
 
 def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
