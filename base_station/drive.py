@@ -18,7 +18,7 @@ import msgspec
 
 from base_station import command_book
 from base_station.api.wire import Snapshot
-from base_station.backfill import Held, Report
+from base_station.backfill import Report
 from base_station.events import Refused
 from base_station.hearing import Heard, judge
 from base_station.keeping import Keeping
@@ -28,6 +28,7 @@ from base_station.projector import Projector
 from base_station.self_watch import SelfWatch
 from base_station.sinks import ActionDone
 from base_station.surroundings import Record, Surroundings
+from base_station.unit_journal import Held
 from shared.channels import OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode

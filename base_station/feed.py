@@ -18,6 +18,7 @@ from shared.mcap_log import LogRecord, read_log
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
+_LATE_SHARE = 0.01  # of the queue, for what can wait: live data stands behind no more of it
 
 
 class SteadyClock:
@@ -90,9 +91,9 @@ class LiveFeed:
                 self._overflowed += 1
 
     def deliver(self, key: str, payload: bytes) -> None:
-        """As ``offer``, for data that can wait: returns when half the queue is free again."""
+        """As ``offer``, for data that can wait: returns when hardly anything waits."""
         with self._changed:
-            self._changed.wait_for(lambda: self._has_room(0.5) or self._closed)
+            self._changed.wait_for(lambda: self._has_room(_LATE_SHARE) or self._closed)
             self._append(key, payload)
 
     def take(self, timeout_s: float) -> list[LogRecord]:

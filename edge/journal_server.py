@@ -19,7 +19,9 @@ _ENTRY_OVERHEAD_BYTES = 24
 
 
 class JournalServer:
-    """Serves ``index``, ``range`` and ``acknowledge`` under ``muster/v1/{unit}/journal/``."""
+    """Serves ``index``, ``urgent``, ``range`` and ``acknowledge`` under
+    ``muster/v1/{unit}/journal/``.
+    """
 
     def __init__(self, unit_id: str, spool: Spool) -> None:
         self._prefix = f"{ROOT}/{unit_id}/journal"
@@ -37,8 +39,8 @@ class JournalServer:
             match key.removeprefix(self._prefix + "/"):
                 case "index":
                     yield JournalIndex(self._spool.boots()).to_bytes()
-                case "range":
-                    yield from self._range(values)
+                case "range" | "urgent" as what:
+                    yield from self._range(values, urgent_only=what == "urgent")
                 case "acknowledge":
                     self._spool.acknowledge(int(values["epoch"]), int(values["to"]))
                     yield JournalIndex(self._spool.boots()).to_bytes()
@@ -49,7 +51,7 @@ class JournalServer:
         except StoreError as error:
             logger.error("the journal cannot answer: %s", error)
 
-    def _range(self, values: dict[str, str]) -> Iterator[bytes]:
+    def _range(self, values: dict[str, str], *, urgent_only: bool) -> Iterator[bytes]:
         boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
         if boot_id == self._spool.boot_id:
             last = min(last, self._spool.last_seq)  # what is not written yet is not lost
@@ -58,16 +60,18 @@ class JournalServer:
         bytes_left = int(values.get("total", _TOTAL_BYTES))
         entries: list[JournalEntry] = []
         size = 0
-        for count, entry in enumerate(self._spool.read(boot_id, first, last), start=1):
+        kept = self._spool.read(boot_id, first, last, urgent_only=urgent_only)
+        for count, entry in enumerate(kept, start=1):
             entries.append(entry)
             entry_bytes = len(entry.payload) + _ENTRY_OVERHEAD_BYTES
             size += entry_bytes
             bytes_left -= entry_bytes
             ends = count >= most or bytes_left <= 0
             if ends or size >= reply_bytes:
-                yield JournalChunk(boot_id, first, entry.seq, tuple(entries)).to_bytes()
+                chunk = JournalChunk(boot_id, first, entry.seq, tuple(entries), urgent_only)
+                yield chunk.to_bytes()
                 first, entries, size = entry.seq + 1, [], 0
             if ends:
                 return
         if first <= last:
-            yield JournalChunk(boot_id, first, last, tuple(entries)).to_bytes()
+            yield JournalChunk(boot_id, first, last, tuple(entries), urgent_only).to_bytes()

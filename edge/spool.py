@@ -96,7 +96,9 @@ class Spool:
             if self._bytes_used() > self._limit_bytes:
                 self._make_room()
 
-    def read(self, boot_id: int, from_seq: int, to_seq: int) -> Iterator[JournalEntry]:
+    def read(
+        self, boot_id: int, from_seq: int, to_seq: int, *, urgent_only: bool = False
+    ) -> Iterator[JournalEntry]:
         """What is kept of these sequence numbers, in order; both ends belong to the range.
 
         Reads while it is iterated, beside the writer.
@@ -109,7 +111,7 @@ class Spool:
                     "seq BETWEEN ? AND ? ORDER BY seq",
                     (worth, boot_id, from_seq, to_seq),
                 )
-                for worth in _WORTHS
+                for worth in ((_ALERT,) if urgent_only else _WORTHS)
             ]
             for row in heapq.merge(*parts, key=itemgetter(0)):
                 yield JournalEntry(*row)

@@ -17,6 +17,7 @@ from shared.channels import Qos
 SampleHandler = Callable[[str, bytes], None]  # key, payload
 LivelinessHandler = Callable[[str, bool], None]  # key of the token, alive
 QueryHandler = Callable[[str, str, bytes], Iterable[bytes]]  # key, parameters, payload -> replies
+ReplyHandler = Callable[[bytes | None], None]  # each reply, and None when there are no more
 
 
 class Subscription(Protocol):
@@ -46,6 +47,21 @@ class Bus(Protocol):
 
     def query(self, selector: str, payload: bytes, timeout_s: float) -> Iterable[bytes]:
         """Ask and yield replies as they come; with no one to answer, nothing."""
+        ...
+
+    def ask(
+        self,
+        selector: str,
+        payload: bytes,
+        timeout_s: float,
+        on_reply: ReplyHandler,
+        *,
+        urgent: bool = False,
+    ) -> None:
+        """As ``query``, without waiting: ``on_reply`` is called by a thread of the bus.
+
+        An ``urgent`` question and its replies go ahead of live data, any other behind it.
+        """
         ...
 
     def is_linked(self) -> bool:

@@ -8,7 +8,13 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from threading import Lock
 
-from shared.bus import LivelinessHandler, QueryHandler, SampleHandler, Subscription
+from shared.bus import (
+    LivelinessHandler,
+    QueryHandler,
+    ReplyHandler,
+    SampleHandler,
+    Subscription,
+)
 from shared.bus_handlers import (
     HandlerGate,
     intersects,
@@ -203,6 +209,20 @@ class MemoryBus:
         self._require_open()
         key, _, parameters = selector.partition("?")
         return self._router.answers(self, require_key_expression(key), parameters, payload)
+
+    def ask(
+        self,
+        selector: str,
+        payload: bytes,
+        timeout_s: float,
+        on_reply: ReplyHandler,
+        *,
+        urgent: bool = False,
+    ) -> None:
+        del urgent
+        for reply in self.query(selector, payload, timeout_s):
+            on_reply(reply)
+        on_reply(None)
 
     def is_linked(self) -> bool:
         return self._linked and not self._closed

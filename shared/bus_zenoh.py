@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from queue import SimpleQueue
 from threading import Thread
@@ -12,7 +12,13 @@ from typing import Any
 
 import zenoh
 
-from shared.bus import LivelinessHandler, QueryHandler, SampleHandler, Subscription
+from shared.bus import (
+    LivelinessHandler,
+    QueryHandler,
+    ReplyHandler,
+    SampleHandler,
+    Subscription,
+)
 from shared.bus_handlers import HandlerGate, require_key, require_key_expression
 from shared.channels import Qos
 from shared.errors import BusError, PortInUseError
@@ -136,20 +142,37 @@ class ZenohBus:
         )
 
     def query(self, selector: str, payload: bytes, timeout_s: float) -> Iterable[bytes]:
+        replies: SimpleQueue[bytes | None] = SimpleQueue()
+        self.ask(selector, payload, timeout_s, replies.put)
+        return iter(replies.get, None)
+
+    def ask(
+        self,
+        selector: str,
+        payload: bytes,
+        timeout_s: float,
+        on_reply: ReplyHandler,
+        *,
+        urgent: bool = False,
+    ) -> None:
         self._require_open()
         require_key_expression(selector.partition("?")[0])
-        replies: SimpleQueue[zenoh.Reply | None] = SimpleQueue()
+
+        def take(reply: zenoh.Reply) -> None:
+            if reply.ok is not None:
+                on_reply(reply.ok.payload.to_bytes())
+
         self._session.get(
             selector,
-            zenoh.handlers.Callback(replies.put, drop=lambda: replies.put(None), indirect=False),
+            zenoh.handlers.Callback(take, drop=lambda: on_reply(None), indirect=False),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
             congestion_control=zenoh.CongestionControl.BLOCK,
-            priority=zenoh.Priority.BACKGROUND,  # the replies travel as the query did
+            # The replies travel as the query did.
+            priority=zenoh.Priority.REAL_TIME if urgent else zenoh.Priority.BACKGROUND,
             timeout=timeout_s,
             payload=payload,
         )
-        return _payloads(replies)
 
     def is_linked(self) -> bool:
         if self._session.is_closed():
@@ -210,12 +233,6 @@ def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> Non
 def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
     """Called in the thread that receives: the shortest way."""
     return zenoh.handlers.Callback(callback, indirect=False)
-
-
-def _payloads(replies: SimpleQueue[zenoh.Reply | None]) -> Iterator[bytes]:
-    while (reply := replies.get()) is not None:
-        if reply.ok is not None:
-            yield reply.ok.payload.to_bytes()
 
 
 def _settings(endpoint: Endpoint) -> dict[str, Any]:

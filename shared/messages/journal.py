@@ -19,17 +19,22 @@ class JournalChunk(msgspec.Struct, frozen=True):
     """A run of one boot's journal.
 
     It accounts for every sequence number from ``from_seq`` to ``to_seq``: a number without
-    an entry is no longer kept, or never was.
+    an entry is no longer kept, or never was; in one that is ``urgent_only``, all that is
+    known of it is that it is no alert.
     """
 
     boot_id: int
     from_seq: int
     to_seq: int
     entries: tuple[JournalEntry, ...]
+    urgent_only: bool = False
 
     def to_bytes(self) -> bytes:
         wire = journal_pb2.JournalChunk(
-            boot_id=self.boot_id, from_seq=self.from_seq, to_seq=self.to_seq
+            boot_id=self.boot_id,
+            from_seq=self.from_seq,
+            to_seq=self.to_seq,
+            urgent_only=self.urgent_only,
         )
         for entry in self.entries:
             wire.entries.add(seq=entry.seq, suffix=entry.suffix, payload=entry.payload)
@@ -50,6 +55,7 @@ class JournalChunk(msgspec.Struct, frozen=True):
             entries=tuple(
                 JournalEntry(entry.seq, entry.suffix, entry.payload) for entry in wire.entries
             ),
+            urgent_only=wire.urgent_only,
         )
 
 

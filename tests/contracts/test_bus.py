@@ -291,6 +291,30 @@ def test_a_query_without_anyone_to_answer_yields_nothing(ends: Ends) -> None:
     assert list(ends.station.query("muster/v1/nobody/journal", b"", 0.5)) == []
 
 
+@pytest.mark.parametrize("urgent", [False, True])
+def test_what_is_asked_without_waiting_is_answered_in_order_and_ended_once(
+    ends: Ends, urgent: bool
+) -> None:
+    ends.unit.serve("muster/v1/anna/journal", lambda *_: (b"%d" % n for n in range(100)))
+    heard: list[bytes | None] = []
+
+    def answered() -> bool:
+        heard.clear()
+        ends.station.ask("muster/v1/anna/journal", b"", 10.0, heard.append, urgent=urgent)
+        until(lambda: None in heard, "the end of the replies")
+        return len(heard) > 1
+
+    until(answered, "replies")
+    assert heard == [*(b"%d" % n for n in range(100)), None]
+
+
+def test_what_nobody_answers_ends_all_the_same(ends: Ends) -> None:
+    heard: list[bytes | None] = []
+    ends.station.ask("muster/v1/nobody/journal", b"", 0.5, heard.append)
+    until(lambda: bool(heard), "the end of the replies")
+    assert heard == [None]
+
+
 def test_a_query_handler_that_fails_answers_nothing(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable
+from typing import cast
 
 import pytest
 
-from base_station.backfill import Backfill, Held
+from base_station.backfill import AT_ONCE, Backfill
 from base_station.pace import LEAST_BYTES
+from base_station.unit_journal import Held
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
+from shared.bus import Bus, ReplyHandler
 from shared.bus_memory import MemoryRouter
-from shared.channels import POSITION, backfilled_key
+from shared.channels import EVENT, POSITION, backfilled_key
 from shared.clock import ManualClock
+from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 
 BOOT = 77
@@ -28,10 +33,11 @@ class Bench:
         self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
         self.spool.append([Journaled(n, POSITION, n, b"%d" % n) for n in numbers])
         server = JournalServer("FF-01", self.spool)
-        self.questions: list[str] = []
+        self.questions: list[str] = []  # for ranges
 
         def replies(key: str, parameters: str, payload: bytes):
-            self.questions.append(parameters)
+            if key.endswith("/range"):
+                self.questions.append(parameters)
             return server.replies(key, parameters, payload)
 
         self.unit_bus.serve(server.key_expression, replies)
@@ -66,13 +72,13 @@ def until(condition: Callable[[], bool]) -> None:
         time.sleep(0.01)
 
 
-def test_what_is_missing_comes_in_order_and_once(bench):
+def test_what_is_missing_comes_newest_gap_first_and_once(bench):
     for _ in range(4):
         bench.report(Run(1, 2), Run(6, 7))
     until(lambda: len(bench.delivered) == 6)
     for _ in range(3):
         bench.report(Run(1, 2), Run(6, 7))
-    assert bench.numbers == [3, 4, 5, 8, 9, 10]
+    assert bench.numbers == [8, 9, 10, 3, 4, 5]
     assert bench.backfill.fetched == 6
 
 
@@ -93,7 +99,7 @@ def test_a_boot_that_the_station_never_heard_of_is_fetched(bench):
     for _ in range(3):
         bench.backfill.report({"FF-01": ()})
         time.sleep(0.05)
-    until(lambda: bench.numbers == list(range(1, 11)))
+    until(lambda: sorted(bench.numbers) == list(range(1, 11)))
 
 
 def test_numbers_that_no_journal_has_are_counted_and_not_asked_for_again(tmp_path):
@@ -120,4 +126,106 @@ def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(t
     totals = [int(one["total"]) for one in asked if "total" in one]
     assert totals == [LEAST_BYTES * 2**number for number in range(len(totals))]
     assert len(totals) > 1
-    assert bench.numbers == list(range(2, 301))
+    assert sorted(bench.numbers) == list(range(2, 301))
+
+
+def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):
+    bench = Bench(tmp_path, [1])
+    said = [Journaled(n, POSITION, n, b"%d" % n) for n in range(2, 1001)]
+    said[498] = Journaled(500, EVENT, 500, b"fall")
+    bench.spool.append(said)
+    for _ in range(4):
+        bench.report(Run(1, 1), Run(1000, 1000))
+    until(lambda: len(bench.delivered) == 998)
+    bench.backfill.close()
+    bench.spool.close()
+    assert bench.delivered[0] == (backfilled_key("FF-01", "alert/event"), b"fall")
+    numbers = [int(payload) for _, payload in bench.delivered[1:]]
+    assert sorted(numbers) == [n for n in range(2, 1000) if n != 500]
+
+
+class StubBus:
+    """Answers when the test says so."""
+
+    def __init__(self) -> None:
+        self.asked: dict[str, ReplyHandler] = {}  # by unit; what is under way
+        self.most = 0
+        self.questions: list[tuple[str, str]] = []
+
+    def ask(self, selector, payload, timeout_s, on_reply, *, urgent=False):
+        unit_id, what = selector.split("/")[2], selector.split("/")[4].partition("?")[0]
+        assert unit_id not in self.asked, "one question at a time"
+        self.questions.append((unit_id, what))
+        self.asked[unit_id] = on_reply
+        self.most = max(self.most, len(self.asked))
+
+    def answer(self, unit_id: str, *replies: bytes) -> None:
+        on_reply = self.asked.pop(unit_id)
+        for reply in replies:
+            on_reply(reply)
+        on_reply(None)
+
+
+@pytest.fixture
+def crowd():
+    """Many units, each with a backlog of 100 messages."""
+    bus = StubBus()
+    backfill = Backfill(cast("Bus", bus), lambda *_: None, ManualClock())
+    backfill.start()
+    units = [f"FF-{number:02}" for number in range(40)]
+
+    def report() -> None:
+        backfill.report({unit_id: (Held(BOOT, (Run(101, 101),)),) for unit_id in units})
+        time.sleep(0.05)
+
+    report()
+    until(lambda: len(bus.asked) == 40)
+    index = JournalIndex((JournalBoot(BOOT, 1, 101, 0, 0),)).to_bytes()
+    for unit_id in units:
+        bus.answer(unit_id, index)
+    until(lambda: len(bus.asked) == 40)
+    for unit_id in units:
+        bus.answer(unit_id, JournalChunk(BOOT, 1, 101, (), urgent_only=True).to_bytes())
+    report()
+    yield bus, report
+    backfill.close()
+
+
+def test_what_is_small_is_asked_of_all_at_once_and_backlogs_of_some(crowd):
+    bus, _ = crowd
+    assert [what for _, what in bus.questions[:80]] == ["index"] * 40 + ["urgent"] * 40
+    until(lambda: len(bus.asked) == AT_ONCE)
+    assert {what for _, what in bus.questions[80:]} == {"range"}
+
+
+def test_units_take_turns_and_one_that_is_silent_holds_up_none(crowd):
+    bus, _ = crowd
+    until(lambda: len(bus.asked) == AT_ONCE)
+    silent = next(iter(bus.asked))
+    for _ in range(200):
+        until(lambda: len(bus.asked) == AT_ONCE)
+        unit_id = next(one for one in bus.asked if one != silent)
+        piece = JournalEntry(1, "up/position", b"one")
+        bus.answer(unit_id, JournalChunk(BOOT, 1, 1, (piece,)).to_bytes())
+    turns = Counter(unit_id for unit_id, what in bus.questions if what == "range")
+    assert turns.pop(silent) == 1
+    assert len(turns) == 39
+    assert max(turns.values()) - min(turns.values()) <= 1
+
+
+def test_a_unit_that_does_not_answer_is_asked_again_at_the_next_report(crowd):
+    bus, report = crowd
+    until(lambda: len(bus.asked) == AT_ONCE)
+    unit_id = next(iter(bus.asked))
+    bus.answer(unit_id)
+    before = bus.questions.count((unit_id, "range"))
+    time.sleep(0.05)
+    assert bus.questions.count((unit_id, "range")) == before
+    report()
+    for other in [one for one in bus.asked if one != unit_id]:
+        bus.answer(other)
+    while unit_id not in bus.asked:
+        until(lambda: len(bus.asked) == AT_ONCE)
+        bus.answer(next(iter(bus.asked)))
+        time.sleep(0.005)
+    assert bus.questions.count((unit_id, "range")) == before + 1

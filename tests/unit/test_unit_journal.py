@@ -1,0 +1,114 @@
+"""What a unit's journal is asked next follows from what the station has."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.unit_journal import Held, Question, UnitJournal
+from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
+from shared.sequence_set import Run
+
+BOOT = 7
+
+
+def indexed(journal: UnitJournal, *boots: JournalBoot) -> None:
+    question = journal.next_question()
+    assert question is not None
+    assert question.what == "index"
+    journal.take(question, JournalIndex(boots).to_bytes(), 1)
+    journal.end(question, 1)
+
+
+def journal_of(*runs: Run, last: int = 100) -> UnitJournal:
+    journal = UnitJournal()
+    journal.report((Held(BOOT, runs),), 0)
+    indexed(journal, JournalBoot(BOOT, 1, last, 0, 0))
+    return journal
+
+
+def answer(journal: UnitJournal, question: Question, chunk: JournalChunk) -> None:
+    journal.take(question, chunk.to_bytes(), 1)
+    journal.end(question, 1)
+
+
+def next_of(journal: UnitJournal) -> tuple[str, dict[str, int]]:
+    question = journal.next_question()
+    assert question is not None
+    return question.what, dict(question.parameters)
+
+
+def test_alerts_are_asked_for_at_once_over_the_whole_of_what_is_missing() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30), Run(61, 70))
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 60)
+
+
+def test_an_alert_that_may_still_be_under_way_is_waited_for() -> None:
+    journal = journal_of(Run(1, 70), last=100)
+    assert journal.next_question() is None
+
+
+def test_alerts_are_asked_for_once() -> None:
+    journal = journal_of(Run(1, 10), Run(61, 70))
+    question = journal.next_question()
+    assert question is not None
+    alert = JournalEntry(20, "alert/event", b"")
+    answer(journal, question, JournalChunk(BOOT, 11, 20, (alert,), urgent_only=True))
+    question = journal.next_question()
+    assert question is not None
+    assert dict(question.parameters)["from"] == 21  # where the answer had ended
+    answer(journal, question, JournalChunk(BOOT, 21, 60, (), urgent_only=True))
+    journal.report((Held(BOOT, (Run(1, 10), Run(61, 70))),), 1)
+    assert next_of(journal)[0] == "range"
+
+
+def test_what_the_alerts_brought_is_not_fetched_again() -> None:
+    journal = journal_of(Run(1, 18), Run(21, 21), last=21)
+    question = journal.next_question()
+    assert question is not None
+    alert = JournalEntry(20, "alert/event", b"")
+    answer(journal, question, JournalChunk(BOOT, 19, 20, (alert,), urgent_only=True))
+    journal.report((Held(BOOT, (Run(1, 18), Run(21, 21))),), 1)
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("range", 19, 19)
+
+
+def test_the_newest_piece_is_asked_for_first() -> None:
+    journal = journal_of(Run(1, 1), last=1000)
+    journal.report((Held(BOOT, (Run(1, 1),)),), 1)
+    what, asked = next_of(journal)
+    assert (what, asked["to"]) == ("range", 1000)
+    assert 1 < asked["from"] < 1000
+
+
+@pytest.mark.parametrize("reports", [1, 2])
+def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -> None:
+    journal = journal_of(Run(1, 100))
+    for number in range(1, reports):
+        journal.report((Held(BOOT, (Run(1, 100 + number),)),), number)
+    question = journal.next_question()
+    if reports == 1:
+        assert question is None
+        return
+    assert question is not None
+    assert question == Question("acknowledge", (("epoch", BOOT), ("to", 100)))
+    index = JournalIndex((JournalBoot(BOOT, 1, 101, 100, 0),)).to_bytes()
+    journal.take(question, index, 1)
+    journal.end(question, 1)
+    assert journal.next_question() is None
+
+
+def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
+    journal = journal_of(Run(1, 4), Run(8, 8), last=8)
+    question = journal.next_question()
+    assert question is not None
+    answer(journal, question, JournalChunk(BOOT, 5, 7, (), urgent_only=True))
+    for number in range(2):
+        journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
+        question = journal.next_question()
+        assert question is not None
+        if question.what == "range":
+            answer(journal, question, JournalChunk(BOOT, 5, 7, ()))
+    assert journal.gone == 3
+    journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), 3)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8})
