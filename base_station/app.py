@@ -128,6 +128,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
             replays=Replays(_replay_starter(archive, roster, steady)),
             clock=steady,
             secure=config.http.certificate is not None,
+            accountability=config.accountability,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
         index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
+from base_station.live_state import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.config import Within
 from shared.errors import ConfigError
 
@@ -42,6 +43,14 @@ class LogConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class AccountabilityConfig:
+    """With what an incident begins; the commander can change it there."""
+
+    par_interval_s: Annotated[float, Within(30.0, 43_200.0)] = PAR_INTERVAL_S
+    work_limit_s: Annotated[float, Within(30.0, 43_200.0)] = WORK_LIMIT_S
+
+
+@dataclass(frozen=True, slots=True)
 class StationConfig:
     data: Path = Path("muster-data")  # log, database and first login; one station a folder
     insecure: bool = False  # accept plain connections from other machines
@@ -49,6 +58,7 @@ class StationConfig:
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
     log: LogConfig = field(default_factory=LogConfig)
+    accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def plain_endpoints(self) -> tuple[str, ...]:
         """Where others could listen in: what is not encrypted and leaves this machine."""

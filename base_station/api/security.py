@@ -7,6 +7,8 @@ something must come with the station's own ``Origin``.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from enum import StrEnum
 from typing import Annotated
 from urllib.parse import urlsplit
 
@@ -72,6 +74,10 @@ def _signed_in(
     principal = principal_of(request, services)
     if principal is None:
         raise Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
+    tags = request.scope["route"].tags
+    if not covers(principal, tags):
+        allowed = ", ".join(sorted(principal.scopes))
+        raise Problem(403, f"This token is for {allowed}, not for {', '.join(tags)}.")
     return principal
 
 
@@ -96,6 +102,34 @@ def _at_least(principal: Principal, role: Role) -> Principal:
             403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
         )
     return principal
+
+
+class Scope(StrEnum):
+    """What a token can be for: the tags of the routers."""
+
+    ACCOUNTABILITY = "accountability"
+    ALARMS = "alarms"
+    ASSIGNMENTS = "assignments"
+    AUDIT = "audit"
+    COMMANDS = "commands"
+    EXPORTS = "exports"
+    FORGETTING = "forgetting"
+    HEALTH = "health"
+    INCIDENTS = "incidents"
+    LIVE = "live"
+    PEOPLE = "people"
+    PINS = "pins"
+    REPLAYS = "replays"
+    SITE = "site"
+    TOKENS = "tokens"
+    TRACKS = "tracks"
+    UNITS = "units"
+    USERS = "users"
+
+
+def covers(principal: Principal, tags: Collection[str]) -> bool:
+    """Whether a token is for this part of the API; who one is may always be asked."""
+    return not principal.scopes or "login" in tags or not principal.scopes.isdisjoint(tags)
 
 
 class LoginThrottle:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from fastapi import Depends
@@ -13,6 +13,7 @@ from starlette.requests import HTTPConnection
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.wire import Snapshot
+from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
@@ -35,6 +36,7 @@ class Services:
     replays: Replays
     clock: Clock
     secure: bool  # the console is served over TLS
+    accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def act(self, by: str, action: Action) -> ActionDone:
         """Have the drive take a person's action, and wait until it can be read everywhere.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import secrets
 import threading
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from enum import IntEnum
 
 import msgspec
@@ -53,6 +53,7 @@ class Principal(msgspec.Struct, frozen=True):
 
     username: str
     role: Role
+    scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
 
 
 class Accounts:
@@ -110,6 +111,22 @@ class Accounts:
 
     # ---- sessions
 
+    def open_sessions(self) -> dict[str, int]:
+        """How many sessions each user has that has any."""
+        with self._store.read() as session:
+            rows = session.execute(
+                select(LoginSession.username, func.count())
+                .where(LoginSession.expires_ns > self._clock.utc_ns())
+                .group_by(LoginSession.username)
+            )
+            return {row[0]: row[1] for row in rows}
+
+    def end_sessions(self, username: str) -> None:
+        """Everybody who is logged in as this user has to log in again."""
+        with self._store.write() as session:
+            _user(session, username)
+            session.execute(delete(LoginSession).where(LoginSession.username == username))
+
     def log_in(self, username: str, password: str) -> str | None:
         """The secret of a new session; None where name or password is wrong."""
         with self._store.read() as session:
@@ -151,7 +168,12 @@ class Accounts:
     # ---- API tokens
 
     def add_token(
-        self, username: str, name: str, role: Role, expires_ns: int | None
+        self,
+        username: str,
+        name: str,
+        role: Role,
+        expires_ns: int | None,
+        scopes: Collection[str] = (),
     ) -> tuple[str, str]:
         """``(token_id, secret)``; the secret is never to be had again."""
         secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
@@ -165,6 +187,7 @@ class Accounts:
                     username=username,
                     name=name,
                     role=role.word,
+                    scopes=" ".join(sorted(scopes)),
                     created_ns=self._clock.utc_ns(),
                     expires_ns=expires_ns,
                 )
@@ -197,7 +220,8 @@ class Accounts:
         if token.expires_ns is not None and token.expires_ns <= self._clock.utc_ns():
             return None
         # An owner who was demoted takes the tokens along.
-        return Principal(token.username, min(Role.of(token.role), Role.of(owner_role)))
+        role = min(Role.of(token.role), Role.of(owner_role))
+        return Principal(token.username, role, frozenset(token.scopes.split()))
 
 
 def _user(session: Session, username: str) -> User:

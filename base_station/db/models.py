@@ -63,6 +63,7 @@ class ApiToken(Base):
     username: Mapped[str] = mapped_column(ForeignKey("users.username", ondelete="CASCADE"))
     name: Mapped[str]
     role: Mapped[str]  # at most that of its owner
+    scopes: Mapped[str] = mapped_column(server_default="")  # words with spaces; empty: all
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]
 

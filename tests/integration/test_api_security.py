@@ -10,7 +10,8 @@ import httpx
 import pytest
 import pytest_asyncio
 
-from base_station.api.security import COOKIE
+from base_station.api.routes import ROUTERS
+from base_station.api.security import COOKIE, Scope
 from base_station.db.accounts import SESSION_S, Role
 from shared.clock import ManualClock
 from tests.station import ORIGIN, PASSWORD, DeskStation
@@ -175,3 +176,39 @@ async def test_a_body_without_end_is_refused(browser: httpx.AsyncClient) -> None
         "/people", content=b"x" * 13_000_000, headers={"content-type": "application/json"}
     )
     assert answer.status_code == 413
+
+
+async def test_a_token_reaches_only_what_it_is_for(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    wanted = {"name": "dispatch", "role": "commander", "scopes": ["incidents", "tokens"]}
+    made = (await browser.post("/tokens", json=wanted)).json()
+    async with station.client() as program:
+        program.headers["authorization"] = f"Bearer {made['token']}"
+        assert (await program.get("/me")).status_code == 200
+        assert (await program.get("/incidents")).status_code == 200
+        refused = await program.get("/people")
+        assert refused.status_code == 403
+        assert "incidents" in refused.json()["detail"]
+        wider = {"name": "more", "role": "viewer"}
+        assert (await program.post("/tokens", json=wider)).status_code == 403
+        wider["scopes"] = "people"
+        assert (await program.post("/tokens", json=wider)).status_code == 422
+        narrower = {"name": "less", "role": "viewer", "scopes": ["incidents"]}
+        assert (await program.post("/tokens", json=narrower)).status_code == 201
+
+
+def test_a_token_can_be_for_every_part_of_the_api() -> None:
+    tags = {tag for router in ROUTERS for tag in router.tags}
+    assert tags - {"login"} <= {scope.value for scope in Scope}
+
+
+async def test_an_administrator_ends_sessions(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    async with station.client(Role.ADMINISTRATOR) as administrator:
+        users = {user["username"]: user for user in (await administrator.get("/users")).json()}
+        assert users["commander"]["sessions"] == 1
+        assert (await administrator.delete("/users/commander/sessions")).status_code == 204
+        assert (await administrator.delete("/users/nobody/sessions")).status_code == 409
+    assert (await browser.get("/me")).status_code == 401

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from base_station.api.routes import (
+    accountability,
     alarms,
     assignments,
     audit,
@@ -34,6 +35,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     tracks.router,
     alarms.router,
     commands.router,
+    accountability.router,
     site.router,
     replays.router,
     exports.router,

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from base_station.api.forms import Form, Id, Name, to_ms, to_ms_or_none
 from base_station.api.problems import Problem
+from base_station.api.routes.accountability import Seconds
 from base_station.api.routes.alarms import Alarm, alarm_of
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
@@ -32,6 +33,8 @@ class Incident(BaseModel):
 
 class NewIncident(Form):
     name: Name
+    par_interval_s: Seconds | None = None  # None: as the station is configured
+    work_limit_s: Seconds | None = None
 
 
 def incident_or_404(station: Services, incident_id: str) -> models.Incident:
@@ -55,7 +58,14 @@ def list_incidents(station: Station, _: Viewer) -> list[Incident]:
 def open_incident(new: NewIncident, station: Station, who: Commander) -> Incident:
     opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
     incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
-    station.act(who.username, OpenIncident(incident_id, new.name))
+    usual = station.accountability
+    opening = OpenIncident(
+        incident_id,
+        new.name,
+        new.par_interval_s or usual.par_interval_s,
+        new.work_limit_s or usual.work_limit_s,
+    )
+    station.act(who.username, opening)
     return _incident(incident_or_404(station, incident_id))
 
 

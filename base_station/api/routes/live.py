@@ -10,10 +10,10 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
 from base_station.api.hub import Client, Hub
-from base_station.api.security import is_own_origin, principal_of
+from base_station.api.security import Scope, covers, is_own_origin, principal_of
 from base_station.api.services import Services, services_of
 
-router = APIRouter()
+router = APIRouter(tags=[Scope.LIVE])
 
 NOT_LOGGED_IN = 4401
 NOT_FOUND = 4404
@@ -115,8 +115,11 @@ async def _keep_checking(socket: WebSocket, services: Services) -> None:
 
 
 async def _check_login(socket: WebSocket, services: Services) -> None:
-    if await run_in_threadpool(principal_of, socket, services) is None:
+    principal = await run_in_threadpool(principal_of, socket, services)
+    if principal is None:
         raise Closing(NOT_LOGGED_IN, "log in first")
+    if not covers(principal, (Scope.LIVE,)):
+        raise Closing(NOT_LOGGED_IN, "this token is not for the live picture")
 
 
 async def _close(socket: WebSocket, closing: Closing) -> None:

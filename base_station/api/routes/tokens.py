@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from base_station.api.forms import Form, Id, Name, to_ms, to_ms_or_none
 from base_station.api.problems import Problem
 from base_station.api.routes.users import RoleWord
-from base_station.api.security import Viewer
+from base_station.api.security import Scope, Viewer
 from base_station.api.services import Station
 from base_station.db.accounts import Role
 from shared.clock import NS_PER_S
@@ -24,6 +24,7 @@ class Token(BaseModel):
     token_id: str
     name: str
     role: str
+    scopes: list[str]  # parts of the API; empty: all that the role may
     created_ms: int
     expires_ms: int | None
 
@@ -31,6 +32,7 @@ class Token(BaseModel):
 class NewToken(Form):
     name: Name
     role: RoleWord
+    scopes: Annotated[tuple[Scope, ...], Field(max_length=len(Scope))] = ()  # empty: all
     days: Annotated[int, Field(ge=1, le=3660)] | None = None
 
 
@@ -46,6 +48,7 @@ def list_tokens(station: Station, who: Viewer) -> list[Token]:
             token_id=token.token_id,
             name=token.name,
             role=token.role,
+            scopes=token.scopes.split(),
             created_ms=to_ms(token.created_ns),
             expires_ms=to_ms_or_none(token.expires_ns),
         )
@@ -59,8 +62,12 @@ def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
     role = Role.of(new.role)
     if role > who.role:  # a token makes no token that may do more than itself
         raise Problem(403, f"You are {who.role.word}; a token of yours cannot be {new.role}.")
-    token_id, secret = station.accounts.add_token(who.username, new.name, role, expires_ns)
-    station.records.audit(who.username, "AddedToken", f"{new.name} as {new.role}")
+    scopes = frozenset(new.scopes)
+    if who.scopes and (not scopes or not scopes <= who.scopes):
+        raise Problem(403, "A token makes only tokens for what it is for itself.")
+    token_id, secret = station.accounts.add_token(who.username, new.name, role, expires_ns, scopes)
+    what = ", ".join(sorted(scopes)) or "everything"
+    station.records.audit(who.username, "AddedToken", f"{new.name} as {new.role} for {what}")
     return TokenSecret(token_id=token_id, token=secret)
 
 

@@ -24,6 +24,7 @@ class User(BaseModel):
     username: str
     role: str
     created_ms: int
+    sessions: int  # that are open
 
 
 class NewUser(Form):
@@ -44,8 +45,14 @@ class PasswordChange(Form):
 
 @router.get("/users")
 def list_users(station: Station, _: Administrator) -> list[User]:
+    sessions = station.accounts.open_sessions()
     return [
-        User(username=user.username, role=user.role, created_ms=to_ms(user.created_ns))
+        User(
+            username=user.username,
+            role=user.role,
+            created_ms=to_ms(user.created_ns),
+            sessions=sessions.get(user.username, 0),
+        )
         for user in station.accounts.users()
     ]
 
@@ -70,6 +77,13 @@ def change_user(
 def remove_user(username: Username, station: Station, who: Administrator) -> None:
     station.accounts.remove_user(username)
     station.records.audit(who.username, "RemovedUser", username)
+
+
+@router.delete("/users/{username}/sessions", status_code=204)
+def end_sessions(username: Username, station: Station, who: Administrator) -> None:
+    """Everybody who is logged in as this user has to log in again; tokens stay."""
+    station.accounts.end_sessions(username)
+    station.records.audit(who.username, "EndedSessions", username)
 
 
 @router.post("/me/password", status_code=204)
