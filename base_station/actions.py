@@ -9,13 +9,12 @@ from typing import assert_never
 import msgspec
 
 from base_station import accountability, command_book
-from base_station import pin_book
 from base_station.alarms.book import AlarmBook
 from base_station.command_state import SentCommand
 from base_station.events import PinsTouched
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
-from base_station.pin_book import PinAction
+from base_station.pin_book import PinAction, change_pins
 from base_station.plan import read_plan
 from base_station.positioning import Positioning
 from shared.errors import UserError
@@ -59,7 +58,7 @@ class Actions:
 
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
         if isinstance(action, PinAction):
-            return [PinsTouched(tuple(sorted(pin_book.apply(state, by, action))))]
+            return [PinsTouched(tuple(sorted(change_pins(state, by, action))))]
         effects: Iterable[Effect] = state.units.values()
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():

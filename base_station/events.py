@@ -47,6 +47,12 @@ class TrailFilled(msgspec.Struct, frozen=True):
     unit_id: str
 
 
+class PinsTouched(msgspec.Struct, frozen=True):
+    """Pins or beacons changed, and with them the past of these units."""
+
+    unit_ids: tuple[str, ...]
+
+
 class CommandTouched(msgspec.Struct, frozen=True):
     """A command is new or has got further with a unit."""
 
@@ -60,7 +66,15 @@ class Refused(msgspec.Struct, frozen=True):
     reason: str  # for that person
 
 
-Output = FusedPosition | AlarmChange | UnitTouched | TrailFilled | CommandTouched | Refused
+Output = (
+    FusedPosition
+    | AlarmChange
+    | UnitTouched
+    | TrailFilled
+    | PinsTouched
+    | CommandTouched
+    | Refused
+)
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:

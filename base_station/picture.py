@@ -7,15 +7,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
-from base_station.events import CommandTouched, Output, TrailFilled, UnitTouched
+from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
 from base_station.pipeline import StationPipeline
 from base_station.sinks import LiveSink, PhotoUrls
 from base_station.views import (
     NS_PER_MS,
     StationFacts,
     alarm_view,
+    beacon_views,
     command_view,
     health_view,
+    pin_views,
     snapshot,
     trail_view,
     unit_view,
@@ -40,6 +42,7 @@ class Picture:
         self._alarms: list[AlarmChange] = []
         self._commands: dict[str, None] = {}
         self._filled: dict[str, None] = {}
+        self._pins_changed = False
         self._frame = self._frame_now()
 
     def note(self, outputs: Sequence[Output]) -> None:
@@ -50,6 +53,8 @@ class Picture:
                 self._commands[output.command_id] = None
             elif isinstance(output, TrailFilled):
                 self._filled[output.unit_id] = None
+            elif isinstance(output, PinsTouched):
+                self._pins_changed = True
             elif isinstance(output, AlarmChange):
                 self._alarms.append(output)
                 if output.unit_id:
@@ -60,7 +65,7 @@ class Picture:
         if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
             self.reset(replay)
             return
-        if not (self._units or self._alarms or self._commands or health or replay):
+        if not (self._has_news or health or replay):
             return
         state = self._pipeline.state
         self._seq += 1
@@ -76,14 +81,21 @@ class Picture:
                 for command_id in self._commands
                 if command_id in state.commands
             ),
-            trails=self._filled_trails() if health else {},
+            trails=self._filled_trails() if health or self._pins_changed else {},
+            pins=pin_views(state) if self._pins_changed else None,
+            beacons=beacon_views(state) if self._pins_changed else None,
             health=health_view(state, self.facts) if health else None,
             replay=replay,
         )
         self._units.clear()
         self._alarms.clear()
         self._commands.clear()
+        self._pins_changed = False
         self._sink.delta(delta)
+
+    @property
+    def _has_news(self) -> bool:
+        return bool(self._units or self._alarms or self._commands or self._pins_changed)
 
     def reset(self, replay: ReplayView | None = None) -> None:
         """Everybody begins again."""
@@ -92,6 +104,7 @@ class Picture:
         self._alarms.clear()
         self._commands.clear()
         self._filled.clear()
+        self._pins_changed = False
         self._sink.reset(self._snapshot(replay))
 
     def snapshot(self, replay: ReplayView | None = None) -> Snapshot:

@@ -53,6 +53,12 @@ class Plan(msgspec.Struct, frozen=True):
         signed_m = max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
         return signed_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
 
+    def away_m(self, north_m: float, east_m: float) -> float:
+        """How far from the nearest outline a place is; 0 within one or where there is none."""
+        return max(
+            0.0, min((-_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
+        )
+
 
 def read_plan(geojson: bytes) -> Plan:
     """Raises UserError, which says what a plan must look like."""

@@ -26,6 +26,7 @@ from shared.messages import (
     OperatorAction,
     Position,
     RawImu,
+    Sighting,
     Status,
     Temperature,
     Tick,
@@ -79,6 +80,7 @@ DESCRIPTION = Channel(
     "description", "up/description", UnitDescription, _UP, Qos.LIVE, 1 / 60, True, None
 )
 GPS = Channel("gps", "up/gps", GpsFix, _UP, Qos.LIVE, 1.0, True, None)
+SIGHTING = Channel("sighting", "up/sighting", Sighting, _UP, Qos.LIVE, None, True, None)
 IMU = Channel("imu", "up/imu", RawImu, _UP, Qos.LIVE, 20.0, True, None)
 HEARTBEAT = Channel("heartbeat", "heartbeat", Heartbeat, _UP, Qos.LIVE, 1.0, True, 10.0)
 EVENT = Channel("event", "alert/event", UnitEvent, _UP, Qos.ALERT, None, True, None)
@@ -95,6 +97,7 @@ CHANNELS: tuple[Channel, ...] = (
     TEMPERATURE,
     DESCRIPTION,
     GPS,
+    SIGHTING,
     IMU,
     HEARTBEAT,
     EVENT,

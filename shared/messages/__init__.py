@@ -17,6 +17,7 @@ from shared.messages.header import SCHEMA_REVISION, STATION_ID, Header
 from shared.messages.imu import RawImu
 from shared.messages.journal import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.messages.position import Position
+from shared.messages.sighting import Sighting, SightingKind
 from shared.messages.station import OperatorAction, Tick
 from shared.messages.status import Activity, Status
 from shared.messages.temperature import Temperature
@@ -29,6 +30,7 @@ Message = (
     | UnitDescription
     | RawImu
     | GpsFix
+    | Sighting
     | UnitEvent
     | Heartbeat
     | Command
@@ -64,6 +66,8 @@ __all__ = [
     "OperatorAction",
     "Position",
     "RawImu",
+    "Sighting",
+    "SightingKind",
     "Status",
     "Temperature",
     "Tick",

@@ -172,24 +172,6 @@ class DoneApart(msgspec.Struct, frozen=True):
     what: str  # a sentence
 
 
-class TakeOver(msgspec.Struct, frozen=True):
-    """From here on this station orders what happens; two stations' logs are compared by these."""
-
-    term: int  # higher than any before
-    station: str
-    after_t_ns: int  # the place behind which it stands: the last event's time,
-    after_count: int  # and how many events had that time
-
-
-class DoneApart(msgspec.Struct, frozen=True):
-    """What a person did at another station while the two were apart: kept, not applied."""
-
-    station: str
-    t_ns: int  # that station's time
-    who: str
-    what: str  # a sentence
-
-
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -214,8 +196,6 @@ Action = (
     | SetAccountability
     | SetRest
     | ForgetWearers
-    | TakeOver
-    | DoneApart
     | TakeOver
     | DoneApart
 )
@@ -244,8 +224,6 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     SetAccountability: "set_accountability",
     SetRest: "set_rest",
     ForgetWearers: "forget_wearers",
-    TakeOver: "take_over",
-    DoneApart: "done_apart",
     TakeOver: "take_over",
     DoneApart: "done_apart",
 }

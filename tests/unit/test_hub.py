@@ -33,7 +33,7 @@ class Source:
             self._hub.delta(Delta(self.seq, self.seq))
 
     def snapshot(self) -> Snapshot:
-        return Snapshot(self.seq, self.seq, None, (), (), (), {}, None, None, HEALTH, None)
+        return Snapshot(self.seq, self.seq, None, (), (), (), {}, (), (), None, None, HEALTH, None)
 
     def answer(self) -> None:
         for deliver in self.asked:

@@ -1,0 +1,59 @@
+"""What people and beacons tell of where somebody was, and what became of it.
+
+A pin is kept as it was set, whatever the rest says; ``PinVerdict`` says what it is worth.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+PinKind = Literal["place", "start", "meeting", "beacon", "tag"]
+PinState = Literal["used", "conflict", "waiting"]
+
+
+class Pin(msgspec.Struct, frozen=True):
+    """One unit was at a place, near a beacon, or beside another unit."""
+
+    pin_id: str
+    kind: PinKind
+    unit_id: str
+    t_ns: int  # station time; 0: where the unit's path begins
+    std_m: float  # each axis
+    set_ns: int
+    by: str  # a person, or the unit that saw it
+    note: str = ""
+    north_m: float | None = None  # in the incident frame; None: where ``other_id`` is
+    east_m: float | None = None
+    floor: int | None = None
+    heading_rad: float | None = None  # which way the wearer looked or went
+    heading_std_rad: float = 0.0
+    other_id: str = ""  # the beacon or tag, or the other unit of a meeting
+
+
+class PinVerdict(msgspec.Struct, frozen=True):
+    """What the solution with everything else makes of a pin."""
+
+    state: PinState
+    residual_m: float | None = None  # between the pin and the trail
+    sigmas: float | None = None  # the same in standard deviations of what was expected
+    text: str = ""  # for a person: what it conflicts with, or what it waits for
+
+
+class Beacon(msgspec.Struct, frozen=True):
+    """Something with an id that hangs at a known place: a radio beacon or a tag."""
+
+    beacon_id: str
+    label: str
+    north_m: float
+    east_m: float
+    floor: int | None
+    std_m: float
+    reach_m: float
+    placed_ns: int
+    by: str
+    seen_ns: int | None = None  # when a unit last saw it
+
+
+WAITING = PinVerdict("waiting", text="not solved yet")
