@@ -7,7 +7,7 @@ from __future__ import annotations
 from shared.mcap_log.folder import segment_paths
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
-from shared.mcap_log.schemas import location_topic, log_topic
+from shared.mcap_log.schemas import is_derived, location_topic, log_topic
 from shared.mcap_log.writing import (
     SegmentInfo,
     SegmentPolicy,
@@ -23,6 +23,7 @@ __all__ = [
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
+    "is_derived",
     "location_topic",
     "log_topic",
     "read_log",

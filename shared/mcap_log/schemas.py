@@ -27,6 +27,11 @@ def log_topic(unit_id: str) -> str:
     return f"{DERIVED}{unit_id}/log"
 
 
+def is_derived(key: str) -> bool:
+    """Whether a topic only repeats others for Foxglove."""
+    return key.startswith(DERIVED)
+
+
 def wire_type_of(key: str) -> Any | None:
     """The generated message class of a key's payloads; None where the key says nothing."""
     if key.startswith(DERIVED):
