@@ -11,6 +11,7 @@ from typing import Literal
 
 import msgspec
 
+from base_station.boot_state import BootState
 from base_station.command_state import SentCommand
 from base_station.pins import Beacon, Pin, PinVerdict
 from base_station.plan import Plan
@@ -27,7 +28,6 @@ from shared.messages import (
     UnitDescription,
 )
 from shared.messages.station import TakeOver
-from shared.sequence_set import SequenceSet
 
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
@@ -39,7 +39,7 @@ TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
 BOOTS = 16  # runs of a unit's program that are told from each other
-CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
+TOGETHER_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
 
 Link = Literal["live", "stale", "lost", "never"]
 News = Literal["new", "old", "repeat"]  # old: a later message of the channel came before it
@@ -78,25 +78,6 @@ class TrailStep(msgspec.Struct, frozen=True, array_like=True):
     north_m: float
     east_m: float
     floor: int | None
-
-
-class BootState(msgspec.Struct):
-    """One run of a unit's program: which of its messages came, and how its clock stands."""
-
-    boot_id: int
-    seen: SequenceSet = msgspec.field(default_factory=SequenceSet)
-    offset_ns: int = 0  # station time less the unit's monotonic time, of the fastest message
-    offset_t_ns: int = 0  # station time at which that was judged; 0: not yet
-
-    def note_clock(self, t_ns: int, t_mono_ns: int) -> None:
-        """The least delayed message tells the offset; it may drift by what clocks do."""
-        offset_ns = t_ns - t_mono_ns
-        drifted_ns = self.offset_ns + round((t_ns - self.offset_t_ns) * CLOCK_DRIFT)
-        if self.offset_t_ns == 0 or offset_ns < drifted_ns:
-            self.offset_ns, self.offset_t_ns = offset_ns, t_ns
-
-    def station_ns(self, t_mono_ns: int) -> int:
-        return t_mono_ns + self.offset_ns
 
 
 class Fault(msgspec.Struct, frozen=True):
@@ -172,7 +153,11 @@ class UnitState(msgspec.Struct):
             return "repeat"
         self.heard_ns = t_ns
         if channel is not GPS:  # a receiver may be wrong about when its fix was valid
-            boot.note_clock(t_ns, header.t_mono_ns)
+            boot.note_clock(t_ns, header)
+            running = self.boots[-1]
+            silent = t_ns - running.there_to_ns >= STALE_AFTER_S * NS_PER_S
+            if boot.note_there(t_ns, header) and boot is not running and silent:
+                self._let_run(boot)
         latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
         if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
             self.out_of_order += 1
@@ -197,14 +182,28 @@ class UnitState(msgspec.Struct):
             return "repeat"
         return "old"
 
+    @property
+    def twin(self) -> BootState | None:
+        """The run of another machine that was there together with the one that is shown."""
+        if not self.boots:
+            return None
+        *others, running = self.boots
+        twins = [one for one in others if one.together_ns(running) >= TOGETHER_NS]
+        return max(twins, key=lambda one: one.there_to_ns, default=None)
+
     def _boot(self, boot_id: int) -> BootState:
         """The boot of a live message; one not heard of before is the one that runs now."""
         boot = self._known_boot(boot_id)
         if boot is None:
             boot = BootState(boot_id)
-            self.boots = [*self.boots[1 - BOOTS :], boot]
-            self.latest_mono_ns.clear()
+            self._let_run(boot)
         return boot
+
+    def _let_run(self, boot: BootState) -> None:
+        """The live state follows this one from now on."""
+        others = [one for one in self.boots if one is not boot]
+        self.boots = [*others[1 - BOOTS :], boot]
+        self.latest_mono_ns.clear()
 
     def _known_boot(self, boot_id: int) -> BootState | None:
         return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)

@@ -84,7 +84,7 @@ class Positioning:
         """Where the wearer was at a position that came late; the trail is filled in there."""
         estimate = self._fuser(unit).recall(position)
         boot = unit.path_boot
-        if estimate is None or boot.boot_id != position.header.boot_id or boot.offset_t_ns == 0:
+        if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
         floor = state.plan.floor_at(estimate.down_m, None) if state.plan is not None else None
         fused = _as_message(estimate, unit, self._kind.name, floor, header)
@@ -102,7 +102,7 @@ class Positioning:
         if not verdict.accepted:
             return verdict
         boot = unit.boots[-1]
-        if boot.offset_t_ns and boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
+        if boot.is_placed and boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
             return FixVerdict(False, "from the future")
         if state.anchor is None and not self._anchor_itself(state, unit, fix):
             return FixVerdict(False, "the site has no anchor")

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from base_station.alarms.battery import Battery
 from base_station.alarms.calibration import Calibration
+from base_station.alarms.cloned_unit import ClonedUnit
 from base_station.alarms.fall import Fall
 from base_station.alarms.heat import Heat
 from base_station.alarms.link_lost import LinkLost
@@ -36,6 +37,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     PositionLost(),
     UnitFault(),
     UnknownUnit(),
+    ClonedUnit(),
     Calibration(),
     RestDue(),
 )

@@ -9,6 +9,7 @@ import pytest
 
 from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -87,6 +88,10 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
         due_ns=seen_ns - NS_PER_S, rest_due_ns=seen_ns - NS_PER_S,
     )  # fmt: skip
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
+    unit.boots = [
+        BootState(boot_id, there_from_ns=seen_ns - 90 * NS_PER_S, there_to_ns=unit.heard_ns)
+        for boot_id in (1, 2)
+    ]
     unit.description = UnitDescription(
         HEADER, "1", "", "sensor", 200.0, None, None, "eskf", "c1", False, False, False,
         calibrated_s=1, calibration_faults="accelerometer off by 0.2 m/s2",

@@ -1,0 +1,87 @@
+"""One run of a unit's program, as the station knows it.
+
+What came of it, how its clock stands to the station's, and when it was there: two runs that were
+there at the same time are two machines under one name.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.clock import NS_PER_S
+from shared.messages import Header
+from shared.sequence_set import SequenceSet
+
+CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
+PROMPT_NS = 5 * NS_PER_S  # a message may be so much slower than the fastest and is of now
+BACKDATED_NS = 60 * NS_PER_S  # by a unit that knows the station's time
+CLOCK_SET_NS = 60 * NS_PER_S  # no link delays all messages by so much: the station's clock was set
+CLOCK_SET_MESSAGES = 20  # in a row
+SAID_SLACK_NS = NS_PER_S // 20
+SLOWEST_NS = 30 * NS_PER_S  # a unit's own estimate that makes all its messages slower is wrong
+
+
+class BootState(msgspec.Struct):
+    """Times are station time; ``0`` where a field is of time: never."""
+
+    boot_id: int
+    seen: SequenceSet = msgspec.field(default_factory=SequenceSet)
+    fastest_ns: int = 0  # station time less the unit's monotonic time, of the fastest message
+    fastest_t_ns: int = 0  # when that was judged
+    said_ns: int | None = None  # the same as the unit itself estimates it, where that can be
+    clock_std_s: float = 0.0  # of the unit's estimate; 0: it has none
+    late: int = 0  # messages in a row that were too late to be explained by the link
+    there_from_ns: int = 0  # capture time of the first message that was of now when it came
+    there_to_ns: int = 0  # and of the newest
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether its times can be told in station time."""
+        return self.fastest_t_ns != 0
+
+    @property
+    def offset_ns(self) -> int:
+        """Station time less the unit's monotonic time."""
+        return self.fastest_ns if self.said_ns is None else self.said_ns
+
+    def station_ns(self, t_mono_ns: int) -> int:
+        return t_mono_ns + self.offset_ns
+
+    def note_clock(self, t_ns: int, header: Header) -> None:
+        """The least delayed message bounds the offset, which may drift by what clocks do; within
+        that bound the unit's own estimate is better.
+        """
+        offset_ns = t_ns - header.t_mono_ns
+        drifted_ns = self._drifted_ns(t_ns)
+        self.late = self.late + 1 if offset_ns > drifted_ns + CLOCK_SET_NS else 0
+        was_set = self.late >= CLOCK_SET_MESSAGES
+        if not self.is_placed or offset_ns < drifted_ns or was_set:
+            self.fastest_ns, self.fastest_t_ns, self.late = offset_ns, t_ns, 0
+        self.clock_std_s = header.utc_std_s
+        said_ns = header.t_utc_ns - header.t_mono_ns
+        slack_ns = SAID_SLACK_NS + round(3.0 * header.utc_std_s * NS_PER_S)
+        slower_ns = self._drifted_ns(t_ns) - said_ns
+        usable = header.utc_std_s > 0.0 and -slack_ns <= slower_ns <= SLOWEST_NS
+        self.said_ns = said_ns if usable else None
+
+    def note_there(self, t_ns: int, header: Header) -> bool:
+        """Whether a message is of now, neither held up nor said again: its unit is there."""
+        slower_ns = t_ns - header.t_mono_ns - self._drifted_ns(t_ns)
+        if slower_ns > PROMPT_NS:
+            return False
+        if header.utc_std_s > 0.0 and abs(t_ns - header.t_utc_ns) > BACKDATED_NS:
+            return False
+        captured_ns = t_ns - max(slower_ns, 0)
+        if self.there_from_ns == 0:
+            self.there_from_ns = captured_ns
+        self.there_to_ns = max(self.there_to_ns, captured_ns)
+        return True
+
+    def together_ns(self, other: BootState) -> int:
+        """How long both were there at once; not positive: one after the other."""
+        return min(self.there_to_ns, other.there_to_ns) - max(
+            self.there_from_ns, other.there_from_ns
+        )
+
+    def _drifted_ns(self, t_ns: int) -> int:
+        return self.fastest_ns + round((t_ns - self.fastest_t_ns) * CLOCK_DRIFT)
