@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from base_station.live_state import PAR_INTERVAL_S, WORK_LIMIT_S
+from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
 
@@ -51,6 +52,26 @@ class AccountabilityConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class StandbyConfig:
+    """This station is one of two (docs/standby.md).  Without a name it is the only one."""
+
+    name: str = ""  # of this station; the other has another one
+    peer: tuple[str, ...] = ()  # where the other's bus listens, tls/HOST:PORT
+    url: str = ""  # where consoles find this station; the other one points to it
+    preferred: bool = False  # leads where both start at once; give it to one of the two
+    lease_s: Annotated[float, Within(1.0, 60.0)] = 3.0  # not heard for so long: the other leads
+    confirm_s: Annotated[float, Within(0.0, 10.0)] = 1.0  # an action waits so long for the other
+
+    def __post_init__(self) -> None:
+        if self.name:
+            validate_unit_id(self.name)
+        if bool(self.name) != bool(self.peer):
+            raise ConfigError(
+                "a station that is one of two needs a name and a peer: give both or neither"
+            )
+
+
+@dataclass(frozen=True, slots=True)
 class StationConfig:
     data: Path = Path("muster-data")  # log, database and first login; one station a folder
     insecure: bool = False  # accept plain connections from other machines
@@ -58,6 +79,7 @@ class StationConfig:
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
     log: LogConfig = field(default_factory=LogConfig)
+    standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def plain_endpoints(self) -> tuple[str, ...]:

@@ -101,6 +101,11 @@ class StationDrive:
 
     # ---- before the thread runs
 
+    @property
+    def place(self) -> tuple[int, int]:
+        """In the log: the time of the last event, and how many events had that time."""
+        return self._keeping.place
+
     def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
         """Step what a log says happened; gives the number of events stepped.
 

@@ -25,20 +25,23 @@ logger = logging.getLogger(__name__)
 
 READY = "router ready"
 FAILED = "router failed: "
+LINKS = "--links"  # between where it listens and whom it joins
 _LOOK_EVERY_S = 1.0
 _OPEN_ATTEMPTS = 10
 _ATTEMPT_EVERY_S = 0.3
 
 
-def endpoint_of(data: Path, listen: tuple[str, ...]) -> StationEndpoint:
+def endpoint_of(
+    data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()
+) -> StationEndpoint:
     """What the router opens: over TLS with the authority's rules, over plain TCP without any.
 
     Raises ConfigError where there is no authority, or plain and TLS are mixed.
     """
-    if not _is_secure(listen):
-        return StationEndpoint(listen)
+    if not _is_secure((*listen, *links)):
+        return StationEndpoint(listen, links=links)
     pki = PkiFolder(data)
-    return StationEndpoint(listen, pki.station_identity(), access_control(pki.registry()))
+    return StationEndpoint(listen, pki.station_identity(), access_control(pki.registry()), links)
 
 
 def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
@@ -51,11 +54,12 @@ def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
 class Router:
     """Open from the start; ``refresh`` opens it again when the authority's folder has changed."""
 
-    def __init__(self, data: Path, listen: tuple[str, ...]) -> None:
-        """Raises MusterError, one sentence, when it cannot open."""
+    def __init__(self, data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> None:
+        """``links``: another station's router.  Raises MusterError when it cannot open."""
         self._data = data
         self._listen = listen
-        self._endpoint = endpoint_of(data, listen)
+        self._links = links
+        self._endpoint = endpoint_of(data, listen, links)
         self._bus = _open(self._endpoint)
         self._told = ""
 
@@ -67,7 +71,7 @@ class Router:
         if self._endpoint.tls is None:
             return
         try:
-            wanted = endpoint_of(self._data, self._listen)
+            wanted = endpoint_of(self._data, self._listen, self._links)
         except MusterError as error:
             if str(error) != self._told:
                 logger.error("access rules stay as they were: %s", error)
@@ -84,7 +88,7 @@ class Router:
         self._bus.close()
 
 
-def run_router(data: Path, listen: tuple[str, ...]) -> int:
+def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> int:
     """Until a signal comes or standard input ends, which it does when the parent dies.
 
     Tells the parent on standard output whether it is open.  Gives the exit code.
@@ -95,7 +99,7 @@ def run_router(data: Path, listen: tuple[str, ...]) -> int:
         signal.signal(number, lambda *_: stop.set())
     Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
     try:
-        router = Router(data, listen)
+        router = Router(data, listen, links)
     except MusterError as error:
         print(f"{FAILED}{error}", flush=True)
         return 2
@@ -136,4 +140,5 @@ def _stop_at_end_of_input(stop: Event) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(run_router(Path(sys.argv[1]), tuple(sys.argv[2:])))
+    listening, _, linking = " ".join(sys.argv[2:]).partition(LINKS)
+    sys.exit(run_router(Path(sys.argv[1]), tuple(listening.split()), tuple(linking.split())))

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from threading import Event, Lock, Thread
 
-from base_station.router import FAILED, READY
+from base_station.router import FAILED, LINKS, READY
 from shared.errors import BusError
 
 logger = logging.getLogger(__name__)
@@ -23,9 +23,10 @@ class RouterProcess:
     It ends by itself when this process is killed: its standard input does.
     """
 
-    def __init__(self, data: Path, listen: tuple[str, ...]) -> None:
+    def __init__(self, data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> None:
         """Raises BusError with the router's own sentence when it cannot open."""
-        self._command = [sys.executable, "-m", "base_station.router", str(data), *listen]
+        endpoints = (*listen, LINKS, *links) if links else listen
+        self._command = [sys.executable, "-m", "base_station.router", str(data), *endpoints]
         self._closing = Event()
         self._starting = Lock()
         self._process = self._start()

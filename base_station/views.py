@@ -22,6 +22,7 @@ from base_station.api.wire import (
     PositionView,
     ReplayView,
     Snapshot,
+    StandbyView,
     StatusView,
     TrailPoint,
     TrustView,
@@ -61,6 +62,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     disk_free_bytes: int = 0
     messages_per_s: float = 0.0
     insecure: bool = False
+    standby: StandbyView | None = None
 
 
 def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> UnitView:
@@ -237,6 +239,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         disk_free_bytes=facts.disk_free_bytes,
         messages_per_s=facts.messages_per_s,
         insecure=facts.insecure,
+        standby=facts.standby,
     )
 
 

@@ -184,10 +184,12 @@ class ZenohStation:
     def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
+        if len(self._member.connect) > 1:  # linked with one of the stations, else it hears double
+            return self.open_listening_bus()
         return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
 
     def open_listening_bus(self) -> Bus:
-        """Hears other units, which an endpoint for speaking does not."""
+        """Linked with one router: hears other units, which an endpoint for speaking does not."""
         from shared.bus_zenoh import ClientEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
         return ZenohBus(ClientEndpoint(self._member.connect, self._member.identity, _PATIENCE_S))

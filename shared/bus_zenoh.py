@@ -27,6 +27,7 @@ from shared.tls import TlsIdentity
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
 _LEASE_MS = 3000
 _KEEP_ALIVES_A_LEASE = 4
+_RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
 
 
@@ -40,6 +41,7 @@ class StationEndpoint:
     listen: tuple[str, ...] = ("tcp/0.0.0.0:7447",)
     tls: TlsIdentity | None = None
     access_control: Mapping[str, Any] | None = None
+    links: tuple[str, ...] = ()  # other stations' routers, which it joins
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,9 +240,8 @@ def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
 def _settings(endpoint: Endpoint) -> dict[str, Any]:
     link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
     if endpoint.tls is not None:
-        role = "listen" if isinstance(endpoint, StationEndpoint) else "connect"
         link["protocols"] = ["tls"]
-        link["tls"] = _tls_settings(endpoint.tls, role)
+        link["tls"] = _tls_settings(endpoint.tls, _tls_roles(endpoint))
     return {
         # With gossip, units link to each other and go round the station's access rules.
         "scouting": {
@@ -261,6 +262,13 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
         }
         if endpoint.access_control is not None:
             settings["access_control"] = dict(endpoint.access_control)
+        if endpoint.links:
+            settings["connect"] = {
+                "endpoints": list(endpoint.links),
+                "timeout_ms": -1,
+                "exit_on_failure": False,
+                "retry": _RETRY,
+            }
         return settings
     patience_s = endpoint.patience_s if isinstance(endpoint, ClientEndpoint) else None
     return {
@@ -270,21 +278,26 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
             "endpoints": list(endpoint.connect),
             "timeout_ms": -1 if patience_s is None else round(patience_s * 1000),
             "exit_on_failure": patience_s is not None,
-            "retry": {
-                "period_init_ms": 200,
-                "period_max_ms": 1000,
-                "period_increase_factor": 1.5,
-            },
+            "retry": _RETRY,
         },
     }
 
 
-def _tls_settings(identity: TlsIdentity, role: str) -> dict[str, Any]:
+def _tls_roles(endpoint: Endpoint) -> tuple[str, ...]:
+    if not isinstance(endpoint, StationEndpoint):
+        return ("connect",)
+    return ("listen", "connect") if endpoint.links else ("listen",)
+
+
+def _tls_settings(identity: TlsIdentity, roles: Iterable[str]) -> dict[str, Any]:
     """Inline rather than as paths: an enrolment is one file, and its key is on disk once."""
-    return {
+    certificate = base64.b64encode(identity.certificate).decode()
+    private_key = base64.b64encode(identity.private_key).decode()
+    own = {}
+    for role in roles:
+        own |= {f"{role}_certificate_base64": certificate, f"{role}_private_key_base64": private_key}
+    return own | {
         "root_ca_certificate_base64": base64.b64encode(identity.authority).decode(),
-        f"{role}_certificate_base64": base64.b64encode(identity.certificate).decode(),
-        f"{role}_private_key_base64": base64.b64encode(identity.private_key).decode(),
         "enable_mtls": True,
         "close_link_on_expiration": True,
     }

@@ -176,6 +176,18 @@ class IncidentView(msgspec.Struct, frozen=True):
     work_limit_s: float
 
 
+class StandbyView(msgspec.Struct, frozen=True):
+    """Which of two stations this is."""
+
+    station: str  # its name
+    role: str  # active | standby | waiting
+    url: str  # where consoles find it
+    other: str  # "" while the other has not been heard
+    other_role: str  # "" while it is not heard
+    other_url: str
+    in_step: bool  # the standby has what the active station has
+
+
 class HealthView(msgspec.Struct, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -187,6 +199,7 @@ class HealthView(msgspec.Struct, frozen=True):
     disk_free_bytes: int
     messages_per_s: float
     insecure: bool
+    standby: StandbyView | None = None  # None: this is the only station
 
 
 class ReplayView(msgspec.Struct, frozen=True):
