@@ -295,7 +295,10 @@ def _tls_settings(identity: TlsIdentity, roles: Iterable[str]) -> dict[str, Any]
     private_key = base64.b64encode(identity.private_key).decode()
     own = {}
     for role in roles:
-        own |= {f"{role}_certificate_base64": certificate, f"{role}_private_key_base64": private_key}
+        own |= {
+            f"{role}_certificate_base64": certificate,
+            f"{role}_private_key_base64": private_key,
+        }
     return own | {
         "root_ca_certificate_base64": base64.b64encode(identity.authority).decode(),
         "enable_mtls": True,
