@@ -41,7 +41,6 @@ from base_station.live_state import (
     UnitState,
 )
 from base_station.pins import WAITING, Pin
-from base_station.pins import WAITING, Pin
 from base_station.sinks import PhotoUrls
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
