@@ -14,17 +14,19 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
+    DRIFT,
     GYRO_BIAS,
     LEVER,
     POSITION,
     SIZE,
+    TURN,
     VELOCITY,
     transition_matrix,
 )
 
 
 class PlainFilter:
-    """Position, velocity, attitude, biases and lever with their covariance (18, 18)."""
+    """The state of ``error_model`` with its covariance (23, 23); temperature is left out."""
 
     def __init__(self, rotation_nb: Floats, covariance: Floats, config: EskfConfig) -> None:
         self.config = config
@@ -34,6 +36,7 @@ class PlainFilter:
         self.gyro_bias_radps = np.zeros(3)
         self.accel_bias_mps2 = np.zeros(3)
         self.lever_b_m = np.zeros(3)
+        self.drift = 0.0
         self.covariance = covariance.copy()
         self._gravity_n_mps2 = np.array([0.0, 0.0, config.gravity_mps2])
         density = np.zeros(SIZE)
@@ -52,9 +55,12 @@ class PlainFilter:
         step_mps = dt_s * (force_n_mps2 + self._gravity_n_mps2)
         self.position_n_m += dt_s * (self.velocity_n_mps + 0.5 * step_mps)
         self.velocity_n_mps += step_mps
-        transition = transition_matrix(self.rotation_nb, force_n_mps2, dt_s)
+        moved_n_m = dt_s * self.velocity_n_mps
+        turned_rad = dt_s * float(np.linalg.norm(gyro_radps - self.gyro_bias_radps))
+        transition = transition_matrix(self.rotation_nb, moved_n_m, force_n_mps2, turned_rad, dt_s)
         self.covariance = transition @ self.covariance @ transition.T
         self.covariance += dt_s * self._noise_density
+        self._turn_walk(self.drift * turned_rad)
 
     def stand(self, gyro_radps: Floats, velocity_variance: float, rate_variance: float) -> None:
         """Use the pseudo-measurements of a stance sample, all six at once."""
@@ -81,6 +87,13 @@ class PlainFilter:
         self.gyro_bias_radps += error[GYRO_BIAS : GYRO_BIAS + 3]
         self.accel_bias_mps2 += error[ACCEL_BIAS : ACCEL_BIAS + 3]
         self.lever_b_m += error[LEVER : LEVER + 3]
+        self.drift += error[DRIFT]
+        self._turn_walk(error[TURN])
+
+    def _turn_walk(self, angle_rad: float) -> None:
+        about_down = turn(np.array([0.0, 0.0, angle_rad]))
+        self.velocity_n_mps = about_down @ self.velocity_n_mps
+        self.rotation_nb = about_down @ self.rotation_nb
 
 
 def skew(vector: Floats) -> Floats:

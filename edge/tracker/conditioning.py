@@ -28,6 +28,9 @@ NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock
 STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
 PERIOD_WEIGHT = 0.005  # of one interval in the mean period
 
+_NO_VALUES: Floats = np.zeros(0)
+_NO_VECTORS: Floats = np.zeros((0, 3))
+
 GATE = np.dtype(
     [
         ("last_ns", np.int64),
@@ -89,7 +92,14 @@ def admit_batch(
         _plain(batch.t_ns, np.int64),
         _plain(batch.accel_mps2, np.float64),
         _plain(batch.gyro_radps, np.float64),
+        _optional(batch.mag_ut, _NO_VECTORS),
+        _optional(batch.pressure_pa, _NO_VALUES),
+        _optional(batch.imu_temperature_degc, _NO_VALUES),
     )
+
+
+def _optional(values: Floats | None, absent: Floats) -> Floats:
+    return absent if values is None else _plain(values, np.float64)
 
 
 def _plain(values: NDArray[Any], dtype: type) -> NDArray[Any]:
@@ -110,8 +120,14 @@ def admit(
     t_ns: NDArray[np.int64],
     accel_mps2: Floats,
     gyro_radps: Floats,
+    mag_ut: Floats,
+    pressure_pa: Floats,
+    temperature_degc: Floats,
 ) -> None:
-    """Append samples (n,), (n, 3), (n, 3) to the ring of ``received`` with flags and times."""
+    """Append samples (n,), (n, 3), (n, 3) to the ring of ``received`` with flags and times.
+
+    Of the other sensors (n, 3), (n,), (n,) the column is empty where there is none.
+    """
     mask = len(ring) - 1
     for i in range(len(t_ns)):
         slot = (received + i) & mask
@@ -127,6 +143,10 @@ def admit(
             ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
             ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
             ring[slot].hidden_noise[j] = 0.0
+        for j in range(3):
+            ring[slot].mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
+        ring[slot].pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan
+        ring[slot].temperature_degc = temperature_degc[i] if len(temperature_degc) else np.nan
         ring[slot].arrival_s = gate[0].arrival_s
         ring[slot].period_s = gate[0].period_s
         ring[slot].flags = flags

@@ -56,6 +56,9 @@ class EskfConfig(NamedTuple):
     # Process noise.
     accel_noise_mps2_rthz: float = 0.15
     gyro_noise_radps_rthz: float = 2.5e-3
+    gyro_bias_per_k_std_radps: float = 1.7e-4  # 0.01 deg/s/K
+    temperature_smoothing_s: float = 1.0
+    temperature_step_k: float = 0.2  # from so much on the bias follows
     gyro_bias_walk_radps2_rthz: float = 5e-5
     accel_bias_walk_mps3_rthz: float = 1e-4
 
@@ -69,6 +72,7 @@ class EskfConfig(NamedTuple):
     start_gyro_bias_std_radps: float = 0.005
     start_accel_bias_std_mps2: float = 0.2
     start_lever_std_m: float = 0.1
+    drift_std: float = 2.5e-4  # rad of heading for each rad that the foot turns
     start_tilt_std_rad: float = 0.02
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
     start_speed_std_mps: float = 1.0  # when the recording starts on the move

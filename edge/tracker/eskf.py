@@ -97,6 +97,9 @@ def work(
         ring[slot].rest_norm_mps2 = memory.rest_norm_mps2
         before = ring[(k - 1) & (len(ring) - 1)].motion_sum_m2ps4
         ring[slot].motion_sum_m2ps4 = before + ring[slot].motion_m2ps4
+        for i in range(3):
+            before = ring[(k - 1) & (len(ring) - 1)].rate_sum_radps[i]
+            ring[slot].rate_sum_radps[i] = before + ring[slot].gyro_radps[i]
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered

@@ -13,7 +13,9 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
+    DRIFT,
     GYRO_BIAS,
+    GYRO_WARMTH,
     LEVER,
     POSITION,
     SIZE,
@@ -22,10 +24,12 @@ from edge.tracker.error_model import (
 )
 from edge.tracker.floor import settle
 from edge.tracker.intervals import mean_readings
+from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.strapdown import advance, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
+from edge.tracker.warmth import follow_warmth
 from edge.tracker.zero_velocity import stance_threshold, unrest
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
@@ -45,11 +49,12 @@ def filter_sample(
         _start(ring, progress, state, config)
     else:
         _predict(ring, progress, state, k, config)
+    follow_warmth(ring, progress, state, k, config)
     ring[slot].updates = 0
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
     if still:
-        ring[slot].unrest_m2ps4 = unrest(ring, progress, k, config)
+        ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         stand(ring, state, slot, config)
         if motion <= ring[slot].stride_minimum_m2ps4:
             settle(ring, progress, state, slot, config)
@@ -72,6 +77,8 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
         state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] = config.start_accel_bias_std_mps2**2
         state.covariance[LEVER + i, LEVER + i] = config.start_lever_std_m**2
+        state.covariance[GYRO_WARMTH + i, GYRO_WARMTH + i] = config.gyro_bias_per_k_std_radps**2
+    state.covariance[DRIFT, DRIFT] = config.drift_std**2
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
     state.covariance[ATTITUDE + 1, ATTITUDE + 1] = tilt_std_rad**2
@@ -106,7 +113,13 @@ def _predict(
         state.force_n_mps2,
         state.angle_rad,
     )
-    propagate(state.covariance, state.rotation_nb, state.force_n_mps2, dt_s)
+    w = state.gyro_radps
+    turned_rad = dt_s * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    moved_n_m = ring[slot].moved_n_m
+    for i in range(2):
+        moved_n_m[i] = dt_s * state.velocity_n_mps[i]
+    propagate(state.covariance, state.rotation_nb, moved_n_m, state.force_n_mps2, turned_rad, dt_s)
+    turn_walk(state, state.drift * turned_rad)
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
@@ -123,6 +136,7 @@ def _predict(
             dt_s * config.accel_bias_walk_mps3_rthz**2
         )
     ring[slot].interval_s = dt_s
+    ring[slot].turned_rad = turned_rad
     for i in range(3):
         ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
         for j in range(3):
@@ -159,9 +173,10 @@ def _bridge_gap(
     for i in range(3):
         state.velocity_n_mps[i] = 0.0
         _forget(state, VELOCITY + i, config.gap_speed_std_mps**2)
-        _forget(state, ATTITUDE + i, tilt_std_rad**2)
         position = POSITION + i
         state.covariance[position, position] += (config.gap_speed_std_mps * dt_s) ** 2
+    for i in range(2):
+        _forget(state, ATTITUDE + i, tilt_std_rad**2)
     heading = ATTITUDE + 2
     state.covariance[heading, heading] += turn_std_rad**2
 
@@ -198,7 +213,7 @@ def _write_row(ring: Ring, progress: Progress, state: FilterState, slot: int, st
         ring[slot].velocity_n_mps[i] = state.velocity_n_mps[i]
     for i in range(4):
         ring[slot].quaternion_nb[i] = state.quaternion_nb[i]
-    for i in range(9):
+    for i in range(10):
         for j in range(SIZE):
             ring[slot].covariance[i, j] = state.covariance[i, j]
     ring[slot].stationary = still

@@ -13,7 +13,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION, SIZE
-from edge.tracker.stance import remember
+from edge.tracker.measuring import remember
 from edge.tracker.state import FilterState, Progress, Ring
 
 DOWN = POSITION + 2

@@ -12,7 +12,18 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.error_model import LEVER, SIZE, VELOCITY
+from edge.tracker.error_model import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    DRIFT,
+    GYRO_BIAS,
+    GYRO_WARMTH,
+    HEADING,
+    LEVER,
+    SIZE,
+    TURN,
+    VELOCITY,
+)
 from edge.tracker.state import Ring
 from edge.tracker.strapdown import rotate_navigation
 
@@ -47,7 +58,7 @@ def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
     for j in range(SIZE):
         x -= covariance[6, j] * adjoint[j]
         y -= covariance[7, j] * adjoint[j]
-        z -= covariance[8, j] * adjoint[j]
+        z -= (covariance[8, j] + covariance[TURN, j]) * adjoint[j]
     rotate_navigation(ring[slot].quaternion_nb, x, y, z)
 
 
@@ -59,6 +70,10 @@ def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
         for j in range(SIZE):
             pull += gain[j] * adjoint[j]
         index = ring[slot].update_index[u]
+        if index == HEADING:
+            adjoint[ATTITUDE + 2] -= pull
+            adjoint[TURN] -= pull
+            continue
         adjoint[index] -= pull
         if VELOCITY <= index < VELOCITY + 3:
             for j in range(3):
@@ -68,21 +83,26 @@ def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
 @njit()
 def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
     """Multiply by the transposed transition (error_model.transition_matrix)."""
+    for i in range(3):
+        adjoint[GYRO_WARMTH + i] += ring[slot].warmed_k * adjoint[GYRO_BIAS + i]
     dt_s = ring[slot].interval_s
-    if dt_s < 0.0:  # across a gap only position and biases carry over
-        for i in range(3, 9):
+    if dt_s < 0.0:  # across a gap velocity and tilt do not carry over
+        for i in range(VELOCITY, ATTITUDE + 2):
             adjoint[i] = 0.0
         return
+    adjoint[DRIFT] += ring[slot].turned_rad * adjoint[TURN]
+    moved_n_m = ring[slot].moved_n_m
+    adjoint[TURN] += moved_n_m[0] * adjoint[1] - moved_n_m[1] * adjoint[0]
     fx = dt_s * ring[slot].force_n_mps2[0]
     fy = dt_s * ring[slot].force_n_mps2[1]
     fz = dt_s * ring[slot].force_n_mps2[2]
-    rotation = ring[slot].rotation_nb
+    rotation = dt_s * ring[slot].rotation_nb
     vx, vy, vz = adjoint[3], adjoint[4], adjoint[5]
     ax, ay, az = adjoint[6], adjoint[7], adjoint[8]
     for i in range(3):
         adjoint[3 + i] += dt_s * adjoint[i]
-        adjoint[9 + i] -= dt_s * (rotation[0, i] * ax + rotation[1, i] * ay + rotation[2, i] * az)
-        adjoint[12 + i] -= dt_s * (rotation[0, i] * vx + rotation[1, i] * vy + rotation[2, i] * vz)
+        adjoint[GYRO_BIAS + i] -= rotation[0, i] * ax + rotation[1, i] * ay + rotation[2, i] * az
+        adjoint[ACCEL_BIAS + i] -= rotation[0, i] * vx + rotation[1, i] * vy + rotation[2, i] * vz
     adjoint[6] += fy * vz - fz * vy
     adjoint[7] += fz * vx - fx * vz
     adjoint[8] += fx * vy - fy * vx

@@ -13,19 +13,9 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import (
-    ACCEL_BIAS,
-    ATTITUDE,
-    GYRO_BIAS,
-    LEVER,
-    POSITION,
-    SIZE,
-    VELOCITY,
-    update_one,
-    update_with_lever,
-)
+from edge.tracker.error_model import GYRO_BIAS
+from edge.tracker.measuring import begin_updates, end_updates, measure, measure_with_lever
 from edge.tracker.state import FilterState, Ring
-from edge.tracker.strapdown import rotate_navigation, rotation_matrix
 
 MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 
@@ -37,7 +27,7 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     motion = ring[slot].motion_m2ps4
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
-    _begin_updates(state)
+    begin_updates(state)
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
         _measure_velocity(ring, state, slot, i, velocity_variance)
@@ -46,8 +36,8 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     rate_variance = rate_noise / interval_s
     if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
         for i in range(3):
-            _measure(ring, state, slot, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
-    _end_updates(state)
+            measure(ring, state, slot, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
+    end_updates(state)
 
 
 @njit()
@@ -72,66 +62,7 @@ def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row
 def _measure_velocity(
     ring: Ring, state: FilterState, slot: int, axis: int, variance: float
 ) -> None:
-    u = ring[slot].updates
     row = ring[slot].lever_row[axis]
     lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
-    expected_mps = (row * state.lever_b_m).sum()
-    innovation, weight = update_with_lever(
-        state.covariance,
-        state.error,
-        VELOCITY + axis,
-        row,
-        expected_mps - state.velocity_n_mps[axis],
-        variance,
-        state.column,
-        ring[slot].update_gain[u],
-    )
-    remember(ring, slot, VELOCITY + axis, innovation * weight)
-
-
-@njit()
-def _measure(
-    ring: Ring, state: FilterState, slot: int, index: int, residual: float, variance: float
-) -> None:
-    """Use one scalar measurement of error ``index`` and remember it for the smoother."""
-    innovation, weight = update_one(
-        state.covariance,
-        state.error,
-        index,
-        residual,
-        variance,
-        state.column,
-        ring[slot].update_gain[ring[slot].updates],
-    )
-    remember(ring, slot, index, innovation * weight)
-
-
-@njit()
-def remember(ring: Ring, slot: int, index: int, pull: float) -> None:
-    """Count the update whose gain is in the ring, for the smoother."""
-    u = ring[slot].updates
-    ring[slot].update_index[u] = index
-    ring[slot].update_pull[u] = pull
-    ring[slot].updates = u + 1
-
-
-@njit()
-def _begin_updates(state: FilterState) -> None:
-    for i in range(SIZE):
-        state.error[i] = 0.0
-
-
-@njit()
-def _end_updates(state: FilterState) -> None:
-    """Move the gathered error into the state."""
-    error = state.error
-    for i in range(3):
-        state.position_n_m[i] += error[POSITION + i]
-        state.velocity_n_mps[i] += error[VELOCITY + i]
-        state.gyro_bias_radps[i] += error[GYRO_BIAS + i]
-        state.accel_bias_mps2[i] += error[ACCEL_BIAS + i]
-        state.lever_b_m[i] += error[LEVER + i]
-    rotate_navigation(
-        state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
-    )
-    rotation_matrix(state.quaternion_nb, state.rotation_nb)
+    residual_mps = (row * state.lever_b_m).sum() - state.velocity_n_mps[axis]
+    measure_with_lever(ring, state, slot, axis, row, residual_mps, variance)

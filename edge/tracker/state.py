@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from edge.tracker.error_model import SIZE
 from edge.tracker.kernel_cache import SOURCES
 
-MAX_UPDATES = 8  # scalar updates one sample can bring
+MAX_UPDATES = 10  # scalar updates one sample can bring
+COMPASS_SIZE = 13  # states of magnetic_heading
 
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
 Progress: TypeAlias = Any  # one record of PROGRESS
@@ -33,6 +34,8 @@ RING = np.dtype(
         ("gyro_radps", np.float64, 3),
         ("mag_ut", np.float64, 3),  # NaN where there is none
         ("hidden_noise", np.float64, 3),  # rad^2/s in doubt about each axis after clipping
+        ("pressure_pa", np.float64),
+        ("temperature_degc", np.float64),  # inside the sensor
         ("flags", np.int64),  # Reason bits of the sample itself
         ("motion_m2ps4", np.float64),  # stillness statistic
         ("stride_minimum_m2ps4", np.float64),  # its smallest value in the stride around
@@ -47,17 +50,21 @@ RING = np.dtype(
         ("reasons", np.uint32),
         ("rest_norm_mps2", np.float64),  # what was known of it when this was measured
         ("motion_sum_m2ps4", np.float64),  # of this and all samples before
-        ("unrest_m2ps4", np.float64),  # mean statistic over a longer time around
+        ("rate_sum_radps", np.float64, 3),  # the same
+        ("unrest_m2ps4", np.float64),  # the same over a longer time, whatever the bias
         # What the smoother needs to go back over this sample.
         ("interval_s", np.float64),  # since the sample before; negative after a gap
         ("force_n_mps2", np.float64, 3),  # over that interval
+        ("moved_n_m", np.float64, 2),
+        ("turned_rad", np.float64),  # about any axis
+        ("warmed_k", np.float64),  # step of the temperature that the biases took
         ("rotation_nb", np.float64, (3, 3)),  # at its end
         ("lever_row", np.float64, (3, 3)),  # how the lever enters the velocity updates
         ("updates", np.int64),  # scalar updates that followed
         ("update_index", np.int64, MAX_UPDATES),  # which error was measured
         ("update_pull", np.float64, MAX_UPDATES),  # innovation by its variance
         ("update_gain", np.float64, (MAX_UPDATES, SIZE)),
-        ("covariance", np.float64, (9, SIZE)),  # rows of position, velocity and attitude
+        ("covariance", np.float64, (10, SIZE)),  # rows of navigation
     ],
     align=True,
 )
@@ -71,6 +78,8 @@ FILTER = np.dtype(
         ("gyro_bias_radps", np.float64, 3),
         ("accel_bias_mps2", np.float64, 3),
         ("lever_b_m", np.float64, 3),  # from the point the foot rolls about to the sensor
+        ("drift", np.float64),  # rad of heading for each rad that the foot turns
+        ("gyro_bias_per_k", np.float64, 3),
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
         # Scratch.
         ("error", np.float64, SIZE),  # correction gathered at one instant
@@ -95,6 +104,9 @@ PROGRESS = np.dtype(
         ("minimum_to", np.int64),  # one past its last
         ("steps", np.int64),
         ("rest_norm_mps2", np.float64),  # what the accelerometer shows at rest
+        ("temperature_degc", np.float64),  # smoothed; NaN while unknown
+        ("temperature_s", np.float64),  # of the sample that said it
+        ("warmed_degc", np.float64),  # for which the gyroscope bias holds
         ("gyro_clip_radps", np.float64),  # from the description
         ("in_stance", np.bool_),
         ("aligned", np.bool_),
@@ -142,4 +154,5 @@ def new_progress() -> NDArray[Any]:
     progress = np.zeros(1, PROGRESS)
     for name in ("stance_since_s", "gyro_saturated_s", "accel_saturated_s", "gap_s"):
         progress[name] = -1e9
+    progress["temperature_degc"] = np.nan
     return progress

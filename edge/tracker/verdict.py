@@ -13,7 +13,7 @@ from edge.tracker.conditioning import (
     SAMPLE_GAP,
 )
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import ATTITUDE
+from edge.tracker.error_model import ATTITUDE, heading_variance
 from edge.tracker.port import Quality, Reason
 from edge.tracker.state import FilterState, Progress, Ring
 
@@ -66,4 +66,4 @@ def judge(
         quality = LOST
     ring[slot].reasons = reasons
     ring[slot].quality = quality
-    ring[slot].heading_std_rad = math.sqrt(p[ATTITUDE + 2, ATTITUDE + 2])
+    ring[slot].heading_std_rad = math.sqrt(heading_variance(p))

@@ -16,7 +16,7 @@ import math
 from numba import njit
 
 from edge.tracker.config import EskfConfig
-from edge.tracker.state import Progress, Ring, reach
+from edge.tracker.state import FilterState, Progress, Ring, reach
 
 
 @njit()
@@ -88,11 +88,12 @@ def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -
 
 
 @njit()
-def unrest(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
-    """Return the mean statistic within ``unrest_half_window_s`` of ``k``.
+def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig) -> float:
+    """Return the mean statistic within ``unrest_half_window_s`` of ``k``, free of bias.
 
     Sway is not told from a gyroscope's bias sample by sample: judged one by one, the
-    samples whose sway happens to cancel the bias would pass for the stillest.
+    samples whose sway happens to cancel the bias would pass for the stillest.  So the rate
+    counts as far as its mean is off the bias that is known.
     """
     mask = len(ring) - 1
     now_s = ring[k & mask].t_s
@@ -105,8 +106,15 @@ def unrest(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
     last = k
     while last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= config.unrest_half_window_s:
         last += 1
-    total = ring[last & mask].motion_sum_m2ps4 - ring[first & mask].motion_sum_m2ps4
-    return float((total + ring[first & mask].motion_m2ps4) / (last + 1 - first))
+    before = (first - 1) & mask
+    count = last + 1 - first
+    total = ring[last & mask].motion_sum_m2ps4 - ring[before].motion_sum_m2ps4
+    by_bias = 0.0  # of the mean square rate
+    for i in range(3):
+        mean = (ring[last & mask].rate_sum_radps[i] - ring[before].rate_sum_radps[i]) / count
+        off = mean - state.gyro_bias_radps[i]
+        by_bias += mean * mean - off * off
+    return float(max(total / count - config.rate_weight_m2ps2 * by_bias, 0.0))
 
 
 @njit()

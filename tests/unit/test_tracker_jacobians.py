@@ -8,15 +8,21 @@ import pytest
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
+    DRIFT,
     GYRO_BIAS,
+    GYRO_WARMTH,
     LEVER,
     POSITION,
     SIZE,
+    TURN,
     VELOCITY,
+    heading_variance,
     propagate,
     transition_matrix,
+    update_heading,
     update_one,
     update_with_lever,
+    warm,
 )
 from edge.tracker.stance import lever_velocity_row
 from edge.tracker.strapdown import (
@@ -43,6 +49,8 @@ def _random_state(seed):
         "accel_bias": 0.1 * noise.standard_normal(3),
         "accel": 20.0 * noise.standard_normal(3),
         "gyro": 3.0 * noise.standard_normal(3),
+        "turn": 0.0,
+        "drift": 0.0,
     }
 
 
@@ -52,6 +60,8 @@ def _perturbed(state, error):
     return state | {
         "position": state["position"] + error[POSITION : POSITION + 3],
         "velocity": state["velocity"] + error[VELOCITY : VELOCITY + 3],
+        "turn": state["turn"] + error[TURN],
+        "drift": state["drift"] + error[DRIFT],
         "quaternion": quaternion,
         "gyro_bias": state["gyro_bias"] + error[GYRO_BIAS : GYRO_BIAS + 3],
         "accel_bias": state["accel_bias"] + error[ACCEL_BIAS : ACCEL_BIAS + 3],
@@ -66,7 +76,12 @@ def _advanced(state):
         position, velocity, quaternion, rotation, accel, gyro, GRAVITY_MPS2, DT_S, force,
         np.zeros(3),
     )  # fmt: skip
-    return position, velocity, quaternion, rotation, force
+    # What a turned walk adds to the position is added in the frame of the walk.
+    moved = DT_S * velocity
+    position += np.cross([0.0, 0.0, state["turn"]], moved)
+    turned_rad = DT_S * np.linalg.norm(state["gyro"])
+    turn = state["turn"] + state["drift"] * turned_rad
+    return position, velocity, quaternion, turn, (rotation, moved, force, turned_rad)
 
 
 def _attitude_error(quaternion_true, quaternion):
@@ -82,18 +97,19 @@ def _attitude_error(quaternion_true, quaternion):
 @pytest.mark.parametrize("seed", range(5))
 def test_transition_is_the_derivative_of_the_strapdown_step(seed):
     state = _random_state(seed)
-    position, velocity, quaternion, rotation, force = _advanced(state)
+    position, velocity, quaternion, turn, interval = _advanced(state)
     numeric = np.zeros((SIZE, SIZE))
     for column in range(SIZE):
         error = np.zeros(SIZE)
         error[column] = STEP
-        p, v, q, _, _ = _advanced(_perturbed(state, error))
+        p, v, q, t, _ = _advanced(_perturbed(state, error))
         numeric[POSITION : POSITION + 3, column] = (p - position) / STEP
         numeric[VELOCITY : VELOCITY + 3, column] = (v - velocity) / STEP
         numeric[ATTITUDE : ATTITUDE + 3, column] = _attitude_error(q, quaternion) / STEP
+        numeric[TURN, column] = (t - turn) / STEP
         numeric[GYRO_BIAS:, column] = error[GYRO_BIAS:] / STEP
     # Terms of second order in the interval are left out on purpose.
-    np.testing.assert_allclose(transition_matrix(rotation, force, DT_S), numeric, atol=2e-5)
+    np.testing.assert_allclose(transition_matrix(*interval, DT_S), numeric, atol=2e-5)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -102,10 +118,10 @@ def test_sparse_propagation_is_the_dense_product(seed):
     root = noise.standard_normal((SIZE, SIZE))
     covariance = root @ root.T
     state = _random_state(seed)
-    _, _, _, rotation, force = _advanced(state)
-    matrix = transition_matrix(rotation, force, 0.02)
+    *_, interval = _advanced(state)
+    matrix = transition_matrix(*interval, 0.02)
     expected = matrix @ covariance @ matrix.T
-    propagate(covariance, rotation, force, 0.02)
+    propagate(covariance, *interval, 0.02)
     np.testing.assert_allclose(covariance, expected, rtol=1e-12, atol=1e-12)
     assert np.array_equal(covariance, covariance.T)
 
@@ -138,6 +154,32 @@ def test_scalar_update_is_the_joseph_form(index, lever_row):
     np.testing.assert_allclose(found, gain)
     assert innovation == pytest.approx(2.0 - row @ gathered)
     assert weight == pytest.approx(1.0 / (row @ before @ row + variance))
+
+
+def test_a_compass_measures_attitude_and_turn_together():
+    noise = np.random.default_rng(5)
+    root = noise.standard_normal((SIZE, SIZE))
+    before = root @ root.T
+    row = np.zeros(SIZE)
+    row[[ATTITUDE + 2, TURN]] = 1.0
+    assert heading_variance(before) == pytest.approx(row @ before @ row)
+    gain = before @ row / (row @ before @ row + 0.3)
+    after, error, found = before.copy(), np.zeros(SIZE), np.zeros(SIZE)
+    update_heading(after, error, 0.2, 0.3, np.zeros(SIZE), found)
+    np.testing.assert_allclose(found, gain)
+    np.testing.assert_allclose(error, 0.2 * gain)
+    np.testing.assert_allclose(after, before - np.outer(gain, row @ before), atol=1e-9)
+
+
+def test_warming_moves_the_bias_by_what_a_kelvin_adds():
+    noise = np.random.default_rng(6)
+    root = noise.standard_normal((SIZE, SIZE))
+    covariance = root @ root.T
+    matrix = np.eye(SIZE)
+    matrix[GYRO_BIAS : GYRO_BIAS + 3, GYRO_WARMTH : GYRO_WARMTH + 3] = 0.7 * np.eye(3)
+    expected = matrix @ covariance @ matrix.T
+    warm(covariance, 0.7)
+    np.testing.assert_allclose(covariance, expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("axis", range(3))

@@ -8,7 +8,16 @@ from edge.bench.plain_filter import PlainFilter
 from edge.samples import SensorDescription
 from edge.tracker.alignment import level
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import ACCEL_BIAS, ATTITUDE, GYRO_BIAS, LEVER, SIZE, VELOCITY
+from edge.tracker.error_model import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    DRIFT,
+    GYRO_BIAS,
+    GYRO_WARMTH,
+    LEVER,
+    SIZE,
+    VELOCITY,
+)
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.intervals import mean_readings
 from edge.tracker.stance import MIN_INTERVAL_S, stance_velocity_noise
@@ -33,6 +42,8 @@ def start(ring):
     std[GYRO_BIAS : GYRO_BIAS + 3] = CONFIG.start_gyro_bias_std_radps
     std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start_accel_bias_std_mps2
     std[LEVER : LEVER + 3] = CONFIG.start_lever_std_m
+    std[DRIFT] = CONFIG.drift_std
+    std[GYRO_WARMTH : GYRO_WARMTH + 3] = CONFIG.gyro_bias_per_k_std_radps
     return PlainFilter(rotation, np.diag(std**2), CONFIG)
 
 

@@ -1,0 +1,132 @@
+"""One measurement after the other at one instant, remembered for the smoother.
+
+``begin_updates``, any number of measurements, ``end_updates``: residuals are measured minus
+predicted for the state as it was at the beginning.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.error_model import (
+    ACCEL_BIAS,
+    ATTITUDE,
+    DRIFT,
+    GYRO_BIAS,
+    GYRO_WARMTH,
+    HEADING,
+    LEVER,
+    POSITION,
+    SIZE,
+    TURN,
+    VELOCITY,
+    update_heading,
+    update_one,
+    update_with_lever,
+)
+from edge.tracker.state import FilterState, Ring
+from edge.tracker.strapdown import rotate_navigation, rotation_matrix
+
+
+@njit()
+def begin_updates(state: FilterState) -> None:
+    for i in range(SIZE):
+        state.error[i] = 0.0
+
+
+@njit()
+def measure(
+    ring: Ring, state: FilterState, slot: int, index: int, residual: float, variance: float
+) -> None:
+    """Use one scalar measurement of error ``index``."""
+    innovation, weight = update_one(
+        state.covariance,
+        state.error,
+        index,
+        residual,
+        variance,
+        state.column,
+        ring[slot].update_gain[ring[slot].updates],
+    )
+    remember(ring, slot, index, innovation * weight)
+
+
+@njit()
+def measure_heading(
+    ring: Ring, state: FilterState, slot: int, residual_rad: float, variance: float
+) -> None:
+    """Use a measurement of the heading, clockwise seen from above."""
+    innovation, weight = update_heading(
+        state.covariance,
+        state.error,
+        residual_rad,
+        variance,
+        state.column,
+        ring[slot].update_gain[ring[slot].updates],
+    )
+    remember(ring, slot, HEADING, innovation * weight)
+
+
+@njit()
+def measure_with_lever(
+    ring: Ring,
+    state: FilterState,
+    slot: int,
+    axis: int,
+    lever_row: Floats,
+    residual_mps: float,
+    variance: float,
+) -> None:
+    """Use one axis of the sensor's velocity beyond what ``lever_row`` (3,) and the lever tell."""
+    innovation, weight = update_with_lever(
+        state.covariance,
+        state.error,
+        VELOCITY + axis,
+        lever_row,
+        residual_mps,
+        variance,
+        state.column,
+        ring[slot].update_gain[ring[slot].updates],
+    )
+    remember(ring, slot, VELOCITY + axis, innovation * weight)
+
+
+@njit()
+def remember(ring: Ring, slot: int, index: int, pull: float) -> None:
+    """Count the update whose gain is in the ring, for the smoother."""
+    u = ring[slot].updates
+    ring[slot].update_index[u] = index
+    ring[slot].update_pull[u] = pull
+    ring[slot].updates = u + 1
+
+
+@njit()
+def end_updates(state: FilterState) -> None:
+    """Move the gathered error into the state."""
+    error = state.error
+    for i in range(3):
+        state.position_n_m[i] += error[POSITION + i]
+        state.velocity_n_mps[i] += error[VELOCITY + i]
+        state.gyro_bias_radps[i] += error[GYRO_BIAS + i]
+        state.accel_bias_mps2[i] += error[ACCEL_BIAS + i]
+        state.lever_b_m[i] += error[LEVER + i]
+        state.gyro_bias_per_k[i] += error[GYRO_WARMTH + i]
+    state.drift += error[DRIFT]
+    rotate_navigation(
+        state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
+    )
+    rotation_matrix(state.quaternion_nb, state.rotation_nb)
+    turn_walk(state, error[TURN])
+
+
+@njit()
+def turn_walk(state: FilterState, angle_rad: float) -> None:
+    """Turn where the walk is heading by a small angle about the vertical."""
+    if angle_rad == 0.0:
+        return
+    north_mps = state.velocity_n_mps[0]
+    state.velocity_n_mps[0] -= angle_rad * state.velocity_n_mps[1]
+    state.velocity_n_mps[1] += angle_rad * north_mps
+    rotate_navigation(state.quaternion_nb, 0.0, 0.0, angle_rad)
+    rotation_matrix(state.quaternion_nb, state.rotation_nb)
