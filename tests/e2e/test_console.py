@@ -52,7 +52,7 @@ def card(page: Page, complaints: list[str], hosts: set[str], wearable: Wearable)
     """Of a responder who was enlisted through the page while the unit was sending already."""
     card = page.locator(f"[data-unit='{UNIT}']")
     card.wait_for()
-    register(page, card)
+    register(card)
     add_person(page)
     assign(page)
     open_incident(page)
@@ -77,12 +77,10 @@ def close(dialog: Locator) -> None:
     dialog.get_by_role("button", name="Close", exact=True).click()
 
 
-def register(page: Page, card: Locator) -> None:
+def register(card: Locator) -> None:
+    """In one press."""
     card.get_by_role("button", name="Register").click()
-    dialog = page.get_by_role("dialog")
-    dialog.get_by_role("button", name="Register unit").click()
-    expect(dialog.get_by_label(f"Who wears {UNIT}")).to_be_visible(timeout=SOON_MS)
-    close(dialog)
+    expect(card.get_by_label(f"Who wears {UNIT}")).to_be_visible(timeout=SOON_MS)
 
 
 def add_person(page: Page) -> None:
@@ -104,6 +102,7 @@ def assign(page: Page) -> None:
 def open_incident(page: Page) -> None:
     dialog = menu(page, "Incidents")
     dialog.get_by_label("Name of the new incident").fill(INCIDENT)
+    dialog.get_by_label("Roll call every, min").first.fill("10")
     dialog.get_by_role("button", name="Open incident").click()
     expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible(timeout=SOON_MS)
     close(dialog)
@@ -176,6 +175,49 @@ def test_a_roll_call_is_received_and_acknowledged(
     dialog = command(page, "PAR")
     expect(row).to_contain_text(f"acknowledged{NAME}", timeout=SOON_MS)
     close(dialog)
+
+
+def test_people_are_ticked_off_at_the_roll_call(page: Page, card: Locator) -> None:
+    clock = page.get_by_role("button", name="until the next check-in")
+    expect(clock).to_contain_text(re.compile(r"PAR 0?\d:\d\d"))
+    clock.click()
+    dialog = page.get_by_role("dialog")
+    row = dialog.get_by_role("listitem").filter(has_text=NAME)
+    row.get_by_role("button", name=f"Heard {NAME}").click()
+    expect(row).to_contain_text("by admin", timeout=SOON_MS)
+    close(dialog)
+    expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"), timeout=SOON_MS)
+
+
+def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card: Locator) -> None:
+    actions = card.get_by_role("group", name=f"For {NAME}")
+    actions.get_by_role("button", name="To rest").click()
+    expect(card).to_contain_text("Resting for", timeout=SOON_MS)
+    actions.get_by_role("button", name="Back to work").click()
+    expect(card).to_contain_text("Inside for", timeout=SOON_MS)
+    actions.get_by_role("button", name="Locate").click()
+    dialog = command(page, "Message")
+    expect(dialog.get_by_role("table", name="Locate")).to_contain_text("received", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
+    account = menu(page, "Account")
+    account.get_by_role("button", name="Users").click()
+    dialog = page.get_by_role("dialog", name="Users")
+    dialog.get_by_label("Name", exact=True).fill("mia")
+    dialog.get_by_label("Password, at least 10 characters").fill("long enough for mia")
+    dialog.get_by_role("button", name="Add user").click()
+    expect(dialog.get_by_label("Role of mia")).to_have_value("viewer", timeout=SOON_MS)
+    dialog.get_by_label("Role of mia").select_option("commander")
+    close(dialog)
+    menu(page, "Account").get_by_role("button", name="Audit log").click()
+    audit = page.get_by_role("dialog", name="Audit log")
+    expect(audit.get_by_role("row", name="Changed user mia: commander")).to_be_visible(
+        timeout=SOON_MS
+    )
+    expect(audit.get_by_role("row", name="Check in")).to_be_visible()
+    close(audit)
 
 
 def test_an_evacuation_asks_first_and_may_be_answered_by_voice(page: Page, card: Locator) -> None:

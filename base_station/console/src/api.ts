@@ -2,10 +2,64 @@
 import type { Target } from "./live/commands";
 import type { AnchorView, CommandView } from "./wire";
 
+export type Role = "viewer" | "commander" | "administrator";
+
 export interface Me {
   username: string;
-  role: "viewer" | "commander" | "administrator";
+  role: Role;
 }
+
+export interface User {
+  username: string;
+  role: Role;
+  created_ms: number;
+  sessions: number; // that are open
+}
+
+export interface Token {
+  token_id: string;
+  name: string;
+  role: Role;
+  scopes: string[]; // empty: all
+  expires_ms: number | null;
+}
+
+export interface NewToken {
+  name: string;
+  role: string;
+  scopes: string[];
+  days: number | null;
+}
+
+export interface AuditEntry {
+  entry_id: string;
+  t_ms: number;
+  by: string;
+  action: string;
+  detail: string; // JSON of an operator's action, or a sentence
+}
+
+/** Parts of the API that a token can be for (base_station/api/security.py). */
+export const SCOPES = [
+  "accountability",
+  "alarms",
+  "assignments",
+  "audit",
+  "commands",
+  "exports",
+  "forgetting",
+  "health",
+  "incidents",
+  "live",
+  "people",
+  "pins",
+  "replays",
+  "site",
+  "tokens",
+  "tracks",
+  "units",
+  "users",
+] as const;
 
 export interface Person {
   person_id: string;
@@ -13,6 +67,15 @@ export interface Person {
   crew: string;
   role: string;
   photo_url: string | null;
+}
+
+export interface UnitDetails {
+  unit_id: string;
+  software_version: string;
+  sensor_name: string;
+  tracker: string;
+  calibration: string;
+  has_gps: boolean;
 }
 
 export interface Incident {
@@ -30,7 +93,13 @@ export interface PastAlarm {
   raised_ms: number;
 }
 
-export type CommandKind = "evacuate" | "par_request" | "text";
+export type CommandKind = "evacuate" | "par_request" | "text" | "locate";
+
+/** How often everybody is to be heard from, and when to send them to rest. */
+export interface Times {
+  par_interval_s: number;
+  work_limit_s: number;
+}
 
 export interface RunningReplay {
   replay_id: string;
@@ -82,9 +151,12 @@ export const me = () => call<Me>("GET", "/me");
 export const people = () => call<Person[]>("GET", "/people");
 export const addPerson = (person: { name: string; crew: string; role: string }) =>
   call<Person>("POST", "/people", person);
+export const changePerson = (personId: string, person: Omit<Person, "person_id" | "photo_url">) =>
+  call<Person>("PUT", `/people/${id(personId)}`, person);
 export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
+export const units = () => call<UnitDetails[]>("GET", "/units");
 export const registerUnit = (unitId: string, label: string) =>
   call<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>
@@ -94,11 +166,24 @@ export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/$
 export const incidents = () => call<Incident[]>("GET", "/incidents");
 export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
-export const openIncident = (name: string) => call<Incident>("POST", "/incidents", { name });
+export const openIncident = (name: string, times: Partial<Times>) =>
+  call<Incident>("POST", "/incidents", { name, ...times });
+export const setTimes = (incidentId: string, times: Times) =>
+  call<void>("PUT", `/incidents/${id(incidentId)}/accountability`, times);
 export const closeIncident = (incidentId: string) =>
   call<void>("POST", `/incidents/${id(incidentId)}/close`);
 export const incidentAlarms = (incidentId: string) =>
   call<PastAlarm[]>("GET", `/incidents/${id(incidentId)}/alarms`);
+
+export interface ExportFormat {
+  name: string;
+  suffix: string;
+  needs_anchor: boolean;
+}
+
+export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
+export const exportUrl = (incidentId: string, format: string) =>
+  `${BASE}/incidents/${id(incidentId)}/export/${id(format)}`;
 
 export const acknowledge = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
@@ -107,8 +192,37 @@ export const resolve = (alarmId: string) =>
 
 export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
   call<CommandView>("POST", "/commands", { kind, target, text });
+export const setPositionRate = (unitId: string, rateHz: number) =>
+  call<CommandView>("POST", "/commands", {
+    kind: "set_position_rate",
+    target: { unit_id: unitId },
+    position_rate_hz: rateHz,
+  });
 export const confirmCommand = (commandId: string, unitId: string) =>
   call<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
+
+export const checkIn = (target: Target) => call<void>("POST", "/check-ins", { target });
+export const setRest = (unitId: string, resting: boolean) =>
+  call<void>("PUT", `/units/${id(unitId)}/rest`, { resting });
+
+export const changeOwnPassword = (old_password: string, new_password: string) =>
+  call<void>("POST", "/me/password", { old_password, new_password });
+export const tokens = () => call<Token[]>("GET", "/tokens");
+export const addToken = (token: NewToken) => call<{ token: string }>("POST", "/tokens", token);
+export const removeToken = (tokenId: string) => call<void>("DELETE", `/tokens/${id(tokenId)}`);
+export const users = () => call<User[]>("GET", "/users");
+export const addUser = (username: string, password: string, role: Role) =>
+  call<void>("POST", "/users", { username, password, role });
+export const changeUser = (username: string, change: { password?: string; role?: Role }) =>
+  call<void>("PUT", `/users/${id(username)}`, change);
+export const removeUser = (username: string) => call<void>("DELETE", `/users/${id(username)}`);
+export const endSessions = (username: string) =>
+  call<void>("DELETE", `/users/${id(username)}/sessions`);
+export const audit = (beforeMs: number | undefined, limit: number) =>
+  call<AuditEntry[]>(
+    "GET",
+    `/audit?limit=${limit}${beforeMs === undefined ? "" : `&until_ms=${beforeMs}`}`,
+  );
 
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
 export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);

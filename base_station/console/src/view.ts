@@ -14,11 +14,15 @@ export type DialogName =
   | "units"
   | "site"
   | "health"
+  | "roll_call"
+  | "account"
+  | "users"
+  | "audit"
   | "evacuate"
   | "par_request"
   | "text";
 export const dialog = signal<DialogName | null>(null);
-/** The unit that the units dialog begins with. */
+/** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
 
 export const notice = signal<string | null>(null);

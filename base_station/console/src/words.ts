@@ -23,6 +23,16 @@ export function minutes(ms: number): string {
   return whole < 60 ? `${whole} min` : `${Math.floor(whole / 60)} h ${pad(whole % 60)} min`;
 }
 
+/** Minutes and seconds as on a kitchen clock: "12:40", "1:02:40". */
+export function countdown(ms: number): string {
+  const seconds = Math.ceil(Math.max(0, ms) / 1000);
+  const minutes = Math.floor(seconds / 60);
+  const rest = pad(seconds % 60);
+  return minutes < 60
+    ? `${pad(minutes)}:${rest}`
+    : `${Math.floor(minutes / 60)}:${pad(minutes % 60)}:${rest}`;
+}
+
 /** Time of the day where the console stands. */
 export function clockTime(ms: number): string {
   const at = new Date(ms);

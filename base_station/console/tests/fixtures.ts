@@ -68,6 +68,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     position: null,
     inside_since_ms: null,
     duty: null,
+    trust: { level: "green", reason: "" },
     alarms: [],
     ...change,
   };
@@ -127,6 +128,8 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     alarms: [],
     commands: [],
     trails: {},
+    pins: [],
+    beacons: [],
     plan: null,
     anchor: null,
     health: HEALTH,

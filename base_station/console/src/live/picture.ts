@@ -3,9 +3,11 @@ import { batch, computed, signal, type ReadonlySignal, type Signal } from "@prea
 import type {
   AlarmView,
   AnchorView,
+  BeaconView,
   CommandView,
   HealthView,
   IncidentView,
+  PinView,
   Plan,
   ReplayView,
   TrailPoint,
@@ -34,6 +36,8 @@ export class Picture {
   readonly commands = signal<ReadonlyMap<string, CommandView>>(new Map());
   readonly plan = signal<Plan | null>(null);
   readonly anchor = signal<AnchorView | null>(null);
+  readonly pins = signal<readonly PinView[]>([]);
+  readonly beacons = signal<readonly BeaconView[]>([]);
   readonly health = signal<HealthView | null>(null);
   readonly replay = signal<ReplayView | null>(null);
   readonly unitIds = signal<readonly string[]>([]);
@@ -66,6 +70,8 @@ export class Picture {
       this.commands.value = state.commands;
       this.plan.value = state.plan;
       this.anchor.value = state.anchor;
+      this.pins.value = state.pins;
+      this.beacons.value = state.beacons;
       this.health.value = state.health;
       this.replay.value = state.replay;
       this.trails.value = state.trails;

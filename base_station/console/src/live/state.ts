@@ -2,11 +2,13 @@
 import type {
   AlarmView,
   AnchorView,
+  BeaconView,
   CommandView,
   Delta,
   HealthView,
   IncidentView,
   Message,
+  PinView,
   Plan,
   ReplayView,
   Snapshot,
@@ -22,6 +24,8 @@ export interface State {
   alarms: ReadonlyMap<string, AlarmView>;
   commands: ReadonlyMap<string, CommandView>; // oldest first
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
+  pins: readonly PinView[];
+  beacons: readonly BeaconView[];
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
@@ -57,6 +61,8 @@ function fromSnapshot(message: Snapshot): State {
     alarms: new Map(message.alarms.map((alarm) => [alarm.alarm_id, alarm])),
     commands: new Map(message.commands.map((command) => [command.command_id, command])),
     trails: new Map(Object.entries(message.trails)),
+    pins: message.pins,
+    beacons: message.beacons,
     plan: message.plan,
     anchor: message.anchor,
     health: message.health,
@@ -74,6 +80,8 @@ function withDelta(state: State, delta: Delta): State {
     replay: delta.replay ?? state.replay,
     units: delta.units ? withUnits(state.units, delta.units) : state.units,
     trails: withTrails(state.trails, delta),
+    pins: delta.pins ?? state.pins,
+    beacons: delta.beacons ?? state.beacons,
     alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
     commands: delta.commands ? withCommands(state.commands, delta.commands) : state.commands,
   };

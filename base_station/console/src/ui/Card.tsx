@@ -1,15 +1,19 @@
 import type { ComponentChildren } from "preact";
 import { memo } from "preact/compat";
-import { mayAct } from "../sessions";
-import { openDialog, select, selectedUnit } from "../view";
+import { attempt, mayAct } from "../sessions";
+import * as api from "../api";
+import { select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { isOld, regionAt } from "../plan/ellipse";
 import type { AlarmView, Link, UnitView } from "../wire";
 import * as words from "../words";
+import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
 import { activityIcon, Icon, type IconName } from "./Icon";
+import { ParMark } from "./ParClock";
 import { Photo } from "./Photo";
+import { AskWearer } from "./Wearer";
 
 interface Props {
   unitId: string;
@@ -46,15 +50,20 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         <Photo name={name} url={unit.person?.photo_url ?? null} />
         <span class="names">
           <span class="name">{name}</span>
-          <span class="quiet">{crewAndRole(unit)}</span>
+          <span class="under-name">
+            <span class="quiet">{crewAndRole(unit)}</span>
+            <ParMark unit={unit} picture={picture} />
+          </span>
           <Activity unit={unit} />
         </span>
       </button>
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
       <Facts unit={unit} picture={picture} />
-      {unit.position && <Doubt text={words.qualityNote(unit.position)} />}
+      <Trust unit={unit} />
+      {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
+      {unit.registered && unit.person === null && mayAct.value && <AskWearer unit={unit} />}
     </li>
   );
 });
@@ -104,10 +113,24 @@ function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
         {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
       </Fact>
       <Battery part={unit.status?.battery ?? null} />
-      <Fact icon="inside" label="Inside for">
-        {unit.inside_since_ms === null ? "—" : words.minutes(now - unit.inside_since_ms)}
-      </Fact>
+      <Inside unit={unit} now={now} />
     </dl>
+  );
+}
+
+function Inside({ unit, now }: { unit: UnitView; now: number }) {
+  const restSinceMs = unit.duty?.rest_since_ms ?? null;
+  if (restSinceMs !== null) {
+    return (
+      <Fact icon="clock" label="Resting for">
+        {words.minutes(now - restSinceMs)}
+      </Fact>
+    );
+  }
+  return (
+    <Fact icon="inside" label="Inside for">
+      {unit.inside_since_ms === null ? "—" : words.minutes(now - unit.inside_since_ms)}
+    </Fact>
   );
 }
 
@@ -186,12 +209,15 @@ function Fact({ icon, label, level = "", wide = false, children }: FactProps) {
   );
 }
 
-function Doubt({ text }: { text: string }) {
-  if (text === "") return null;
+/** How far the position can be trusted: nothing to say while that is well. */
+function Trust({ unit }: { unit: UnitView }) {
+  const { level, reason } = unit.trust;
+  if (unit.position === null || level === "green") return null;
+  const word = level === "red" ? "Do not trust this place" : "Place uncertain";
   return (
-    <p class="doubt">
+    <p class={`trust ${level}`}>
       <Icon name="target" />
-      {text}
+      {reason === "" ? word : `${word}: ${reason}`}
     </p>
   );
 }
@@ -201,7 +227,7 @@ function UnknownUnit({ unitId }: { unitId: string }) {
     <p class="unknown">
       Not one of ours yet: kept in the log, not believed.
       {mayAct.value && (
-        <button type="button" onClick={() => openDialog("units", unitId)}>
+        <button type="button" onClick={() => void attempt(api.registerUnit(unitId, unitId))}>
           Register
         </button>
       )}

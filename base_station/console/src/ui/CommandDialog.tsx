@@ -1,4 +1,5 @@
 import { attempt, live, mayAct } from "../sessions";
+import { dialogUnit } from "../view";
 import * as api from "../api";
 import { commandWord, crewsOf, kindWord, newestFirst, type Target } from "../live/commands";
 import type { Picture } from "../live/picture";
@@ -13,6 +14,7 @@ const SAYS: Record<api.CommandKind, string> = {
   evacuate: "Tells them to get out at once. Each wearer is asked to acknowledge it.",
   par_request: "Asks each wearer to answer. Nothing but a person’s answer completes it.",
   text: "Each wearer is asked to acknowledge it.",
+  locate: "The unit makes itself heard and seen.",
 };
 
 /** Asks whom it is for before anything is sent, and shows what became of it. */
@@ -30,6 +32,7 @@ export function CommandDialog({ kind }: { kind: api.CommandKind }) {
 }
 
 function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Picture }) {
+  const about = dialogUnit.value;
   const units = picture.unitIds.value
     .map((unitId) => picture.unit(unitId)?.value)
     .filter((unit) => unit?.registered);
@@ -46,7 +49,7 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       <p>{SAYS[kind]}</p>
       <label>
         To
-        <select name="target">
+        <select name="target" defaultValue={about === null ? "everyone" : `unit:${about}`}>
           <option value="everyone">Everyone</option>
           {crewsOf(units.filter((unit) => unit !== undefined)).map((crew) => (
             <option key={crew} value={`crew:${crew}`}>

@@ -2,12 +2,23 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { dialog } from "../view";
 
+interface Props {
+  title: string;
+  wide?: boolean;
+  children: ComponentChildren;
+}
+
 /** The browser's own dialog: keeps the focus, ends with Escape. */
-export function Dialog({ title, children }: { title: string; children: ComponentChildren }) {
+export function Dialog({ title, wide = false, children }: Props) {
   const element = useRef<HTMLDialogElement>(null);
   useEffect(() => element.current?.showModal(), []);
   return (
-    <dialog ref={element} aria-labelledby="dialog-title" onClose={() => (dialog.value = null)}>
+    <dialog
+      ref={element}
+      class={wide ? "wide" : ""}
+      aria-labelledby="dialog-title"
+      onClose={() => (dialog.value = null)}
+    >
       <header>
         <h2 id="dialog-title">{title}</h2>
         <button type="button" onClick={() => element.current?.close()}>

@@ -1,10 +1,14 @@
 import { dialog } from "../view";
+import { AccountDialog } from "./AccountDialog";
+import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
+import { RollCallDialog } from "./RollCallDialog";
 import { SiteDialog } from "./SiteDialog";
 import { UnitsDialog } from "./UnitsDialog";
+import { UsersDialog } from "./UsersDialog";
 
 export function Dialogs() {
   switch (dialog.value) {
@@ -18,6 +22,14 @@ export function Dialogs() {
       return <SiteDialog />;
     case "health":
       return <HealthDialog />;
+    case "roll_call":
+      return <RollCallDialog />;
+    case "account":
+      return <AccountDialog />;
+    case "users":
+      return <UsersDialog />;
+    case "audit":
+      return <AuditDialog />;
     case "evacuate":
     case "par_request":
     case "text":

@@ -1,14 +1,16 @@
-import { leave, mayAct, user } from "../sessions";
+import { mayAct, user } from "../sessions";
 import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf } from "../words";
 import { Icon } from "./Icon";
+import { ParClock } from "./ParClock";
 
 export function Header({ picture }: { picture: Picture }) {
   return (
     <header class="header">
       <IncidentTitle picture={picture} />
       <Clock picture={picture} />
+      <ParClock picture={picture} />
       <HealthLight picture={picture} />
       <LinkLight picture={picture} />
       <nav class="menu" aria-label="Manage">
@@ -30,10 +32,10 @@ export function Header({ picture }: { picture: Picture }) {
         )}
         <button
           type="button"
-          onClick={() => void leave()}
+          onClick={() => openDialog("account")}
           title={`Logged in as ${user.value?.username}`}
         >
-          Log out
+          Account
         </button>
       </nav>
     </header>

@@ -1,5 +1,6 @@
 import { attempt, live, mayAct, watchReplay } from "../sessions";
 import * as api from "../api";
+import type { IncidentView } from "../wire";
 import { dateAndTime, minutes } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -10,7 +11,7 @@ export function IncidentsDialog() {
   const open = live.value?.picture.incident.value ?? null;
   const running = open !== null && open.closed_ms === null ? open : null;
   return (
-    <Dialog title="Incidents">
+    <Dialog title="Incidents" wide>
       {mayAct.value && running === null && <OpenForm done={again} />}
       {mayAct.value && running !== null && (
         <p class="row">
@@ -24,14 +25,16 @@ export function IncidentsDialog() {
           />
         </p>
       )}
+      {mayAct.value && running !== null && <TimesForm incident={running} />}
       <table>
-        <caption>Replay an incident</caption>
+        <caption>Incidents so far</caption>
         <thead>
           <tr>
             <th scope="col">Incident</th>
             <th scope="col">Opened</th>
             <th scope="col">Lasted</th>
             <th scope="col">Replay</th>
+            <th scope="col">Tracks</th>
           </tr>
         </thead>
         <tbody>
@@ -53,6 +56,9 @@ export function IncidentsDialog() {
                   Replay
                 </button>
               </td>
+              <td>
+                <Downloads incident={incident} />
+              </td>
             </tr>
           ))}
         </tbody>
@@ -66,15 +72,77 @@ function OpenForm({ done }: { done: () => void }) {
     <form
       class="row"
       onSubmit={(event) => {
-        const name = fields(event)["name"] ?? "";
-        void attempt(api.openIncident(name)).then(done);
+        const { name = "", par = "", work = "" } = fields(event);
+        void attempt(api.openIncident(name, timesOf(par, work))).then(done);
       }}
     >
       <label>
         Name of the new incident
-        <input name="name" required maxLength={120} />
+        <input name="name" required maxLength={80} />
       </label>
+      <MinutesField name="par" label="Roll call every, min" value={20} />
+      <MinutesField name="work" label="Rest after, min" value={40} />
       <button class="primary">Open incident</button>
     </form>
+  );
+}
+
+/** Other times while the incident runs. */
+function TimesForm({ incident }: { incident: IncidentView }) {
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        const { par = "", work = "" } = fields(event);
+        void attempt(api.setTimes(incident.incident_id, timesOf(par, work)));
+      }}
+    >
+      <MinutesField
+        name="par"
+        label="Roll call every, min"
+        value={Math.round(incident.par_interval_s / 60)}
+      />
+      <MinutesField
+        name="work"
+        label="Rest after, min"
+        value={Math.round(incident.work_limit_s / 60)}
+      />
+      <button>Change times</button>
+    </form>
+  );
+}
+
+function timesOf(par: string, work: string): api.Times {
+  return { par_interval_s: 60 * Number(par), work_limit_s: 60 * Number(work) };
+}
+
+function MinutesField({ name, label, value }: { name: string; label: string; value: number }) {
+  return (
+    <label class="short">
+      {label}
+      <input name={name} type="number" min={1} max={720} required defaultValue={value} />
+    </label>
+  );
+}
+
+/** The tracks of an incident for other programs. */
+function Downloads({ incident }: { incident: api.Incident }) {
+  const [formats] = useLoaded(api.exportFormats);
+  return (
+    <select
+      aria-label={`Save ${incident.name} as a file`}
+      value=""
+      onChange={(event) => {
+        location.assign(api.exportUrl(incident.incident_id, event.currentTarget.value));
+        event.currentTarget.value = "";
+      }}
+    >
+      <option value="">Save as …</option>
+      {(formats.value ?? []).map((format) => (
+        <option key={format.name} value={format.name}>
+          {format.name}
+        </option>
+      ))}
+    </select>
   );
 }

@@ -78,7 +78,7 @@ function PersonForm({ done }: { done: () => void }) {
     >
       <label>
         Name
-        <input name="name" required maxLength={120} />
+        <input name="name" required maxLength={80} />
       </label>
       <label>
         Crew

@@ -1,17 +1,20 @@
 import { attempt, live } from "../sessions";
-import { dialogUnit } from "../view";
 import * as api from "../api";
 import type { UnitView } from "../wire";
-import { linkWord } from "../words";
+import { alarmWord, linkWord } from "../words";
 import { Dialog } from "./Dialog";
 import { fields, useLoaded } from "./useLoaded";
+import { Wearer } from "./Wearer";
+
+const RATES_HZ = [0.5, 1, 2, 5, 10];
 
 export function UnitsDialog() {
   const [people] = useLoaded(api.people);
+  const [details] = useLoaded(api.units);
   const picture = live.value?.picture;
   const ids = picture?.unitIds.value ?? [];
   return (
-    <Dialog title="Units and who wears them">
+    <Dialog title="Units and who wears them" wide>
       <RegisterForm />
       <table>
         <thead>
@@ -19,12 +22,24 @@ export function UnitsDialog() {
             <th scope="col">Unit</th>
             <th scope="col">Link</th>
             <th scope="col">Worn by</th>
+            <th scope="col">Calibration</th>
+            <th scope="col">Positions a second</th>
           </tr>
         </thead>
         <tbody>
           {ids.map((unitId) => {
             const unit = picture?.unit(unitId)?.value;
-            return unit && <UnitRow key={unitId} unit={unit} people={people.value ?? []} />;
+            const described = details.value?.find((one) => one.unit_id === unitId);
+            return (
+              unit && (
+                <UnitRow
+                  key={unitId}
+                  unit={unit}
+                  people={people.value ?? []}
+                  calibration={described?.calibration ?? ""}
+                />
+              )
+            );
           })}
         </tbody>
       </table>
@@ -32,30 +47,55 @@ export function UnitsDialog() {
   );
 }
 
-function UnitRow({ unit, people }: { unit: UnitView; people: api.Person[] }) {
-  const label = unit.label === "" ? unit.unit_id : `${unit.label} (${unit.unit_id})`;
+interface RowProps {
+  unit: UnitView;
+  people: api.Person[];
+  calibration: string;
+}
+
+function UnitRow({ unit, people, calibration }: RowProps) {
+  const labelled = unit.label !== "" && unit.label !== unit.unit_id;
   return (
     <tr>
-      <th scope="row">{label}</th>
+      <th scope="row">{labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}</th>
       <td>{linkWord(unit.link)}</td>
       <td>{unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}</td>
+      <td>
+        <Calibration unit={unit} calibration={calibration} />
+      </td>
+      <td>{unit.registered && <Rate unitId={unit.unit_id} />}</td>
     </tr>
   );
 }
 
-function Wearer({ unit, people }: { unit: UnitView; people: api.Person[] }) {
-  const change = (personId: string) =>
-    void attempt(personId === "" ? api.unassign(unit.unit_id) : api.assign(unit.unit_id, personId));
+/** Its name, and what the station has to say against it. */
+function Calibration({ unit, calibration }: { unit: UnitView; calibration: string }) {
+  const alarms = live.value?.picture.alarms.value;
+  const warning = unit.alarms
+    .map((alarmId) => alarms?.get(alarmId))
+    .find((alarm) => alarm?.rule === "calibration");
+  return (
+    <>
+      {calibration === "" ? "none" : calibration}
+      {warning && <small class="warned"> {alarmWord(warning)}</small>}
+    </>
+  );
+}
+
+function Rate({ unitId }: { unitId: string }) {
   return (
     <select
-      aria-label={`Who wears ${unit.unit_id}`}
-      value={unit.person?.person_id ?? ""}
-      onChange={(event) => change(event.currentTarget.value)}
+      aria-label={`Positions a second of ${unitId}`}
+      value=""
+      onChange={(event) => {
+        const rateHz = Number(event.currentTarget.value);
+        if (rateHz > 0) void attempt(api.setPositionRate(unitId, rateHz));
+      }}
     >
-      <option value="">nobody</option>
-      {people.map((person) => (
-        <option key={person.person_id} value={person.person_id}>
-          {person.name} ({person.crew})
+      <option value="">as it is</option>
+      {RATES_HZ.map((rateHz) => (
+        <option key={rateHz} value={rateHz}>
+          {rateHz}
         </option>
       ))}
     </select>
@@ -78,13 +118,14 @@ function RegisterForm() {
     <form
       class="row"
       onSubmit={(event) => {
+        const form = event.currentTarget;
         const { unit_id: unitId = "", label = "" } = fields(event);
-        void attempt(api.registerUnit(unitId, label || unitId));
+        void attempt(api.registerUnit(unitId, label || unitId).then(() => form.reset()));
       }}
     >
       <label>
         Unit id
-        <input name="unit_id" required maxLength={64} value={dialogUnit.value ?? ""} />
+        <input name="unit_id" required maxLength={64} />
       </label>
       <label>
         Label

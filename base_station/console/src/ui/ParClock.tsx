@@ -1,0 +1,43 @@
+import { openDialog } from "../view";
+import { parOf, rollCall, type ParState } from "../live/duty";
+import type { Picture } from "../live/picture";
+import type { UnitView } from "../wire";
+import { countdown } from "../words";
+import { Icon, type IconName } from "./Icon";
+
+const ICONS: Record<ParState, IconName> = { green: "check", warning: "clock", overdue: "alarm" };
+
+/** In the header: when the next check-in is due, big enough for the other side of the vehicle. */
+export function ParClock({ picture }: { picture: Picture }) {
+  void picture.unitsChanged.value;
+  const call = rollCall(picture.allUnits(), picture.incident.value, picture.nowMs.value);
+  if (call === null) return null;
+  const words = call.overdue > 0 ? `${call.overdue} overdue` : countdown(call.leftMs);
+  return (
+    <button
+      type="button"
+      class={`par-clock ${call.state}`}
+      onClick={() => openDialog("roll_call")}
+    >
+      <Icon name={ICONS[call.state]} />
+      <span>
+        PAR {words}
+        <span class="spoken">{call.overdue > 0 ? "" : " until the next check-in"}</span>
+      </span>
+    </button>
+  );
+}
+
+/** On a card: how long until this person is to be heard from. */
+export function ParMark({ unit, picture }: { unit: UnitView; picture: Picture }) {
+  const { duty } = unit;
+  if (duty === null) return null;
+  const { state, leftMs } = parOf(duty, picture.incident.value, picture.nowMs.value);
+  const word = state === "overdue" ? `${countdown(-leftMs)} over` : countdown(leftMs);
+  return (
+    <span class={`par-mark ${state}`}>
+      <Icon name={ICONS[state]} />
+      {duty.asked_ms !== null && state !== "overdue" ? "PAR asked" : "PAR"} {word}
+    </span>
+  );
+}

@@ -1,0 +1,96 @@
+import { attempt, mayAct, picture as shown } from "../sessions";
+import { openDialog } from "../view";
+import * as api from "../api";
+import type { Target } from "../live/commands";
+import { crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
+import { displayName } from "../live/urgency";
+import { clockTime, minutes } from "../words";
+import { Dialog } from "./Dialog";
+import { ParMark } from "./ParClock";
+
+/** Ticking people off: one press for each, or for a crew, or for everyone. */
+export function RollCallDialog() {
+  const picture = shown.value;
+  if (picture === null) return null;
+  void picture.unitsChanged.value;
+  const incident = picture.incident.value;
+  const crews = crewsOnDuty(picture.allUnits(), incident, picture.nowMs.value);
+  return (
+    <Dialog title="Roll call (PAR)" wide>
+      {crews.length === 0 && (
+        <p>Nobody is on duty: open an incident, and say in Units who wears which unit.</p>
+      )}
+      {mayAct.value && crews.length > 0 && (
+        <p class="row roll-all">
+          <span>Tick off whom you have heard. Nothing that a unit measures does it for you.</span>
+          <button type="button" onClick={() => openDialog("par_request")}>
+            Ask by radio
+          </button>
+          <button type="button" onClick={() => tick({ everyone: true })}>
+            All heard
+          </button>
+        </p>
+      )}
+      {crews.map((crew) => (
+        <Crew key={crew.crew} crew={crew} picture={picture} />
+      ))}
+    </Dialog>
+  );
+}
+
+type Shown = NonNullable<(typeof shown)["value"]>;
+
+function Crew({ crew, picture }: { crew: CrewOnDuty; picture: Shown }) {
+  const name = crew.crew === "" ? "Without a crew" : crew.crew;
+  return (
+    <section class={`roll-crew ${crew.par.state}`} aria-label={name}>
+      <header>
+        <h3>
+          {name} <span class="quiet">{crew.people.length} on duty</span>
+        </h3>
+        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && (
+          <button type="button" onClick={() => tick({ crew: crew.crew })}>
+            {name}: all heard
+          </button>
+        )}
+      </header>
+      <ul>
+        {crew.people.map((one) => (
+          <Row key={one.unit.unit_id} one={one} picture={picture} />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function Row({ one, picture }: { one: OnDuty; picture: Shown }) {
+  const { unit, duty } = one;
+  const name = displayName(unit);
+  return (
+    <li class={one.par.state}>
+      <strong>{name}</strong>
+      <ParMark unit={unit} picture={picture} />
+      <span class="quiet">
+        last heard {clockTime(duty.checked_in_ms)} by {duty.checked_in_by}
+        {duty.rest_since_ms !== null &&
+          `, resting for ${minutes(picture.nowMs.value - duty.rest_since_ms)}`}
+        {duty.work_since_ms !== null &&
+          `, at work for ${minutes(picture.nowMs.value - duty.work_since_ms)}`}
+      </span>
+      {mayAct.value && (
+        <button
+          type="button"
+          class="primary tick"
+          aria-label={`Heard ${name}`}
+          onClick={() => tick({ unit_id: unit.unit_id })}
+        >
+          Heard
+        </button>
+      )}
+    </li>
+  );
+}
+
+function tick(target: Target): void {
+  void attempt(api.checkIn(target));
+}

@@ -1,0 +1,132 @@
+import { attempt, user as me } from "../sessions";
+import * as api from "../api";
+import { ConfirmButton } from "./ConfirmButton";
+import { Dialog } from "./Dialog";
+import { fields, useLoaded } from "./useLoaded";
+
+const ROLES: readonly api.Role[] = ["viewer", "commander", "administrator"];
+
+/** Who may log in, and as what. */
+export function UsersDialog() {
+  const [users, again] = useLoaded(api.users);
+  return (
+    <Dialog title="Users" wide>
+      <NewUser done={again} />
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">User</th>
+            <th scope="col">Role</th>
+            <th scope="col">New password</th>
+            <th scope="col">Logged in</th>
+            <th scope="col">
+              <span class="spoken">Remove</span>
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {(users.value ?? []).map((user) => (
+            <UserRow key={user.username} user={user} done={again} />
+          ))}
+        </tbody>
+      </table>
+    </Dialog>
+  );
+}
+
+function NewUser({ done }: { done: () => void }) {
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        const form = event.currentTarget;
+        const { username = "", password = "", role = "viewer" } = fields(event);
+        const added = api.addUser(username, password, role as api.Role);
+        void attempt(added.then(() => form.reset())).then(done);
+      }}
+    >
+      <label>
+        Name
+        <input name="username" required maxLength={80} autocomplete="off" />
+      </label>
+      <label>
+        Password, at least 10 characters
+        <input name="password" type="password" required minLength={10} autocomplete="new-password" />
+      </label>
+      <label>
+        Role
+        <select name="role">
+          {ROLES.map((role) => (
+            <option key={role}>{role}</option>
+          ))}
+        </select>
+      </label>
+      <button class="primary">Add user</button>
+    </form>
+  );
+}
+
+function UserRow({ user, done }: { user: api.User; done: () => void }) {
+  const { username } = user;
+  return (
+    <tr>
+      <th scope="row">
+        {username}
+        {username === me.value?.username && <small> (you)</small>}
+      </th>
+      <td>
+        <select
+          aria-label={`Role of ${username}`}
+          value={user.role}
+          onChange={(event) => {
+            const role = event.currentTarget.value as api.Role;
+            void attempt(api.changeUser(username, { role })).then(done);
+          }}
+        >
+          {ROLES.map((role) => (
+            <option key={role}>{role}</option>
+          ))}
+        </select>
+      </td>
+      <td>
+        <form
+          class="inline"
+          onSubmit={(event) => {
+            const form = event.currentTarget;
+            const { password = "" } = fields(event);
+            const changed = api.changeUser(username, { password });
+            void attempt(changed.then(() => form.reset())).then(done);
+          }}
+        >
+          <input
+            name="password"
+            type="password"
+            required
+            minLength={10}
+            autocomplete="new-password"
+            aria-label={`New password of ${username}`}
+          />
+          <button>Set</button>
+        </form>
+      </td>
+      <td>
+        {user.sessions === 0 ? (
+          "no"
+        ) : (
+          <ConfirmButton
+            label={`End ${user.sessions} ${user.sessions === 1 ? "session" : "sessions"}`}
+            question={`${username} has to log in again.`}
+            onConfirm={() => void attempt(api.endSessions(username)).then(done)}
+          />
+        )}
+      </td>
+      <td>
+        <ConfirmButton
+          label="Remove"
+          question={`${username} can never log in again.`}
+          onConfirm={() => void attempt(api.removeUser(username)).then(done)}
+        />
+      </td>
+    </tr>
+  );
+}

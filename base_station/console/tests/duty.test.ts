@@ -1,0 +1,81 @@
+import { describe, expect, it } from "vitest";
+import { crewsOnDuty, parOf, rollCall } from "../src/live/duty";
+import type { DutyView, IncidentView, UnitView } from "../src/wire";
+import { countdown } from "../src/words";
+import { unit } from "./fixtures";
+
+const INCIDENT: IncidentView = {
+  incident_id: "i",
+  name: "Mill Road 7",
+  opened_ms: 0,
+  closed_ms: null,
+  par_interval_s: 1200,
+  par_warning_s: 300,
+  work_limit_s: 2400,
+};
+
+function duty(dueMs: number): DutyView {
+  return {
+    checked_in_ms: 0,
+    checked_in_by: "chief",
+    due_ms: dueMs,
+    asked_ms: null,
+    work_since_ms: null,
+    rest_since_ms: null,
+    rest_due_ms: null,
+  };
+}
+
+function onDuty(unitId: string, crew: string, dueMs: number): UnitView {
+  const person = { person_id: unitId, name: unitId, crew, role: "", photo_url: null };
+  return unit(unitId, { person, duty: duty(dueMs) });
+}
+
+describe("a check-in", () => {
+  it.each([
+    [1_200_000, "green"],
+    [300_001, "green"],
+    [300_000, "warning"],
+    [1, "warning"],
+    [0, "overdue"],
+    [-60_000, "overdue"],
+  ])("that is due in %i ms is %s", (dueMs, state) => {
+    expect(parOf(duty(dueMs), INCIDENT, 0).state).toBe(state);
+  });
+});
+
+describe("the roll call", () => {
+  const units = [
+    onDuty("a", "red", 900_000),
+    onDuty("b", "blue", -1_000),
+    onDuty("c", "red", 200_000),
+    unit("d"),
+  ];
+
+  it("puts the most urgent crew and person first", () => {
+    const crews = crewsOnDuty(units, INCIDENT, 0);
+    expect(crews.map((crew) => [crew.crew, crew.par.state])).toEqual([
+      ["blue", "overdue"],
+      ["red", "warning"],
+    ]);
+    expect(crews[1]?.people.map((one) => one.unit.unit_id)).toEqual(["c", "a"]);
+  });
+
+  it("counts who is overdue", () => {
+    expect(rollCall(units, INCIDENT, 0)).toMatchObject({ overdue: 1, people: 3, leftMs: -1_000 });
+  });
+
+  it("is none where nobody is on duty", () => {
+    expect(rollCall([unit("d")], INCIDENT, 0)).toBeNull();
+  });
+});
+
+it("counts down like a kitchen clock", () => {
+  expect([760_000, 1, 0, -5, 3_760_000].map(countdown)).toEqual([
+    "12:40",
+    "00:01",
+    "00:00",
+    "00:00",
+    "1:02:40",
+  ]);
+});
