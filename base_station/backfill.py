@@ -48,8 +48,12 @@ class _News(NamedTuple):
 class Backfill:
     """``start`` it with a bus; ``report`` may be called from any thread and never waits."""
 
-    def __init__(self, bus: Bus, deliver: Deliver, clock: Clock) -> None:
+    def __init__(
+        self, bus: Bus, deliver: Deliver, clock: Clock, may_forget: Callable[[], bool] = lambda: True
+    ) -> None:
+        """``may_forget``: whether units may be told that what was reported is safe here."""
         self._bus = bus
+        self._may_forget = may_forget
         self._deliver = deliver
         self._clock = clock
         self._journals: dict[str, UnitJournal] = {}
@@ -137,7 +141,7 @@ class Backfill:
         for _ in range(len(self._turns)):
             unit_id = self._turns.popleft()
             question = self._journals[unit_id].next_question()
-            if question is None:
+            if question is None or (question.what == "acknowledge" and not self._may_forget()):
                 continue
             if question.urgent or len(self._asking) < AT_ONCE:
                 self._ask(unit_id, question)
