@@ -35,6 +35,7 @@ from shared.messages import (
 )
 
 ROOT = "muster/v1"
+STATIONS_ROOT = "muster/stations/v1"  # what two stations say to each other; units neither
 EVERY_UNIT = "all"
 NO_TRACKER = "none"  # in a description: the unit's tracking agent computes its positions
 _BACKFILLED = "journal/"

@@ -16,6 +16,7 @@ from shared.channels import (
     EVERY_UNIT,
     IMU,
     ROOT,
+    STATIONS_ROOT,
     Direction,
     alive_key,
     tracker_id,
@@ -23,6 +24,7 @@ from shared.channels import (
 from shared.enrolment import Holder
 
 _EVERYTHING = [f"{ROOT}/**"]
+_AMONG_STATIONS = [f"{STATIONS_ROOT}/**"]  # nobody else may say or hear anything there
 _ALL_MESSAGES = [
     "put",
     "delete",
@@ -50,7 +52,9 @@ def _rule(
 
 
 _RULES_OF_KIND = {
-    Holder.STATION: (_rule("station", ["ingress", "egress"], _ALL_MESSAGES, _EVERYTHING),),
+    Holder.STATION: (
+        _rule("station", ["ingress", "egress"], _ALL_MESSAGES, [*_EVERYTHING, *_AMONG_STATIONS]),
+    ),
     # A unit learns what the station listens to, so that it sends that and nothing else.
     Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING),),
     Holder.TRACKER: (_rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),),

@@ -128,6 +128,47 @@ def renew_station(
 
 
 @app.command()
+def enroll_station(
+    name: Annotated[str, typer.Argument(help="Of the further station, as in its [standby].")],
+    host: Annotated[
+        list[str],
+        typer.Option(help="Name or address of that station, the first one for units; repeatable."),
+    ],
+    data: Data = _DATA,
+    port: Port = 7447,
+    days: Days = 365,
+    out: Annotated[Path | None, typer.Option(help="The file; else NAME.station.toml.")] = None,
+) -> None:
+    """Make the file with which a second machine becomes a station of this authority."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+    hosts, endpoint = _station_hosts(host, port)
+    target = out or Path(f"{name}.station.toml")
+    _require_free(target)
+    folder = PkiFolder(data)
+    folder.enroll_station(name, hosts, endpoint, timedelta(days=days)).write(target)
+    typer.echo(f"{target}: carry it to {name} and keep no other copy; it holds a private key")
+    typer.echo(f"there: `muster pki join {target.name} --data DIR`; see docs/standby.md")
+    typer.echo(f"units find both stations: {', '.join(folder.registry().connect)}")
+    typer.echo("units that were enrolled before: give them both with --connect, or renew them")
+
+
+@app.command()
+def join(
+    file: Annotated[Path, typer.Argument(help="From `muster pki enroll-station`.")],
+    data: Data = _DATA,
+) -> None:
+    """Make this machine a further station of another one's authority."""
+    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+    from base_station.pki.station_enrolment import read_station_enrolment  # noqa: PLC0415
+
+    enrolment = read_station_enrolment(file)
+    folder = PkiFolder(data)
+    folder.join(enrolment)
+    typer.echo(f"{folder.path}: this is station {enrolment.name}; delete {file}")
+
+
+@app.command()
 def revoke(
     name: Annotated[
         str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
@@ -181,17 +222,23 @@ def _free_target(
 ) -> Path | None:
     """Where the file goes; asked before a certificate is made that could not be handed over."""
     from shared.channels import tracker_id, validate_unit_id  # noqa: PLC0415
-    from shared.errors import ConfigError  # noqa: PLC0415
 
     validate_unit_id(name)
     only_code = out is None and (qr or png is not None)
     file_name = tracker_id(name) if holder is Holder.TRACKER else name
     target = None if only_code else out or Path(f"{file_name}.enrolment.toml")
     for path in (target, png):
-        if path is not None and (path.exists() or not path.absolute().parent.is_dir()):
-            problem = "is there already" if path.exists() else "is in no folder that exists"
-            raise ConfigError(f"{path} {problem}; choose another place")
+        if path is not None:
+            _require_free(path)
     return target
+
+
+def _require_free(path: Path) -> None:
+    from shared.errors import ConfigError  # noqa: PLC0415
+
+    if path.exists() or not path.absolute().parent.is_dir():
+        problem = "is there already" if path.exists() else "is in no folder that exists"
+        raise ConfigError(f"{path} {problem}; choose another place")
 
 
 def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, qr: bool) -> None:

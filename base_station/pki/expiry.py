@@ -10,6 +10,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.enrolment import Holder
 from shared.errors import ConfigError
 
+FIRST_STATION = "station"  # which has the authority
 EXPIRY_WARNING = timedelta(days=30)
 _READ_AGAIN_NS = 60 * NS_PER_S
 
@@ -53,8 +54,10 @@ def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tup
 
 
 def _expiry_sentence(entry: Entry, now: datetime) -> str:
-    if entry.holder is Holder.STATION:
+    if entry.holder is Holder.STATION and entry.name == FIRST_STATION:
         who, command = "this station", "muster pki renew-station, then start the station again"
+    elif entry.holder is Holder.STATION:
+        who, command = f"station {entry.name}", f"muster pki enroll-station {entry.name}"
     elif entry.holder is Holder.OPERATOR:
         who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
     elif entry.holder is Holder.TRACKER:

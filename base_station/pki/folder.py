@@ -18,6 +18,7 @@ import msgspec
 from base_station.pki.certificates import Issued, issue, make_authority, read_issued
 from base_station.pki.files import locked, make_folder, write_atomically
 from base_station.pki.registry import Entry, Registry, load_registry, save_registry
+from base_station.pki.station_enrolment import StationEnrolment
 from shared.channels import validate_unit_id
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
@@ -131,6 +132,66 @@ class PkiFolder:
             if connect:
                 registry = msgspec.structs.replace(registry, connect=tuple(connect))
             self._issue_station(self._authority(), registry, valid)
+
+    def enroll_station(
+        self,
+        name: str,
+        hosts: Sequence[str],
+        endpoint: str,
+        valid: timedelta = CERTIFICATE_VALID,
+    ) -> StationEnrolment:
+        """A certificate for a further station, or a new one for it.
+
+        Units that are enrolled from now on are told ``endpoint`` too.
+        """
+        validate_unit_id(name)
+        with locked(self._existing()):
+            registry = self.registry()
+            current = registry.current(Holder.STATION, name)
+            common_name = (
+                registry.next_common_name(Holder.STATION, name)
+                if current is None
+                else current.common_name
+            )
+            authority, hosts = self._authority(), _with_loopback(hosts)
+            issued = issue(authority, common_name, Holder.STATION, self._now(), valid, hosts)
+            registry = registry.with_entry(_entry(Holder.STATION, name, common_name, issued))
+            connect = tuple(dict.fromkeys((*registry.connect, endpoint)))
+            registry = msgspec.structs.replace(registry, connect=connect)
+            save_registry(self.registry_path, registry)
+        identity = TlsIdentity(
+            authority.certificate_pem(), issued.certificate_pem(), issued.key_pem()
+        )
+        return StationEnrolment(
+            name, identity, msgspec.structs.replace(registry, hosts=tuple(hosts))
+        )
+
+    def join(self, enrolment: StationEnrolment) -> None:
+        """Make this folder that of a further station, or give it a new certificate."""
+        identity = enrolment.identity
+        if not self.exists():
+            make_folder(self._folder)
+            registry = enrolment.registry
+        elif self._read("authority.pem") != identity.authority:
+            raise ConfigError(
+                f"{self._folder} belongs to another authority; move it away, or give another "
+                "folder with --data"
+            )
+        else:
+            registry = self.registry().merged(enrolment.registry)
+        with locked(self._folder):
+            write_atomically(self._folder / "authority.pem", identity.authority)
+            write_atomically(self._folder / "station.key", identity.private_key)
+            write_atomically(self._folder / "station.pem", identity.certificate)
+            save_registry(self.registry_path, registry)
+
+    def take_registry(self, other: Registry) -> None:
+        """Add what another station of this authority has enrolled and revoked."""
+        with locked(self._existing()):
+            registry = self.registry()
+            merged = registry.merged(other)
+            if merged != registry:
+                save_registry(self.registry_path, merged)
 
     def revoke(self, name: str, holder: Holder = Holder.UNIT) -> None:
         """Take all rights from the holder's certificate; effective when the router reopens."""

@@ -45,6 +45,19 @@ class Registry(msgspec.Struct, frozen=True):
         others = tuple(e for e in self.entries if e.common_name != entry.common_name)
         return msgspec.structs.replace(self, entries=(*others, entry))
 
+    def merged(self, other: Registry) -> Registry:
+        """With what another station of the same authority knows: the newer certificate of each
+        common name, and whatever either has revoked is revoked.
+        """
+        entries = {entry.common_name: entry for entry in self.entries}
+        for theirs in other.entries:
+            mine = entries.get(theirs.common_name)
+            newer = theirs if mine is None or theirs.valid_from > mine.valid_from else mine
+            revoked = newer.revoked or theirs.revoked or (mine.revoked if mine else None)
+            entries[theirs.common_name] = msgspec.structs.replace(newer, revoked=revoked)
+        connect = tuple(dict.fromkeys((*self.connect, *other.connect)))
+        return msgspec.structs.replace(self, entries=tuple(entries.values()), connect=connect)
+
     def next_common_name(self, holder: Holder, name: str) -> str:
         """One that no certificate of this authority has had.
 
@@ -52,10 +65,13 @@ class Registry(msgspec.Struct, frozen=True):
         gets another common name: what was stolen gains nothing from it.  ``:``, ``@`` and
         ``#`` are in no unit's name.
         """
-        if holder is Holder.TRACKER:
-            plain = tracker_id(name)
-        else:
-            plain = f"operator:{name}" if holder is Holder.OPERATOR else name
+        match holder:
+            case Holder.TRACKER:
+                plain = tracker_id(name)
+            case Holder.OPERATOR | Holder.STATION:
+                plain = f"{holder.value}:{name}"
+            case _:
+                plain = name
         before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
         return plain if before == 0 else f"{plain}#{before + 1}"
 
