@@ -53,6 +53,26 @@ class EskfConfig(NamedTuple):
     floor_ramp_strides: float = 6.0
     floor_pause_s: float = 0.4  # between two looks at the floor
 
+    # Aids that are looked at once a stance (side_filter.py).
+    aid_stance_s: float = 0.1  # a shorter stance is not looked at
+    aid_look_s: float = 1.0  # a longer one is looked at again
+    aid_gate: float = 4.0  # standard deviations
+
+    # The magnetic field (magnetic_heading.py).
+    field_std_ut: float = 60.0  # the earth's, before it is seen
+    field_iron_std_ut: float = 40.0  # of iron on the foot
+    field_noise_ut: float = 0.5  # of the mean of a stance
+    field_near_m: float = 1.5  # steel nearby is forgotten over this way
+    field_wide_m: float = 30.0  # and that of a whole part of a building over this
+    field_wide_share: float = 0.7  # of the deviation nearby
+    field_bend_start_ut: float = 5.0  # how far steel bends the field, before it is seen
+    field_bend_floor_ut: float = 0.7
+    field_bend_rise: float = 0.3  # of one stance that is worse
+    field_bend_fall: float = 0.04  # ... that is better
+    field_bend_ratio: float = 0.2  # bend by horizontal field, from which doubt grows faster
+    field_bend_limit: float = 0.5  # ... from which the field tells no heading
+    field_known_ratio: float = 3.0  # horizontal field by its deviation; less tells no heading
+
     # Process noise.
     accel_noise_mps2_rthz: float = 0.15
     gyro_noise_radps_rthz: float = 2.5e-3

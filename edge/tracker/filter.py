@@ -24,6 +24,7 @@ from edge.tracker.error_model import (
 )
 from edge.tracker.floor import settle
 from edge.tracker.intervals import mean_readings
+from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
@@ -58,6 +59,7 @@ def filter_sample(
         stand(ring, state, slot, config)
         if motion <= ring[slot].stride_minimum_m2ps4:
             settle(ring, progress, state, slot, config)
+    heed_field(ring, state, slot, still, config)
     note_faults(ring, progress, slot)
     _count_steps(progress, state, still, ring[slot].t_s)
     _write_row(ring, progress, state, slot, still)

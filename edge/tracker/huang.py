@@ -53,8 +53,6 @@ class HuangTracker:
         for first in range(0, len(batch), self._block):
             part = batch.part(slice(first, first + self._block))
             received = int(self._state["received"][0])
-            slots = np.arange(received, received + len(part)) & (len(self._ring) - 1)
-            self._ring["mag_ut"][slots] = np.nan if part.mag_ut is None else part.mag_ut
             admit_batch(self._ring, received, self._gate, self._limits, self.config.gap_s, part)
             self._state["received"] += len(part)
             released.append(self._work(final=False))

@@ -23,6 +23,7 @@ COMPASS_SIZE = 13  # states of magnetic_heading
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
 Progress: TypeAlias = Any  # one record of PROGRESS
 FilterState: TypeAlias = Any  # one record of FILTER
+Aid: TypeAlias = Any  # one record of COMPASS or BAROMETER
 
 RING = np.dtype(
     [
@@ -69,6 +70,30 @@ RING = np.dtype(
     align=True,
 )
 
+# A side filter (side_filter.py) and what its aid has shown since it was last looked at.
+COMPASS = np.dtype(
+    [
+        ("estimate", np.float64, COMPASS_SIZE),
+        ("covariance", np.float64, (COMPASS_SIZE, COMPASS_SIZE)),
+        ("started", np.bool_),
+        ("bend_var_ut2", np.float64),  # of what steel does to the field around here
+        ("north_m", np.float64),  # where the last look was
+        ("east_m", np.float64),
+        ("samples", np.int64),  # in this stance so far
+        ("since_s", np.float64),
+        ("field_n_ut", np.float64, 3),  # their mean
+        ("rotation_nb", np.float64, (3, 3)),  # and that of their attitudes
+        # Scratch.
+        ("near_is_new", np.float64),
+        ("wide_is_new", np.float64),
+        ("strength_ut", np.float64),
+        ("aim_n", np.float64, 2),
+        ("row", np.float64, COMPASS_SIZE),
+        ("column", np.float64, COMPASS_SIZE),
+    ],
+    align=True,
+)
+
 FILTER = np.dtype(
     [
         ("position_n_m", np.float64, 3),
@@ -81,6 +106,7 @@ FILTER = np.dtype(
         ("drift", np.float64),  # rad of heading for each rad that the foot turns
         ("gyro_bias_per_k", np.float64, 3),
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
+        ("compass", COMPASS),  # see magnetic_heading
         # Scratch.
         ("error", np.float64, SIZE),  # correction gathered at one instant
         ("column", np.float64, SIZE),

@@ -1,0 +1,90 @@
+"""Small Kalman filters beside the main one, for aids whose own errors are anything but white.
+
+A compass or a barometer is wrong in ways that last: iron, weather, the building.  Those
+errors are estimated here, together with one error of the main filter that the aid tells of
+(heading or height).  It is the first state of a side filter.  Before a look both are made to
+agree on its variance; afterwards the main filter is given a measurement that brings it to
+just what the side filter has come to know.  So nothing is counted twice, however often one
+looks, and a sample costs nothing.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from edge.samples import Floats
+
+WORTH = 1e-3  # a look that tells less of the variance is left to the next
+
+
+@njit()
+def agree(covariance: Floats, variance: float) -> None:
+    """Make ``variance`` that of the first state of ``covariance`` (n, n).
+
+    What the main filter lost since, its drift, is added; what it learned from elsewhere is a
+    measurement of the first state.
+    """
+    before = covariance[0, 0]
+    if variance >= before:
+        covariance[0, 0] = variance
+        return
+    kept = variance / before
+    size = len(covariance)
+    for i in range(1, size):
+        for j in range(1, size):
+            covariance[i, j] -= (1.0 - kept) / before * covariance[i, 0] * covariance[0, j]
+    for i in range(1, size):
+        covariance[i, 0] *= kept
+        covariance[0, i] *= kept
+    covariance[0, 0] = variance
+
+
+@njit()
+def project(covariance: Floats, row: Floats, column: Floats) -> float:
+    """Write ``P h`` into ``column`` (n,) and return ``h' P h`` for the measurement row ``h``."""
+    size = len(row)
+    total = 0.0
+    for i in range(size):
+        value = 0.0
+        for j in range(size):
+            value += covariance[i, j] * row[j]
+        column[i] = value
+        total += row[i] * value
+    return total
+
+
+@njit()
+def measure(
+    estimate: Floats,
+    covariance: Floats,
+    row: Floats,
+    residual: float,
+    variance: float,
+    column: Floats,
+) -> None:
+    """Use one scalar measurement ``row`` (n,); ``residual`` is measured minus expected."""
+    weight = 1.0 / (project(covariance, row, column) + variance)
+    size = len(row)
+    for i in range(size):
+        gain = weight * column[i]
+        estimate[i] += gain * residual
+        for j in range(size):
+            covariance[i, j] -= gain * column[j]
+
+
+@njit()
+def handed_over(estimate: Floats, covariance: Floats, prior: float) -> tuple[float, float]:
+    """Return residual and variance of the measurement that tells the main filter just as much.
+
+    ``prior`` is the main filter's own variance of the error.  The variance is infinite when
+    there is too little to tell; else the first state of ``estimate`` is told and becomes zero.
+    """
+    variance = covariance[0, 0]
+    if not variance < (1.0 - WORTH) * prior:
+        return 0.0, math.inf
+    noise = 1.0 / (1.0 / variance - 1.0 / prior)
+    residual = estimate[0] * (prior + noise) / prior
+    estimate[0] = 0.0
+    return residual, noise

@@ -1,0 +1,171 @@
+"""Heading from the magnetic field: what it gives on open ground, and that steel does no harm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import msgspec
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch
+from edge.simulation import SCENARIOS, Simulation
+from edge.tracker.config import EskfConfig
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.magnetic_heading import (
+    ACROSS,
+    ALONG,
+    FIELD,
+    IRON,
+    NEAR,
+    VERTICAL,
+    WIDE,
+    component_row,
+)
+from edge.tracker.rows import join_rows
+from edge.tracker.state import COMPASS, COMPASS_SIZE
+from edge.tracker.strapdown import quaternion_from_rotation, rotate_navigation, rotation_matrix
+
+SEEDS = (0, 1, 3)
+DURATION_S = 240.0
+
+
+@cache
+def simulated(seed, building=False):
+    """Samples and true attitudes of a search."""
+    scenario = next(entry for entry in SCENARIOS if entry.name == "search-ground-floor")
+    scenario = msgspec.structs.replace(scenario, duration_s=DURATION_S, building=building)
+    simulation = Simulation(scenario, seed)
+    batches = [batch.imu for batch in simulation.batches(1.0)]
+    imu = ImuBatch(
+        *(
+            np.concatenate([getattr(batch, name) for batch in batches])
+            for name in ("t_ns", "accel_mps2", "gyro_radps", "mag_ut")
+        )
+    )
+    truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
+    return simulation.description, imu, truth
+
+
+def run(description, imu, cuts=()):
+    tracker = EskfTracker(description)
+    parts = [imu.part(slice(a, b)) for a, b in pairwise([0, *cuts, len(imu)])]
+    return join_rows([*(tracker.push(part) for part in parts), tracker.finish()])
+
+
+def heading_errors_rad(rows, truth, every=200):
+    """How the heading has drifted against the first row."""
+    angles = []
+    rotation = np.zeros((3, 3))
+    for k in range(0, len(rows), every):
+        rotation_matrix(rows.quaternion_nb[k], rotation)
+        turn = rotation @ truth.rotation_nb[k].T
+        angles.append(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    drift = np.unwrap(angles)
+    return drift - drift[0]
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+@cache
+def blind_errors_rad(seed):
+    description, imu, truth = simulated(seed)
+    return heading_errors_rad(run(description, replace(imu, mag_ut=None)), truth)
+
+
+def test_on_open_ground_it_holds_the_heading_that_the_gyroscope_loses():
+    """With hard and soft iron as no calibration left it."""
+    blind, seeing = [], []
+    for seed in SEEDS:
+        description, imu, truth = simulated(seed)
+        rows = run(description, imu)
+        blind.append(blind_errors_rad(seed))
+        seeing.append(heading_errors_rad(rows, truth))
+        late = slice(len(seeing[-1]) // 2, None)
+        stated = rows.heading_std_rad[::200]
+        assert rms(seeing[-1][late] / stated[late]) < 2.0
+    assert rms(np.concatenate(seeing)) < 0.5 * rms(np.concatenate(blind))
+
+
+def test_in_a_building_of_some_steel_it_is_still_of_use():
+    blind, seeing = [], []
+    for seed in SEEDS:
+        description, imu, truth = simulated(seed, building=True)
+        blind.append(heading_errors_rad(run(description, replace(imu, mag_ut=None)), truth))
+        seeing.append(heading_errors_rad(run(description, imu), truth))
+    assert rms(np.concatenate(seeing)) < 0.9 * rms(np.concatenate(blind))
+
+
+def test_among_heavy_steel_it_is_left_alone():
+    """Fields bent by 50 degrees from step to step, as over the reinforced floor of ``loops``."""
+    for seed in SEEDS:
+        description, imu, truth = simulated(seed)
+        noise = np.random.default_rng(seed)
+        waves = 2.0 * np.pi / noise.uniform(0.5, 3.0, (12, 1)) * random_directions(noise, 12)
+        phases = noise.uniform(0.0, 2.0 * np.pi, 12)
+        bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ noise.normal(0.0, 5.0, (12, 3))
+        bend_ut = np.einsum("nji,nj->ni", truth.rotation_nb, bend_n_ut)
+        rows = run(description, replace(imu, mag_ut=imu.mag_ut + bend_ut))
+        error_rad = rms(heading_errors_rad(rows, truth))
+        assert error_rad < rms(blind_errors_rad(seed)) + np.radians(1.0)
+
+
+def random_directions(noise, count):
+    directions = noise.standard_normal((count, 3))
+    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("fault", ["stuck", "missing", "infinite", "absurd"])
+def test_a_broken_magnetometer_is_as_good_as_none(fault):
+    description, imu, _ = simulated(0)
+    values = {"stuck": (20.0, -5.0, 40.0), "missing": np.nan, "infinite": np.inf, "absurd": 5e3}
+    mag_ut = np.broadcast_to(np.asarray(values[fault], dtype=np.float64), (len(imu), 3)).copy()
+    first = imu.part(slice(0, 20_000))
+    blind = run(description, replace(first, mag_ut=None))
+    broken = run(description, replace(first, mag_ut=mag_ut[:20_000]))
+    np.testing.assert_allclose(broken.position_n_m, blind.position_n_m, atol=0.02)
+
+
+def test_batching_does_not_change_a_bit():
+    description, imu, _ = simulated(0)
+    first = imu.part(slice(0, 20_000))
+    whole = run(description, first)
+    cut = run(description, first, cuts=range(7, 20_000, 137))
+    assert np.array_equal(whole.position_n_m, cut.position_n_m)
+    assert np.array_equal(whole.position_cov_m2, cut.position_cov_m2)
+
+
+@pytest.mark.parametrize("axis", [ALONG, VERTICAL, ACROSS])
+def test_the_row_is_the_derivative_of_the_model(axis):
+    noise = np.random.default_rng(axis)
+    compass = np.zeros(1, COMPASS)[0]
+    attitude = quaternion_from_rotation(np.linalg.qr(noise.standard_normal((3, 3)))[0])
+    rotation_matrix(attitude, compass["rotation_nb"])
+    field_n_ut = np.array([16.0, -4.0, 45.0])
+    compass["estimate"][FIELD : FIELD + 3] = field_n_ut
+    compass["strength_ut"] = np.hypot(16.0, 4.0)
+    compass["aim_n"][:] = field_n_ut[:2] / compass["strength_ut"]
+    compass["covariance"][FIELD, FIELD] = 1e-6  # known
+    ahead, right = compass["aim_n"]
+    axes = {ALONG: (ahead, right, 0.0), VERTICAL: (0.0, 0.0, 1.0), ACROSS: (-right, ahead, 0.0)}
+    component_row(compass, axis, EskfConfig())
+
+    def component(states):
+        """What is seen when the states are these, by the attitude as it is estimated."""
+        true = attitude.copy()
+        rotate_navigation(true, 0.0, 0.0, states[0])
+        true_nb = np.zeros((3, 3))
+        rotation_matrix(true, true_nb)
+        field = sum(states[k : k + 3] for k in (FIELD, NEAR, WIDE))
+        seen_b = true_nb.T @ field + states[IRON : IRON + 3]
+        return np.asarray(axes[axis]) @ compass["rotation_nb"] @ seen_b
+
+    here = compass["estimate"].copy()
+    for state in range(COMPASS_SIZE):
+        step = 1e-5 * np.eye(COMPASS_SIZE)[state]
+        slope = (component(here + step) - component(here - step)) / 2e-5
+        assert compass["row"][state] == pytest.approx(slope, abs=1e-4), state
