@@ -49,7 +49,11 @@ class Backfill:
     """``start`` it with a bus; ``report`` may be called from any thread and never waits."""
 
     def __init__(
-        self, bus: Bus, deliver: Deliver, clock: Clock, may_forget: Callable[[], bool] = lambda: True
+        self,
+        bus: Bus,
+        deliver: Deliver,
+        clock: Clock,
+        may_forget: Callable[[], bool] = lambda: True,
     ) -> None:
         """``may_forget``: whether units may be told that what was reported is safe here."""
         self._bus = bus

@@ -18,7 +18,7 @@ from shared.messages import JournalChunk, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
 _INDEX_EVERY_NS = 30 * NS_PER_S
-_SAFE_REPORTS = 2  # complete for so many reports: on the disk
+_SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
 _ENTRY_BYTES = 100.0  # of a message, as long as none has come
 _PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more

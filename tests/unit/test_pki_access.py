@@ -105,7 +105,10 @@ def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[s
 
 def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
     name = "operator:chief"
-    assert allowed(rules, name, "egress", "put") == {"muster/v1/**"}
+    assert allowed(rules, name, "egress", "put") == {
+                "muster/v1/**",
+                "muster/stations/v1/**",
+            }
     for message in ("put", "delete", "query", "reply", "liveliness_token", "declare_queryable"):
         assert allowed(rules, name, "ingress", message) == set()
 
