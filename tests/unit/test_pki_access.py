@@ -114,6 +114,6 @@ def test_the_station_may_do_everything_below_the_root(rules: dict[str, Any]) -> 
     for flow in ("ingress", "egress"):
         for message in ("put", "query", "reply", "liveliness_token", "declare_subscriber"):
             assert allowed(rules, "station", flow, message) == {
-                    "muster/v1/**",
-                    "muster/stations/v1/**",
-                }
+                "muster/v1/**",
+                "muster/stations/v1/**",
+            }
