@@ -17,6 +17,7 @@ from base_station.api.replays import Replays, StartReplay
 from base_station.api.services import Services
 from base_station.backfill import Backfill
 from base_station.checkpoints import Checkpoints
+from base_station.clock_server import ClockServer
 from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
@@ -48,7 +49,7 @@ from base_station.sinks import Projection
 from base_station.surroundings import Surroundings
 from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
-from shared.channels import ROOT
+from shared.channels import ROOT, clock_key
 from shared.clock import Clock, SystemClock
 from shared.envelope import Stamper
 from shared.errors import StoreError, UserError
@@ -88,6 +89,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         bus = ZenohBus(joining)
         closing.callback(bus.close)
         hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
+        closing.callback(bus.serve(clock_key("*"), ClockServer(steady).replies).close)
         backfill = Backfill(bus, feed.deliver, clock)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 

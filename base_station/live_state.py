@@ -22,6 +22,7 @@ from shared.messages import (
     AlarmState,
     FusedPosition,
     Header,
+    Heartbeat,
     Position,
     Status,
     Temperature,
@@ -105,6 +106,7 @@ class UnitState(msgspec.Struct):
     position_ns: int = 0
     degraded_since_ns: int | None = None
     description: UnitDescription | None = None
+    heartbeat: Heartbeat | None = None
     fused: FusedPosition | None = None
     unplaced_since_ns: int | None = None  # the fused position is lost
     trail: list[TrailStep] = msgspec.field(default_factory=list)

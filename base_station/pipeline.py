@@ -43,6 +43,7 @@ from shared.messages import (
     EventKind,
     GpsFix,
     Header,
+    Heartbeat,
     Message,
     OperatorAction,
     Position,
@@ -217,6 +218,8 @@ class StationPipeline:
                 _note_temperature(unit, message, t_ns)
             case UnitDescription():
                 unit.description = message
+            case Heartbeat():
+                unit.heartbeat = message
             case UnitEvent():
                 _note_event(unit, message, t_ns)
             case CommandReply():

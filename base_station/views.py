@@ -12,6 +12,7 @@ from base_station.api.wire import (
     AlarmView,
     AnchorView,
     BeaconView,
+    ClockView,
     CommandView,
     DeliveryView,
     DutyView,
@@ -44,7 +45,7 @@ from base_station.pins import WAITING, Pin
 from base_station.sinks import PhotoUrls
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
-from shared.messages import AlarmChange, FusedPosition, Status
+from shared.messages import AlarmChange, FusedPosition, Heartbeat, Status
 
 NS_PER_MS = 1_000_000
 RADII_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's normal distribution
@@ -87,7 +88,20 @@ def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> Un
             if alarm.unit_id == unit.unit_id and alarm.is_open
         ),
         trust=trust_view(state, unit),
+        clock=_clock_view(unit.heartbeat),
+        cloned=_is_open(state, f"cloned-unit|{unit.unit_id}"),
     )
+
+
+def _is_open(state: StationState, key: str) -> bool:
+    alarm = state.alarms.get(key)
+    return alarm is not None and alarm.is_open
+
+
+def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:
+    if heartbeat is None or heartbeat.clock_std_s == 0.0:
+        return None
+    return ClockView(1e3 * heartbeat.clock_ahead_s, 1e3 * heartbeat.clock_std_s)
 
 
 def trust_view(state: StationState, unit: UnitState) -> TrustView:

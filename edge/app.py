@@ -30,6 +30,7 @@ from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Source
 from edge.spool import open_spool
+from edge.station_clock import StationClock
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
 from edge.unit_listener import UnitListener
@@ -114,12 +115,12 @@ def compose_agent(
     speed: float | None,
 ) -> Agent:
     """The agent and its threads; ``speed`` None plays a recording without waiting."""
-    clock = SystemClock()
+    clock = StationClock(SystemClock())
     spool, damaged = open_spool(
         folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
     )
     raw = RawStream(unit_id, spool.boot_id)
-    stamper = Stamper(unit_id, spool.boot_id, clock)
+    stamper = Stamper(unit_id, spool.boot_id, clock, clock.utc_std_s)
     worn = tracked_unit(unit_id) or unit_id
     calibration = _calibration(config, worn, source.description, datetime.now(UTC))
     if calibration is not None:

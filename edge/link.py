@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from threading import Condition, Lock, Thread
 from typing import Protocol
 
-from shared.bus import Bus, QueryHandler, SampleHandler
+from shared.bus import Bus, QueryHandler, ReplyHandler, SampleHandler
 from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, Qos, alive_key
 from shared.errors import BusError
 
@@ -73,6 +73,12 @@ class Link:
         with self._using:
             if self._bus is not None:
                 self._bus.publish(key, payload, qos)
+
+    def ask(self, selector: str, timeout_s: float, on_reply: ReplyHandler) -> None:
+        """Ask the station, ahead of live data, if there is a bus; see ``shared.bus``."""
+        with self._using:
+            if self._bus is not None:
+                self._bus.ask(selector, b"", timeout_s, on_reply, urgent=True)
 
     def close(self) -> None:
         with self._changed:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from threading import Event
 
+import msgspec
+
 from edge.black_box import BlackBox
 from edge.commands import CommandDesk
 from edge.link import Link
@@ -23,9 +25,11 @@ from edge.samples import ACKNOWLEDGE, ButtonPress
 from edge.source_reader import PlacedBatch, SourceReader
 from edge.sources.port import Source
 from edge.spool import Spool
+from edge.station_clock import StationClock
 from edge.timeline import Timeline
-from shared.channels import COMMAND
-from shared.clock import NS_PER_S, Clock
+from shared.bus import ReplyHandler
+from shared.channels import COMMAND, clock_key
+from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
@@ -36,6 +40,7 @@ logger = logging.getLogger(__name__)
 _TURN_S = 0.05
 _HEARTBEAT_NS = NS_PER_S
 _SILENT_NS = 2 * NS_PER_S
+_CLOCK_TIMEOUT_S = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +53,7 @@ class Parts:
     pipeline: TrackerPipeline
     desk: CommandDesk
     stamper: Stamper
-    clock: Clock
+    clock: StationClock
     black_box: BlackBox
     spool: Spool
     outbox: Outbox
@@ -96,6 +101,7 @@ class Agent:
         if placed is not None:
             self._take_batch(placed)
         self._take_commands()
+        self._parts.clock.turn(self._ask_time)
         self._watch()
         if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
             self._beat()
@@ -150,8 +156,20 @@ class Agent:
     def _beat(self) -> None:
         parts = self._parts
         self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
-        heartbeat = Heartbeat(parts.stamper.header(), parts.spool.first_seq, parts.spool.last_seq)
+        header, clock = parts.stamper.header(), parts.clock.estimate()
+        heartbeat = Heartbeat(header, parts.spool.first_seq, parts.spool.last_seq)
+        if clock is not None:
+            heartbeat = msgspec.structs.replace(
+                heartbeat,
+                clock_ahead_s=parts.clock.machine_ahead_s(),
+                clock_std_s=clock.std_s,
+                clock_drift=clock.drift,
+            )
         parts.outbox.put((heartbeat,))
+
+    def _ask_time(self, on_reply: ReplyHandler) -> None:
+        selector = clock_key(self._parts.stamper.unit_id)
+        self._parts.link.ask(selector, _CLOCK_TIMEOUT_S, on_reply)
 
     def _end(self, reason: str) -> None:
         """Send what is left, in order, and let go of everything."""

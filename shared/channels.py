@@ -146,6 +146,11 @@ def alive_key(unit_id: str) -> str:
     return f"{ROOT}/{unit_id}/alive"
 
 
+def clock_key(unit_id: str) -> str:
+    """The key under which a unit asks for the station's time."""
+    return f"{ROOT}/{unit_id}/clock"
+
+
 def tracker_id(unit_id: str) -> str:
     """The id under which a unit's tracking agent speaks; no unit can have it."""
     return unit_id + _TRACKER_OF

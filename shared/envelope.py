@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from shared.clock import Clock
 from shared.messages import Header
 
@@ -9,7 +11,10 @@ from shared.messages import Header
 class Stamper:
     """Gives out headers with consecutive sequence numbers for one sender and one boot."""
 
-    def __init__(self, unit_id: str, boot_id: int, clock: Clock, utc_std_s: float = 0.0) -> None:
+    def __init__(
+        self, unit_id: str, boot_id: int, clock: Clock, utc_std_s: Callable[[], float] = lambda: 0.0
+    ) -> None:
+        """``utc_std_s``: how well ``clock`` knows UTC now; 0: nothing is known of that."""
         self._unit_id = unit_id
         self._boot_id = boot_id
         self._clock = clock
@@ -40,5 +45,5 @@ class Stamper:
             seq=self._seq,
             t_mono_ns=captured_ns,
             t_utc_ns=self._clock.utc_ns() - (now_mono_ns - captured_ns),
-            utc_std_s=self._utc_std_s,
+            utc_std_s=self._utc_std_s(),
         )

@@ -84,6 +84,13 @@ class TrustView(msgspec.Struct, frozen=True):
     reason: str  # for a person; empty: green
 
 
+class ClockView(msgspec.Struct, frozen=True):
+    """What a unit knows of the station's time."""
+
+    ahead_ms: float  # the unit's own UTC less the station's
+    std_ms: float
+
+
 class PinView(msgspec.Struct, frozen=True):
     """Where somebody was, as a person or a beacon told, and what became of it."""
 
@@ -138,6 +145,8 @@ class UnitView(msgspec.Struct, frozen=True):
     duty: DutyView | None  # nobody wears it, or no incident is open: None
     alarms: tuple[str, ...]  # ids of the alarms that are not resolved
     trust: TrustView
+    clock: ClockView | None  # None: it has not heard the station's time yet
+    cloned: bool  # two machines speak under its name; one of them is shown
 
 
 class DeliveryView(msgspec.Struct, frozen=True):

@@ -19,6 +19,7 @@ from shared.channels import (
     STATIONS_ROOT,
     Direction,
     alive_key,
+    clock_key,
     tracker_id,
 )
 from shared.enrolment import Holder
@@ -51,13 +52,22 @@ def _rule(
     }
 
 
+_TOLD_OF_CLOCK = {
+    holder: _rule(
+        f"{holder.name.lower()}-clock", ["egress"], ["declare_queryable"], [clock_key("*")]
+    )
+    for holder in (Holder.UNIT, Holder.TRACKER)
+}
 _RULES_OF_KIND = {
     Holder.STATION: (
         _rule("station", ["ingress", "egress"], _ALL_MESSAGES, [*_EVERYTHING, *_AMONG_STATIONS]),
     ),
     # A unit learns what the station listens to, so that it sends that and nothing else.
-    Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING),),
-    Holder.TRACKER: (_rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),),
+    Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING), _TOLD_OF_CLOCK[Holder.UNIT]),
+    Holder.TRACKER: (
+        _rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),
+        _TOLD_OF_CLOCK[Holder.TRACKER],
+    ),
     # An operator's program looks on: it hears everything and says nothing.
     Holder.OPERATOR: (
         _rule("operator-asks", ["ingress"], _INTERESTS, _EVERYTHING),
@@ -119,4 +129,6 @@ def _unit_rules(entry: Entry, unit_id: str) -> list[dict[str, Any]]:
         _rule(f"{name}-answers", ["ingress"], ["declare_queryable", "reply"], [subtree]),
         _rule(f"{name}-listens", ["ingress"], ["declare_subscriber"], [subtree, *to_all]),
         _rule(f"{name}-is-told", ["egress"], ["put", "query"], [subtree, *to_all]),
+        _rule(f"{name}-asks-time", ["ingress"], ["query"], [clock_key(unit_id)]),
+        _rule(f"{name}-is-told-time", ["egress"], ["reply"], [clock_key(unit_id)]),
     ]

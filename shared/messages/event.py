@@ -9,6 +9,7 @@ import msgspec
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import event_pb2
+from shared.messages.quantise import signed32, unsigned_known
 
 
 class EventKind(IntEnum):
@@ -51,14 +52,27 @@ class Heartbeat(msgspec.Struct, frozen=True):
     header: Header
     first_seq: int
     last_seq: int
+    clock_ahead_s: float = 0.0  # the unit's own UTC less the station's
+    clock_std_s: float = 0.0  # of that estimate; 0: the station never answered
+    clock_drift: float = 0.0  # of the station's clock against the unit's monotonic one
 
     def to_wire(self) -> event_pb2.Heartbeat:
         return event_pb2.Heartbeat(
-            header=self.header.to_wire(), first_seq=self.first_seq, last_seq=self.last_seq
+            header=self.header.to_wire(),
+            first_seq=self.first_seq,
+            last_seq=self.last_seq,
+            clock_ahead_us=round(self.clock_ahead_s * 1e6),
+            clock_std_us=unsigned_known(self.clock_std_s, 1e6),
+            clock_drift_ppb=signed32(self.clock_drift, 1e9),
         )
 
     @staticmethod
     def from_wire(wire: event_pb2.Heartbeat) -> Heartbeat:
         return Heartbeat(
-            header=Header.from_wire(wire.header), first_seq=wire.first_seq, last_seq=wire.last_seq
+            header=Header.from_wire(wire.header),
+            first_seq=wire.first_seq,
+            last_seq=wire.last_seq,
+            clock_ahead_s=wire.clock_ahead_us * 1e-6,
+            clock_std_s=wire.clock_std_us * 1e-6,
+            clock_drift=wire.clock_drift_ppb * 1e-9,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from shared.messages.muster.v1 import header_pb2
+from shared.messages.quantise import unsigned_known
 
 SCHEMA_REVISION = 1
 STATION_ID = "station"
@@ -29,7 +30,7 @@ class Header(msgspec.Struct, frozen=True):
             seq=self.seq,
             t_mono_ns=self.t_mono_ns,
             t_utc_ns=self.t_utc_ns,
-            utc_std_ms=min(round(self.utc_std_s * 1e3), 0xFFFFFFFF),
+            utc_std_ms=unsigned_known(self.utc_std_s, 1e3),
         )
 
     @staticmethod

@@ -18,6 +18,11 @@ def unsigned32(value: float, scale: float) -> int:
     return max(0, min(2**32 - 1, _rounded(value * scale)))
 
 
+def unsigned_known(value: float, scale: float) -> int:
+    """As ``unsigned32``, where 0 says that nothing is known: what is known is at least 1."""
+    return max(unsigned32(value, scale), 1) if value > 0.0 else 0
+
+
 def heading_to_cdeg(heading_rad: float) -> int:
     """Any heading into 0..35999 hundredths of a degree."""
     return _rounded(math.fmod(heading_rad, _TWO_PI) * _CDEG_PER_RAD) % 36_000

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from base_station.views import unit_view
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, Header, Position
 from shared.messages.station import ResolveAlarm
@@ -54,6 +55,11 @@ def alarms(script: Script) -> list[AlarmState]:
     return [alarm.state for alarm in script.alarms if alarm.rule == "cloned-unit"]
 
 
+def is_shown_as_cloned(script: Script) -> bool:
+    state = script.pipeline.state
+    return unit_view(state, state.units[U], lambda _: None).cloned
+
+
 @pytest.fixture
 def pair(script: Script) -> tuple[Machine, Machine]:
     first, second = Machine(script, 11, 500.0), Machine(script, 22, 70.0)
@@ -66,6 +72,7 @@ def pair(script: Script) -> tuple[Machine, Machine]:
 def test_two_that_speak_at_once_are_an_alarm(script: Script, pair: tuple[Machine, Machine]) -> None:
     both_walk(script, *pair, seconds=10.0)
     assert alarms(script) == [AlarmState.RAISED]
+    assert is_shown_as_cloned(script)
     (alarm,) = (one for one in script.alarms if one.rule == "cloned-unit")
     assert "Two machines speak" in alarm.text
 
@@ -92,6 +99,7 @@ def test_it_is_over_when_one_of_them_is_gone(script: Script, pair: tuple[Machine
         script.now_s += 0.5
         script.tick()
     assert alarms(script) == [AlarmState.RAISED, AlarmState.RESOLVED]
+    assert not is_shown_as_cloned(script)
     unit = script.pipeline.state.units[U]
     assert unit.position is not None
     assert unit.position.header.boot_id == 11, "the one that is left is shown"

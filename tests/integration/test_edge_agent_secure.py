@@ -14,11 +14,13 @@ from pathlib import Path
 
 import pytest
 
+from base_station.clock_server import ClockServer
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from edge.warm_up import compile_trackers
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
-from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, tracker_id
+from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, clock_key, tracker_id
+from shared.clock import SystemClock
 from shared.codec import decode
 from shared.enrolment import Holder
 
@@ -46,10 +48,14 @@ class Site:
         self.positions: list[str] = []
         self.boot_ids: set[int] = set()
         self.alive: list[bool] = []
+        self.utc_std_s = 0.0
 
     def _note(self, key: str, payload: bytes) -> None:
         self.positions.append(key)
         self.boot_ids.add(decode(POSITION, payload).header.boot_id)
+
+    def _note_heartbeat(self, _: str, payload: bytes) -> None:
+        self.utc_std_s = decode(HEARTBEAT, payload).header.utc_std_s
 
     def has_heard_boots(self, count: int) -> bool:
         return len(self.boot_ids) == count
@@ -62,7 +68,8 @@ class Site:
         self.bus = ZenohBus(ClientEndpoint((self._address,), identity))
         self._stack.callback(self.bus.close)
         self.bus.subscribe(POSITION.key("*"), self._note)
-        self.bus.subscribe(HEARTBEAT.key("*"), lambda key, _: None)
+        self.bus.subscribe(HEARTBEAT.key("*"), self._note_heartbeat)
+        self.bus.serve(clock_key("*"), ClockServer(SystemClock()).replies)
         self.bus.subscribe(IMU.key("*"), lambda key, _: None)
         self.bus.watch_alive(alive_key("*"), lambda _, alive: self.alive.append(alive))
 
@@ -136,6 +143,7 @@ def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
     assert set(site.positions) == {POSITION.key("u1")}
     wait_until(lambda: site.alive == [True], "the liveliness token")
     assert list(site.bus.query(f"{ROOT}/u1/journal/index", b"", 10.0))
+    wait_until(lambda: site.utc_std_s > 0.0, "the station's time, in its headers")
     wait_until(lambda: "linked to the station" in agent.said, "the agent's word")
     assert "not secured" not in agent.said
     assert agent.end() == 0

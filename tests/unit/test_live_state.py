@@ -8,9 +8,10 @@ from itertools import pairwise
 import msgspec
 import pytest
 
+from base_station.api.wire import ClockView
 from base_station.live_state import TRAIL_POINTS, UnitState
 from base_station.views import StationFacts, health_view, snapshot, unit_view
-from shared.messages import EventKind
+from shared.messages import EventKind, Heartbeat
 from shared.messages.station import Assign, OpenIncident, RegisterUnit, SetPlan, Unassign
 from tests.station_script import Script
 
@@ -182,3 +183,13 @@ def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
     script.act(RegisterUnit("X-299", "late"))
     script.status("X-299")
     assert state.units["X-299"].status is not None
+
+
+def test_a_card_says_what_the_unit_knows_of_the_time(script: Script) -> None:
+    def clock() -> ClockView | None:
+        return unit_view(script.pipeline.state, unit(script), lambda _: None).clock
+
+    script.say(Heartbeat(script.header(U), 1, 1))
+    assert clock() is None, "the station never answered it"
+    script.say(Heartbeat(script.header(U), 1, 1, clock_ahead_s=-3.5, clock_std_s=0.002))
+    assert clock() == ClockView(-3500.0, 2.0)

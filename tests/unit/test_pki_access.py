@@ -9,7 +9,15 @@ import pytest
 
 from base_station.pki.access import access_control
 from base_station.pki.registry import Entry, Registry
-from shared.channels import CHANNELS, COMMAND, EVERY_UNIT, Direction, alive_key, tracker_id
+from shared.channels import (
+    CHANNELS,
+    COMMAND,
+    EVERY_UNIT,
+    Direction,
+    alive_key,
+    clock_key,
+    tracker_id,
+)
 from shared.enrolment import Holder
 
 THEN = datetime(2026, 3, 1, tzinfo=UTC)
@@ -75,8 +83,16 @@ def test_a_unit_speaks_on_the_channels_upwards_and_on_no_other(rules: dict[str, 
     upwards = {c.key("bert") for c in CHANNELS if c.direction is Direction.UP}
     assert allowed(rules, "bert", "ingress", "put") == upwards
     assert allowed(rules, "bert", "ingress", "liveliness_token") == {alive_key("bert")}
-    for message in ("query", "delete", "declare_liveliness_subscriber", "liveliness_query"):
+    for message in ("delete", "declare_liveliness_subscriber", "liveliness_query"):
         assert allowed(rules, "bert", "ingress", message) == set()
+
+
+def test_a_unit_asks_for_the_time_under_its_own_key_and_for_nothing_else(
+    rules: dict[str, Any],
+) -> None:
+    assert allowed(rules, "bert", "ingress", "query") == {clock_key("bert")}
+    assert allowed(rules, "bert", "egress", "reply") == {clock_key("bert")}
+    assert allowed(rules, "bert", "egress", "declare_queryable") == {clock_key("*")}
 
 
 def test_a_unit_reads_its_own_and_what_is_said_to_all(rules: dict[str, Any]) -> None:

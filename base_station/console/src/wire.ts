@@ -123,6 +123,14 @@ export interface UnitView {
   duty: DutyView | null;
   alarms: string[]; // ids of the alarms that are not resolved
   trust: TrustView;
+  clock?: ClockView | null;
+  cloned?: boolean; // two machines speak under its name; one of them is shown
+}
+
+/** What a unit knows of the station's time. */
+export interface ClockView {
+  ahead_ms: number; // the unit's own UTC less the station's
+  std_ms: number;
 }
 
 export type DeliveryState =

@@ -1,0 +1,81 @@
+"""The unit's idea of the station's time: asks for it now and then, and stamps by it.
+
+Monotonic time is the machine's own and is what tracking goes by.  Until the station has answered
+once, UTC is the machine's, and nothing is claimed of how good that is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Lock
+
+from edge.clock_offset import ClockEstimate, ClockOffset, Exchange
+from shared.bus import ReplyHandler
+from shared.clock import NS_PER_S, Clock
+from shared.errors import WireError
+from shared.messages.clock import ClockAnswer
+
+_FIRST = 8  # exchanges, one a second: the quickest of several is a good one
+_FIRST_EVERY_NS = NS_PER_S
+_EVERY_NS = 15 * NS_PER_S
+_LEAST_STD_S = 1e-3  # what the wire can say; less would say that nothing is known
+
+Ask = Callable[[ReplyHandler], None]  # puts the question; without a link nothing comes of it
+
+
+class StationClock:
+    """A ``Clock``.  ``turn`` it often; any thread may read it."""
+
+    def __init__(self, machine: Clock) -> None:
+        self._machine = machine
+        self._offset = ClockOffset()
+        self._lock = Lock()
+        self._answered = 0
+        self._due_ns = 0
+
+    def monotonic_ns(self) -> int:
+        return self._machine.monotonic_ns()
+
+    def utc_ns(self) -> int:
+        now_ns = self._machine.monotonic_ns()
+        estimate = self._at(now_ns)
+        return self._machine.utc_ns() if estimate is None else now_ns + estimate.offset_ns
+
+    def utc_std_s(self) -> float:
+        """Standard deviation of ``utc_ns`` as station time; 0: unknown."""
+        estimate = self.estimate()
+        return 0.0 if estimate is None else max(estimate.std_s, _LEAST_STD_S)
+
+    def estimate(self) -> ClockEstimate | None:
+        """As it stands now; None before the station has answered."""
+        return self._at(self._machine.monotonic_ns())
+
+    def machine_ahead_s(self) -> float:
+        """How far the machine's own UTC is ahead of the station's; 0 before it has answered."""
+        ahead_ns = self._machine.utc_ns() - self.utc_ns()
+        return 0.0 if self.estimate() is None else ahead_ns / NS_PER_S
+
+    def turn(self, ask: Ask) -> None:
+        """Ask the station where that is due."""
+        now_ns = self._machine.monotonic_ns()
+        if now_ns < self._due_ns:
+            return
+        self._due_ns = now_ns + (_FIRST_EVERY_NS if self._answered < _FIRST else _EVERY_NS)
+        asked_ns = self._machine.monotonic_ns()
+        ask(lambda reply: self._take(asked_ns, reply))
+
+    def _take(self, asked_ns: int, reply: bytes | None) -> None:
+        answered_ns = self._machine.monotonic_ns()
+        if reply is None:
+            return
+        try:
+            answer = ClockAnswer.from_bytes(reply)
+        except WireError:
+            return  # no time is better than a wrong one
+        exchange = Exchange(asked_ns, answer.received_utc_ns, answer.sent_utc_ns, answered_ns)
+        with self._lock:
+            self._answered += self._offset.note(exchange)
+
+    def _at(self, t_mono_ns: int) -> ClockEstimate | None:
+        with self._lock:
+            return self._offset.at(t_mono_ns)
