@@ -39,6 +39,13 @@ class Stand(msgspec.Struct, frozen=True, tag="stand", forbid_unknown_fields=True
     duration_s: Seconds
 
 
+class Ride(msgspec.Struct, frozen=True, tag="ride", forbid_unknown_fields=True):
+    """Stand in a lift that goes up (``rise_m`` positive) or down without a stop."""
+
+    rise_m: float
+    speed_mps: Annotated[float, Meta(gt=0.0, le=10.0)] = 1.6  # at most
+
+
 class Turn(msgspec.Struct, frozen=True, tag="turn", forbid_unknown_fields=True):
     """Turn on the spot to a heading, clockwise from north."""
 
@@ -58,4 +65,4 @@ class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True
     to: Points
 
 
-Leg = Walk | Stairs | Stand | Turn | Lie | Crawl
+Leg = Walk | Stairs | Stand | Ride | Turn | Lie | Crawl

@@ -8,8 +8,8 @@ import numpy as np
 
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.gait import PACES, STAIRS_DOWN, STAIRS_UP, TURN, Gait
-from edge.simulation.legs import Leg, Lie, Point, Stairs, Stand, Turn, Walk
-from edge.simulation.movements import kneel, lie, pull, rise, stand, stride, unwrapped
+from edge.simulation.legs import Leg, Lie, Point, Ride, Stairs, Stand, Turn, Walk
+from edge.simulation.movements import kneel, lie, pull, ride, rise, stand, stride, unwrapped
 from edge.simulation.polyline import Polyline, split_at_sharp_turns
 
 HALF_TRACK_M = 0.09  # from the body's middle to the foot
@@ -36,6 +36,8 @@ class Planner:
             self._climb(leg)
         elif isinstance(leg, Stand):
             stand(self.plan, leg.duration_s)
+        elif isinstance(leg, Ride):
+            ride(self.plan, leg.rise_m, leg.speed_mps)
         elif isinstance(leg, Turn):
             self._face(radians(leg.heading_deg))
         elif isinstance(leg, Lie):

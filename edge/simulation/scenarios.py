@@ -5,12 +5,13 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from edge.simulation.building import load_building
-from edge.simulation.legs import Crawl, Leg, Lie, Point, Stand, Turn, Walk
+from edge.simulation.legs import Crawl, Leg, Lie, Point, Ride, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
 
 _HOUSE = load_building()
 _ENTRANCE = _HOUSE.room("hall").south_west[0], 12.0  # in the middle of the outer door
 _CORRIDOR_N = 7.0
+_STOREY_M = _HOUSE.floors_down_m[0] - _HOUSE.floors_down_m[1]
 
 
 def _enter() -> tuple[Leg, ...]:
@@ -144,6 +145,22 @@ SCENARIOS: tuple[Scenario, ...] = (
         Walk(((8.0, -12.0), (8.0, -2.0))),
     ),
     _path("track-400m", "one round of an athletic track", Walk(_track())),
+    Scenario(
+        name="lift",
+        summary="takes a lift to the upper floor, searches it and takes the lift down again",
+        legs=_enter(),
+        loop=(
+            Walk(((_CORRIDOR_N, 14.25),)),
+            Ride(_STOREY_M),
+            _HOUSE.search("library", 1),
+            _HOUSE.search("bedroom 3", 1),
+            Walk(((_CORRIDOR_N, 14.25),)),
+            Ride(-_STOREY_M),
+            _HOUSE.search("canteen"),
+        ),
+        start=(-8.0, 13.0),
+        building=True,
+    ),
     Scenario(
         name="stairs",
         summary="up two flights of stairs and down again, three times",

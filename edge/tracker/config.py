@@ -73,6 +73,21 @@ class EskfConfig(NamedTuple):
     field_bend_limit: float = 0.5  # ... from which the field tells no heading
     field_known_ratio: float = 3.0  # horizontal field by its deviation; less tells no heading
 
+    # The air's pressure (barometric_height.py).
+    air_drift_m_rts: float = 0.025  # random walk a root of second: weather and warming
+    air_noise_m: float = 0.06  # of the mean of a stance, at least
+    air_noise_rise: float = 0.2  # of one look that is worse
+    air_noise_fall: float = 0.05  # ... that is better
+    air_outliers: int = 4  # so many in a row are none: the pressure has changed
+    air_floor_strides: float = 8.0
+    air_floor_off_m: float = 0.07  # mean over so many strides that speaks against a flat floor
+    air_floor_sink_m: float = 0.008  # mean sink of a stride that is none
+    ride_push_mps2: float = 0.15  # mean over a look at somebody who stands
+    ride_speed_mps: float = 2.5
+    ride_look_s: float = 0.25
+    air_stuck_s: float = 5.0  # the same to the last bit for so long is a sensor that hangs
+    ride_longest_s: float = 40.0  # after the last push
+
     # Process noise.
     accel_noise_mps2_rthz: float = 0.15
     gyro_noise_radps_rthz: float = 2.5e-3

@@ -7,6 +7,7 @@ import math
 from numba import njit
 
 from edge.tracker.alignment import level
+from edge.tracker.barometric_height import heed_pressure
 from edge.tracker.clipping import bridge_clipping
 from edge.tracker.conditioning import ACCEL_SATURATED, BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
@@ -57,9 +58,10 @@ def filter_sample(
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         stand(ring, state, slot, config)
-        if motion <= ring[slot].stride_minimum_m2ps4:
+        if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             settle(ring, progress, state, slot, config)
     heed_field(ring, state, slot, still, config)
+    heed_pressure(ring, progress, state, slot, still, config)
     note_faults(ring, progress, slot)
     _count_steps(progress, state, still, ring[slot].t_s)
     _write_row(ring, progress, state, slot, still)

@@ -91,4 +91,4 @@ def _is_flat(progress: Progress, sink_m: float, config: EskfConfig) -> bool:
         progress.withheld_m = 0.0
         return False
     progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor_ramp_strides
-    return bool(abs(progress.mean_sink_m) < config.floor_ramp_m)
+    return bool(abs(progress.mean_sink_m) < config.floor_ramp_m and not progress.floor_doubted)

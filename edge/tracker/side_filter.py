@@ -16,6 +16,7 @@ from numba import njit
 
 from edge.samples import Floats
 
+TINY = 1e-12  # a variance of zero has no inverse
 WORTH = 1e-3  # a look that tells less of the variance is left to the next
 
 
@@ -81,7 +82,7 @@ def handed_over(estimate: Floats, covariance: Floats, prior: float) -> tuple[flo
     ``prior`` is the main filter's own variance of the error.  The variance is infinite when
     there is too little to tell; else the first state of ``estimate`` is told and becomes zero.
     """
-    variance = covariance[0, 0]
+    variance = max(covariance[0, 0], TINY)
     if not variance < (1.0 - WORTH) * prior:
         return 0.0, math.inf
     noise = 1.0 / (1.0 / variance - 1.0 / prior)

@@ -94,6 +94,33 @@ COMPASS = np.dtype(
     align=True,
 )
 
+BAROMETER = np.dtype(
+    [
+        ("estimate", np.float64, 2),
+        ("covariance", np.float64, (2, 2)),
+        ("started", np.bool_),
+        ("reference_pa", np.float64),
+        ("looked_s", np.float64),
+        ("noise_var_m2", np.float64),  # of a look
+        ("refused", np.int64),  # looks in a row
+        ("samples", np.int64),  # in this stance so far
+        ("since_s", np.float64),
+        ("off_m", np.float64),  # their mean below the tracker's height
+        ("push_mps2", np.float64),  # mean acceleration of the standing foot, down
+        ("riding", np.bool_),  # perhaps in a lift
+        ("pushed_s", np.float64),
+        ("said_pa", np.float64),  # last
+        ("changed_s", np.float64),
+        ("steps", np.int64),  # when that was last looked at
+        ("watched", np.int64),  # ... and the floor
+        ("mean_off_m", np.float64),  # of the last strides
+        # Scratch.
+        ("row", np.float64, 2),
+        ("column", np.float64, 2),
+    ],
+    align=True,
+)
+
 FILTER = np.dtype(
     [
         ("position_n_m", np.float64, 3),
@@ -107,6 +134,7 @@ FILTER = np.dtype(
         ("gyro_bias_per_k", np.float64, 3),
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
         ("compass", COMPASS),  # see magnetic_heading
+        ("barometer", BAROMETER),  # see barometric_height
         # Scratch.
         ("error", np.float64, SIZE),  # correction gathered at one instant
         ("column", np.float64, SIZE),
@@ -150,6 +178,7 @@ PROGRESS = np.dtype(
         ("footfall_m", np.float64),  # height of the last footfall
         ("footfall_s", np.float64),
         ("mean_sink_m", np.float64),  # of the last strides, before the floor's correction
+        ("floor_doubted", np.bool_),  # by the barometer
         ("withheld_m", np.float64),  # what the floor has taken out in one direction
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ],

@@ -1,0 +1,202 @@
+"""Height from the air's pressure: lifts, ramps, and what strides alone would lose.
+
+Once a stance its mean pressure, as a height, is compared with the tracker's height.  The
+difference is the tracker's error and the barometer's own: weather and warming make that
+wander, and it is estimated beside.  Strides on a floor are better than any barometer, so
+by itself it moves little.  It counts where strides are blind:
+
+- In a lift the foot stands and yet rises.  A push of the floor opens the height to the
+  barometer until the ride is over; a lift's floor pushes as it starts and as it stops.
+- On a gentle ramp the floor's rule (floor.py) would flatten every stride.  Where the
+  barometer sees, stance after stance, that heights are held back, the rule is suspended.
+
+A door that slams is an outlier, and a fan that raises the pressure for good is a step of the
+barometer's own, since no push came before it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import POSITION
+from edge.tracker.measuring import begin_updates, end_updates, measure
+from edge.tracker.side_filter import agree, handed_over, project
+from edge.tracker.side_filter import measure as measure_aside
+from edge.tracker.state import Aid, FilterState, Progress, Ring
+
+DOWN = POSITION + 2
+OFFSET = 1  # the barometer's own error, after that of the tracker's height
+AIR_SCALE_HEIGHT_M = 8434.0  # isothermal air at 15 degC
+THINNEST_PA, DENSEST_PA = 3e4, 1.2e5  # what is said beyond these is no pressure on foot
+
+
+@njit()
+def heed_pressure(
+    ring: Ring, progress: Progress, state: FilterState, slot: int, still: bool, config: EskfConfig
+) -> None:
+    """Gather the pressure of a stance; look at it when the stance ends, or once a second."""
+    barometer = state.barometer
+    if still:
+        _gather(ring, state, slot, config)
+    if barometer.samples == 0:
+        return
+    lasted_s = ring[slot].t_s - barometer.since_s
+    look_s = config.ride_look_s if barometer.riding else config.aid_look_s
+    if still and lasted_s < look_s:
+        return
+    if lasted_s >= config.aid_stance_s:
+        _look(ring, progress, state, slot, lasted_s, config)
+    barometer.samples = 0
+
+
+@njit()
+def _gather(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+    barometer = state.barometer
+    pressure_pa = ring[slot].pressure_pa
+    if not THINNEST_PA < pressure_pa < DENSEST_PA or ring[slot].interval_s <= 0.0:
+        return  # also when it is not a number, and where no force is known
+    if not barometer.started:
+        _start(barometer, pressure_pa, ring[slot].t_s)
+    if pressure_pa != barometer.said_pa:
+        barometer.said_pa = pressure_pa
+        barometer.changed_s = ring[slot].t_s
+    elif ring[slot].t_s - barometer.changed_s > config.air_stuck_s:
+        return
+    if barometer.samples == 0:
+        barometer.since_s = ring[slot].t_s
+        barometer.off_m = 0.0
+        barometer.push_mps2 = 0.0
+    barometer.samples += 1
+    share = 1.0 / barometer.samples
+    down_m = AIR_SCALE_HEIGHT_M * math.log(pressure_pa / barometer.reference_pa)
+    off_m = down_m - state.position_n_m[2]
+    barometer.off_m += share * (off_m - barometer.off_m)
+    push_mps2 = state.force_n_mps2[2] + config.gravity_mps2
+    barometer.push_mps2 += share * (push_mps2 - barometer.push_mps2)
+
+
+@njit()
+def _start(barometer: Aid, pressure_pa: float, t_s: float) -> None:
+    barometer.started = True
+    barometer.reference_pa = pressure_pa
+    barometer.looked_s = t_s
+    barometer.row[0], barometer.row[OFFSET] = 1.0, 1.0
+    barometer.covariance[OFFSET, OFFSET] = 1e6
+
+
+@njit()
+def _look(
+    ring: Ring,
+    progress: Progress,
+    state: FilterState,
+    slot: int,
+    lasted_s: float,
+    config: EskfConfig,
+) -> None:
+    barometer = state.barometer
+    since_s = ring[slot].t_s - barometer.looked_s
+    barometer.looked_s = ring[slot].t_s
+    if _notice_ride(barometer, progress, lasted_s, ring[slot].t_s, config):
+        state.covariance[DOWN, DOWN] += (config.ride_speed_mps * since_s) ** 2
+    prior = state.covariance[DOWN, DOWN]
+    held = progress.on_floor and not barometer.riding
+    # On a floor the error is the floor's: it does not come and go with every swing.
+    agree(barometer.covariance, min(prior, progress.level_variance_m2) if held else prior)
+    barometer.covariance[OFFSET, OFFSET] += config.air_drift_m_rts**2 * since_s
+    residual_m = barometer.off_m - barometer.estimate[0] - barometer.estimate[OFFSET]
+    noise = max(barometer.noise_var_m2, config.air_noise_m**2)
+    expected = project(barometer.covariance, barometer.row, barometer.column) + noise
+    if residual_m * residual_m > config.aid_gate**2 * expected:
+        _refuse(barometer, residual_m, config)
+    else:
+        barometer.refused = 0
+        _learn_noise(barometer, residual_m, expected - noise, config)
+        _watch_floor(barometer, progress, residual_m, config)
+        measure_aside(
+            barometer.estimate,
+            barometer.covariance,
+            barometer.row,
+            residual_m,
+            noise,
+            barometer.column,
+        )
+        _hand_over(ring, progress, state, slot, prior)
+    if barometer.riding:
+        # Until the next look.
+        state.covariance[DOWN, DOWN] += (config.ride_speed_mps * config.ride_look_s) ** 2
+        progress.level_variance_m2 = state.covariance[DOWN, DOWN]
+
+
+@njit()
+def _hand_over(ring: Ring, progress: Progress, state: FilterState, slot: int, prior: float) -> None:
+    """Bring the height to what is known now, and the floor that is walked on with it."""
+    barometer = state.barometer
+    residual_m, variance = handed_over(barometer.estimate, barometer.covariance, prior)
+    if not variance < math.inf:
+        return
+    before_m = state.position_n_m[2]
+    begin_updates(state)
+    measure(ring, state, slot, DOWN, residual_m, variance)
+    end_updates(state)
+    moved_m = state.position_n_m[2] - before_m
+    progress.level_m += moved_m
+    progress.footfall_m += moved_m
+    progress.level_variance_m2 = min(progress.level_variance_m2, state.covariance[DOWN, DOWN])
+
+
+@njit()
+def _notice_ride(
+    barometer: Aid, progress: Progress, lasted_s: float, t_s: float, config: EskfConfig
+) -> bool:
+    """A push on somebody who stands may be the start of a ride; a stride is its end.
+
+    Returns whether one starts.
+    """
+    before = barometer.riding
+    if progress.steps != barometer.steps:
+        barometer.steps = progress.steps
+        barometer.riding = False
+    standing = lasted_s >= (config.ride_look_s if before else config.aid_look_s)
+    if standing and abs(barometer.push_mps2) > config.ride_push_mps2:
+        barometer.riding = True
+        barometer.pushed_s = t_s
+    if t_s - barometer.pushed_s > config.ride_longest_s:
+        barometer.riding = False
+    return bool(barometer.riding and not before)
+
+
+@njit()
+def _learn_noise(barometer: Aid, residual_m: float, expected_m2: float, config: EskfConfig) -> None:
+    """Follow wind and ventilation: up at once, down slowly."""
+    known = max(barometer.noise_var_m2, config.air_noise_m**2)
+    seen = max(residual_m * residual_m - expected_m2, 0.0)
+    weight = config.air_noise_rise if seen > known else config.air_noise_fall
+    barometer.noise_var_m2 = known + weight * (seen - known)
+
+
+@njit()
+def _refuse(barometer: Aid, residual_m: float, config: EskfConfig) -> None:
+    """Leave out a door that slams; take what stays for a step of the pressure."""
+    barometer.refused += 1
+    if barometer.refused > config.air_outliers:
+        barometer.refused = 0
+        barometer.estimate[OFFSET] += residual_m
+        barometer.covariance[OFFSET, OFFSET] += residual_m * residual_m
+
+
+@njit()
+def _watch_floor(barometer: Aid, progress: Progress, residual_m: float, config: EskfConfig) -> None:
+    """Doubt the flat floor while the air says, stance after stance, that it is none."""
+    if progress.steps == barometer.watched:
+        return
+    barometer.watched = progress.steps
+    barometer.mean_off_m += (residual_m - barometer.mean_off_m) / config.air_floor_strides
+    if abs(barometer.mean_off_m) > config.air_floor_off_m:
+        if not progress.floor_doubted and barometer.mean_off_m * progress.withheld_m > 0.0:
+            progress.withheld_m = 0.0  # the air denies it
+        progress.floor_doubted = True
+    elif abs(progress.mean_sink_m) < config.air_floor_sink_m:
+        progress.floor_doubted = False
