@@ -46,8 +46,18 @@ class PlainFilter:
         density[ACCEL_BIAS : ACCEL_BIAS + 3] = config.accel_bias_walk_mps3_rthz**2
         self._noise_density = np.diag(density)
 
-    def predict(self, accel_mps2: Floats, gyro_radps: Floats, dt_s: float) -> None:
-        """Move over one interval by its mean readings (3,), sensor axes."""
+    def predict(
+        self,
+        accel_mps2: Floats,
+        gyro_radps: Floats,
+        dt_s: float,
+        excursion: float = 0.0,
+        bend_vars: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Move over one interval by its mean readings (3,), sensor axes.
+
+        ``excursion`` is the foot's, ``bend_vars`` those of accelerometer and gyroscope.
+        """
         half = turn(0.5 * dt_s * (gyro_radps - self.gyro_bias_radps))
         self.rotation_nb = self.rotation_nb @ half
         force_n_mps2 = self.rotation_nb @ (accel_mps2 - self.accel_bias_mps2)
@@ -56,11 +66,13 @@ class PlainFilter:
         self.position_n_m += dt_s * (self.velocity_n_mps + 0.5 * step_mps)
         self.velocity_n_mps += step_mps
         moved_n_m = dt_s * self.velocity_n_mps
-        turned_rad = dt_s * float(np.linalg.norm(gyro_radps - self.gyro_bias_radps))
-        transition = transition_matrix(self.rotation_nb, moved_n_m, force_n_mps2, turned_rad, dt_s)
+        transition = transition_matrix(self.rotation_nb, moved_n_m, force_n_mps2, excursion, dt_s)
         self.covariance = transition @ self.covariance @ transition.T
         self.covariance += dt_s * self._noise_density
-        self._turn_walk(self.drift * turned_rad)
+        for first, bend_var in zip((VELOCITY, ATTITUDE), bend_vars, strict=True):
+            bend = self.covariance[first : first + 3, first : first + 3]
+            bend += dt_s**2 * bend_var * np.eye(3)
+        self._turn_walk(self.drift * excursion)
 
     def stand(self, gyro_radps: Floats, velocity_variance: float, rate_variance: float) -> None:
         """Use the pseudo-measurements of a stance sample, all six at once."""

@@ -36,8 +36,8 @@ class EskfConfig(NamedTuple):
 
     # Pseudo-measurements in stance.
     # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.
-    stance_velocity_mps_rthz: float = 7.1e-4
-    stance_velocity_per_motion: float = 0.0014  # m/s/sqrt(Hz) for each m/s^2 of motion
+    stance_velocity_mps_rthz: float = 5e-4
+    stance_velocity_per_motion: float = 0.001  # m/s/sqrt(Hz) for each m/s^2 of motion
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
     # Noise density of the rate: base plus per_unrest * unrest^1.5.
@@ -89,13 +89,13 @@ class EskfConfig(NamedTuple):
     ride_longest_s: float = 40.0  # after the last push
 
     # Process noise.
-    accel_noise_mps2_rthz: float = 0.15
-    gyro_noise_radps_rthz: float = 2.5e-3
+    accel_noise_mps2_rthz: float = 0.105
+    gyro_noise_radps_rthz: float = 1.75e-3
     gyro_bias_per_k_std_radps: float = 1.7e-4  # 0.01 deg/s/K
     temperature_smoothing_s: float = 1.0
     temperature_step_k: float = 0.2  # from so much on the bias follows
     gyro_bias_walk_radps2_rthz: float = 5e-5
-    accel_bias_walk_mps3_rthz: float = 1e-4
+    accel_bias_walk_mps3_rthz: float = 7e-5
 
     # What clipping hides (clipping.py).
     hidden_rate_limit_radps: float = 6.0
@@ -105,10 +105,11 @@ class EskfConfig(NamedTuple):
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005
-    start_accel_bias_std_mps2: float = 0.2
+    start_accel_bias_std_mps2: float = 0.14
     start_lever_std_m: float = 0.1
-    drift_std: float = 2.5e-4  # rad of heading for each rad that the foot turns
-    start_tilt_std_rad: float = 0.02
+    drift_std: float = 8e-5  # rad of heading for each unit of excursion
+    excursion_per_force: float = 0.4  # rad for each m/s
+    start_tilt_std_rad: float = 0.014
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
     start_speed_std_mps: float = 1.0  # when the recording starts on the move
     start_still_std_mps: float = 0.02  # when it starts at rest

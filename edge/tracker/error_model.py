@@ -3,15 +3,15 @@
 Errors are true minus estimated, in this order: position (m, NED), velocity (m/s, NED),
 attitude (rad, small rotation in NED axes: ``R_true = (1 + [a x]) R``), turn (rad), gyroscope
 bias (rad/s, sensor axes), accelerometer bias (m/s^2, sensor axes), lever (m, sensor axes)
-from the point about which the foot rolls in stance to the sensor, drift (rad/rad), and what
+from the point about which the foot rolls in stance to the sensor, drift (rad for each unit
+of excursion), and what
 a kelvin adds to the gyroscope bias (rad/s/K, sensor axes).
 
 The turn is the part of the heading's error that has turned the whole walk with it.  It grows
-by the drift for every radian that the foot turns about any axis, up and back alike: what
-scale, misalignment and sensitivity to force leave of a stride is as systematic as the
-stride, and without it the stated heading would grow like the root of the time instead of
-the time.  A walk turned as a whole looks the same to every stance, so the turn enters the
-position alone and only a compass can tell it.
+by the drift times the foot's excursion: what scale, misalignment and sensitivity to force
+leave of a stride is as systematic as the stride, and without it the stated heading would
+grow like the root of the time instead of the time.  A walk turned as a whole looks the same
+to every stance, so the turn enters the position alone and only a compass can tell it.
 Formulas: Sola, "Quaternion kinematics for the error-state Kalman filter", 2017,
 chapter 7 (global angular error).
 """
@@ -40,13 +40,12 @@ def transition_matrix(
     rotation_nb: Floats,
     moved_n_m: Floats,
     force_n_mps2: Floats,
-    turned_rad: float,
+    excursion: float,
     dt_s: float,
 ) -> Floats:
     """Return the dense transition (23, 23) of one interval; ``propagate`` applies the same.
 
-    ``moved_n_m`` (2,) is how far the foot moved, ``turned_rad`` how far it turned about
-    whatever axis.
+    ``moved_n_m`` (2,) is how far the foot moved, ``excursion`` its excursion (see filter).
     """
     x, y, z = force_n_mps2
     matrix = np.eye(SIZE)
@@ -56,7 +55,7 @@ def transition_matrix(
     matrix[6:9, 10:13] = -dt_s * rotation_nb
     matrix[0, TURN] = -moved_n_m[1]
     matrix[1, TURN] = moved_n_m[0]
-    matrix[TURN, DRIFT] = turned_rad
+    matrix[TURN, DRIFT] = excursion
     return matrix
 
 
@@ -66,7 +65,7 @@ def propagate(
     rotation_nb: Floats,
     moved_n_m: Floats,
     force_n_mps2: Floats,
-    turned_rad: float,
+    excursion: float,
     dt_s: float,
 ) -> None:
     """Replace ``covariance`` P (23, 23) by ``F P F'``, using what is zero and one in F."""
@@ -92,7 +91,7 @@ def propagate(
         p[6, j] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
         p[7, j] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
         p[8, j] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
-        p[TURN, j] = turn + turned_rad * p[DRIFT, j]
+        p[TURN, j] = turn + excursion * p[DRIFT, j]
     # Columns: P = M F'; the lower triangle is the mirror.
     for i in range(TURN + 1):
         row = p[i]
@@ -110,7 +109,7 @@ def propagate(
         row[6] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
         row[7] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
         row[8] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
-        row[TURN] = turn + turned_rad * row[DRIFT]
+        row[TURN] = turn + excursion * row[DRIFT]
     for i in range(TURN + 1):
         for j in range(i + 1, SIZE):
             p[j, i] = p[i, j]

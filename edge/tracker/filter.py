@@ -86,6 +86,8 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
     state.covariance[ATTITUDE + 1, ATTITUDE + 1] = tilt_std_rad**2
+    for i in range(3):
+        state.rest_force_mps2[i] = ring[0].accel_mps2[i]
     progress.last_stance_s = ring[0].t_s
 
 
@@ -117,17 +119,18 @@ def _predict(
         state.force_n_mps2,
         state.angle_rad,
     )
-    w = state.gyro_radps
-    turned_rad = dt_s * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    excursion = _excursion(state, dt_s, config)
     moved_n_m = ring[slot].moved_n_m
     for i in range(2):
         moved_n_m[i] = dt_s * state.velocity_n_mps[i]
-    propagate(state.covariance, state.rotation_nb, moved_n_m, state.force_n_mps2, turned_rad, dt_s)
-    turn_walk(state, state.drift * turned_rad)
+    propagate(state.covariance, state.rotation_nb, moved_n_m, state.force_n_mps2, excursion, dt_s)
+    turn_walk(state, state.drift * excursion)
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
         accel_noise += config.hidden_force_mps2_rthz**2
+    accel_noise += dt_s * state.accel_bend_var
+    gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
         _doubt_clipped(ring, state, slot, dt_s)
     for i in range(3):
@@ -140,11 +143,25 @@ def _predict(
             dt_s * config.accel_bias_walk_mps3_rthz**2
         )
     ring[slot].interval_s = dt_s
-    ring[slot].turned_rad = turned_rad
+    ring[slot].excursion = excursion
     for i in range(3):
         ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
         for j in range(3):
             ring[slot].rotation_nb[i, j] = state.rotation_nb[i, j]
+
+
+@njit()
+def _excursion(state: FilterState, dt_s: float, config: EskfConfig) -> float:
+    """Return how far the foot has left the rest in which the gyroscope bias was learned.
+
+    Counted are the radians it turned, up and back alike, and the force beyond that of rest.
+    """
+    turned = 0.0
+    off = 0.0
+    for i in range(3):
+        turned += state.gyro_radps[i] ** 2
+        off += (state.accel_mps2[i] - state.rest_force_mps2[i]) ** 2
+    return float(dt_s * (math.sqrt(turned) + config.excursion_per_force * math.sqrt(off)))
 
 
 @njit()

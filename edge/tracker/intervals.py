@@ -2,9 +2,10 @@
 
 A foot turns by several degrees within an interval of a slow sensor.  Two effects
 count there: readings bend between samples (so the means are taken over the cubic
-through two samples before and two after) and the axis of rotation moves (coning,
-for a rate that changes evenly; Savage, "Strapdown inertial navigation integration
-algorithm design", 1998).
+through two samples before and two after) and the axis of rotation moves (coning and
+sculling, for readings that change evenly; Savage, "Strapdown inertial navigation
+integration algorithm design", 1998).  What the cubic adds to the straight line says how
+much may have happened unseen between the samples.
 """
 
 from __future__ import annotations
@@ -22,22 +23,34 @@ BEND = 1.0 / 12.0  # of the cubic through four evenly spaced samples
 def mean_readings(
     ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
 ) -> None:
-    """Write mean rate and force, sensor axes, free of bias, of the interval ending at ``k``."""
+    """Write mean rate and force, sensor axes, free of bias, of the interval ending at ``k``.
+
+    ``accel_bend_var`` and ``gyro_bend_var`` become what the cubic has added, squared.
+    """
     mask = len(ring) - 1
     last, first = k & mask, (k - 1) & mask
     dt_s = ring[last].t_s - ring[first].t_s
     bend = _bend(ring, progress, k, dt_s)
     scale = _scale(ring[last].rest_norm_mps2, config)
     before, after = (k - 2) & mask, (k + 1) & mask
+    state.gyro_bend_var = 0.0
+    state.accel_bend_var = 0.0
     for i in range(3):
         mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
         outer = 0.5 * (ring[before].gyro_radps[i] + ring[after].gyro_radps[i])
-        state.gyro_radps[i] = mean + bend * (mean - outer) - state.gyro_bias_radps[i]
+        added = bend * (mean - outer)
+        state.gyro_bend_var += added * added
+        state.gyro_radps[i] = mean + added - state.gyro_bias_radps[i]
         mean = 0.5 * (ring[first].accel_mps2[i] + ring[last].accel_mps2[i])
         outer = 0.5 * (ring[before].accel_mps2[i] + ring[after].accel_mps2[i])
-        force = scale * (mean + bend * (mean - outer))
-        state.accel_mps2[i] = force - state.accel_bias_mps2[i]
-    _add_cross(state.gyro_radps, ring[first].gyro_radps, ring[last].gyro_radps, dt_s / 12.0)
+        added = bend * (mean - outer)
+        state.accel_bend_var += added * added
+        state.accel_mps2[i] = scale * (mean + added) - state.accel_bias_mps2[i]
+    rate, rate_after = ring[first].gyro_radps, ring[last].gyro_radps
+    force, force_after = ring[first].accel_mps2, ring[last].accel_mps2
+    _add_cross(state.gyro_radps, rate, rate_after, dt_s / 12.0)
+    _add_cross(state.accel_mps2, rate, force_after, scale * dt_s / 12.0)
+    _add_cross(state.accel_mps2, force, rate_after, scale * dt_s / 12.0)
 
 
 @njit()

@@ -90,7 +90,7 @@ def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
         for i in range(VELOCITY, ATTITUDE + 2):
             adjoint[i] = 0.0
         return
-    adjoint[DRIFT] += ring[slot].turned_rad * adjoint[TURN]
+    adjoint[DRIFT] += ring[slot].excursion * adjoint[TURN]
     moved_n_m = ring[slot].moved_n_m
     adjoint[TURN] += moved_n_m[0] * adjoint[1] - moved_n_m[1] * adjoint[0]
     fx = dt_s * ring[slot].force_n_mps2[0]

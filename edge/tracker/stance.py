@@ -37,6 +37,9 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
         for i in range(3):
             measure(ring, state, slot, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
+            gain = ring[slot].update_gain[ring[slot].updates - 1, GYRO_BIAS + i]
+            off_mps2 = ring[slot].accel_mps2[i] - state.rest_force_mps2[i]
+            state.rest_force_mps2[i] += gain * off_mps2
     end_updates(state)
 
 

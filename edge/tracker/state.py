@@ -57,7 +57,7 @@ RING = np.dtype(
         ("interval_s", np.float64),  # since the sample before; negative after a gap
         ("force_n_mps2", np.float64, 3),  # over that interval
         ("moved_n_m", np.float64, 2),
-        ("turned_rad", np.float64),  # about any axis
+        ("excursion", np.float64),
         ("warmed_k", np.float64),  # step of the temperature that the biases took
         ("rotation_nb", np.float64, (3, 3)),  # at its end
         ("lever_row", np.float64, (3, 3)),  # how the lever enters the velocity updates
@@ -130,7 +130,8 @@ FILTER = np.dtype(
         ("gyro_bias_radps", np.float64, 3),
         ("accel_bias_mps2", np.float64, 3),
         ("lever_b_m", np.float64, 3),  # from the point the foot rolls about to the sensor
-        ("drift", np.float64),  # rad of heading for each rad that the foot turns
+        ("drift", np.float64),  # rad of heading for each unit of excursion
+        ("rest_force_mps2", np.float64, 3),  # sensor axes, where the gyroscope bias was learned
         ("gyro_bias_per_k", np.float64, 3),
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
         ("compass", COMPASS),  # see magnetic_heading
@@ -142,6 +143,8 @@ FILTER = np.dtype(
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
         ("angle_rad", np.float64, 3),
+        ("accel_bend_var", np.float64),  # see intervals
+        ("gyro_bend_var", np.float64),
     ],
     align=True,
 )

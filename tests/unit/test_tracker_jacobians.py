@@ -79,9 +79,9 @@ def _advanced(state):
     # What a turned walk adds to the position is added in the frame of the walk.
     moved = DT_S * velocity
     position += np.cross([0.0, 0.0, state["turn"]], moved)
-    turned_rad = DT_S * np.linalg.norm(state["gyro"])
-    turn = state["turn"] + state["drift"] * turned_rad
-    return position, velocity, quaternion, turn, (rotation, moved, force, turned_rad)
+    excursion = DT_S * np.linalg.norm(state["gyro"])
+    turn = state["turn"] + state["drift"] * excursion
+    return position, velocity, quaternion, turn, (rotation, moved, force, excursion)
 
 
 def _attitude_error(quaternion_true, quaternion):

@@ -66,7 +66,13 @@ def test_both_come_to_the_same_state():
     for k in range(len(WALK.imu)):
         if k:
             mean_readings(ring, tracker._progress[0], means, k, CONFIG)
-            plain.predict(means["accel_mps2"], means["gyro_radps"], ring[k]["interval_s"])
+            plain.predict(
+                means["accel_mps2"],
+                means["gyro_radps"],
+                ring[k]["interval_s"],
+                ring[k]["excursion"],
+                (means["accel_bend_var"], means["gyro_bend_var"]),
+            )
         if ring[k]["stationary"]:
             plain.stand(ring[k]["gyro_radps"], *stance_variances(ring, k))
     assert np.linalg.norm(plain.position_n_m[:2]) > 5.0
