@@ -39,6 +39,7 @@ from shared.messages.station import Action, SendCommand
 
 TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 20
+DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
 CHECKPOINT_NS = 30 * NS_PER_S  # what a restart steps at most; at 1,000 events/s some 2 s
 STOP_TIMEOUT_S = 10.0
 
@@ -147,8 +148,9 @@ class StationDrive:
             self._save_checkpoint()
         self._settle()
         if now_ns >= due.delta_ns:
-            due.delta_ns = now_ns + DELTA_NS
             self._tell()
+            told_ns = clock.monotonic_ns()
+            due.delta_ns = now_ns + max(DELTA_NS, (told_ns - now_ns) * DELTAS_SHARE)
         while self._asked:
             self._asked.popleft()(self._picture.snapshot())
 
@@ -201,11 +203,16 @@ class StationDrive:
     def _settle(self) -> None:
         """What is urgent reaches the disk before the store hears of it, or anybody else."""
         self._keeping.settle()
+        if self._projector.is_urgent:
+            self._project()
+
+    def _project(self) -> None:
         projection = self._projector.take(self._pipeline.state.t_ns)
         if projection is not None:
             self._around.projection.project(projection)
 
     def _tell(self) -> None:
+        self._project()
         health, self._health_due = self._health_due, False
         self._picture.flush(health)
 
@@ -241,6 +248,7 @@ class StationDrive:
     def _finish(self) -> None:
         with self._watch.guarding("drive"):
             self._turn()
+        self._project()
         self._save_checkpoint()
         self._refuse_waiting()
 

@@ -14,9 +14,12 @@ from base_station.playback import is_decision
 from base_station.projector import Projector
 from base_station.self_watch import SelfWatch
 from base_station.surroundings import Log, Record
-from shared.channels import channel_of
+from shared.channels import ALARM, FUSED
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition
+
+_DECISIONS = (FusedPosition, AlarmChange)
+_KEYS = {FusedPosition: FUSED.key(STATION_ID), AlarmChange: ALARM.key(STATION_ID)}
 
 
 class Keeping:
@@ -67,7 +70,7 @@ class Keeping:
                 unlogged.clear()
                 told = False
             outputs = self._step(event_of(t_ns, key, payload))
-            unlogged += [o for o in outputs if isinstance(o, FusedPosition | AlarmChange)]
+            unlogged += [o for o in outputs if isinstance(o, _DECISIONS)]
         for output in unlogged:
             self._keep_output(output)
         return stepped
@@ -81,7 +84,7 @@ class Keeping:
         self._log.write(t_ns, key, payload)
         outputs = self._step(event_of(t_ns, key, payload))
         for output in outputs:
-            if isinstance(output, FusedPosition | AlarmChange):
+            if isinstance(output, _DECISIONS):
                 self._keep_output(output)
         return outputs
 
@@ -94,9 +97,11 @@ class Keeping:
     def _step(self, event: StationEvent) -> list[Output]:
         same_time = event.t_ns == self._pipeline.state.t_ns
         self._events_at_t = self._events_at_t + 1 if same_time else 1
-        outputs: list[Output] = []
-        with self._watch.guarding("pipeline"):
+        try:
             outputs = self._pipeline.step(event)
+        except Exception as error:  # noqa: BLE001  # costs one message, not the station
+            self._watch.failed("pipeline", error)
+            outputs = []
         self._picture.note(outputs)
         self._projector.note(event, outputs)
         return outputs
@@ -104,7 +109,7 @@ class Keeping:
     def _keep_output(self, output: FusedPosition | AlarmChange) -> None:
         self._urgent = self._urgent or isinstance(output, AlarmChange)
         t_ns = output.header.t_utc_ns
-        self._log.write(t_ns, channel_of(output).key(STATION_ID), encode(output))
+        self._log.write(t_ns, _KEYS[type(output)], encode(output))
         shown = self._foxglove.of(output, self._pipeline.state.anchor)
         if shown is not None:
             self._log.write(t_ns, *shown)

@@ -208,6 +208,8 @@ class UnitState(msgspec.Struct):
         self.latest_mono_ns.clear()
 
     def _known_boot(self, boot_id: int) -> BootState | None:
+        if self.boots and self.boots[-1].boot_id == boot_id:
+            return self.boots[-1]
         return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)
 
     def extend_trail(self, fused: FusedPosition) -> bool:

@@ -20,7 +20,7 @@ from base_station.views import (
     pin_views,
     snapshot,
     trail_view,
-    unit_view,
+    unit_views,
 )
 from shared.messages import AlarmChange
 
@@ -72,9 +72,7 @@ class Picture:
         delta = Delta(
             seq=self._seq,
             now_ms=state.t_ns // NS_PER_MS,
-            units=tuple(
-                unit_view(state, state.units[unit_id], self._photo_urls) for unit_id in self._units
-            ),
+            units=unit_views(state, map(state.units.__getitem__, self._units), self._photo_urls),
             alarms=tuple(map(alarm_view, self._alarms)),
             commands=tuple(
                 command_view(state.commands[command_id])

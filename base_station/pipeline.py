@@ -47,6 +47,7 @@ from shared.messages import (
     Message,
     OperatorAction,
     Position,
+    RawImu,
     Status,
     Temperature,
     Tick,
@@ -55,6 +56,8 @@ from shared.messages import (
 )
 from shared.quality import Quality
 
+# Many a second of these, and what they tell of can wait for the next tick to be judged.
+_STREAMED = (Position, GpsFix, RawImu)
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
 LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
 
@@ -102,14 +105,14 @@ class StationPipeline:
             return []
         if isinstance(event, Received):
             message = event.message
+            if channel_of(message).direction is Direction.UP:
+                return self._hear(event.unit_id, message, event.backfilled)
             if isinstance(message, Tick):
                 return self._tick()
             if isinstance(message, OperatorAction):
                 return self._act(message)
             if isinstance(message, Command):
                 return _touched(command_book.note_sent(state, event.unit_id, message))
-            if channel_of(message).direction is Direction.UP:
-                return self._hear(event.unit_id, message, event.backfilled)
             return []  # what the station itself had decided, in a log that is stepped again
         assert_never(event)
 
@@ -166,7 +169,8 @@ class StationPipeline:
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
         outputs.append(UnitTouched(unit_id))
-        outputs.extend(self._review(unit))
+        if not isinstance(message, _STREAMED):
+            outputs.extend(self._review(unit))
         return outputs
 
     def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:
@@ -191,7 +195,10 @@ class StationPipeline:
             outputs.extend(self._observe(unit, message))
         else:
             return []
-        return [*outputs, UnitTouched(unit.unit_id), *self._review(unit)]
+        outputs.append(UnitTouched(unit.unit_id))
+        if not isinstance(message, _STREAMED):
+            outputs.extend(self._review(unit))
+        return outputs
 
     def _stranger(self, unit_id: str) -> UnitState | None:
         """Kept and shown, not believed."""

@@ -22,6 +22,7 @@ class Projector:
         self._actions: list[OperatorAction] = []
         self._descriptions: list[UnitDescription] = []
         self._heard: dict[str, int] = {}
+        self._heard_before: dict[str, int] = {}
         self._track_second: dict[str, int] = {}  # by unit, of its newest track point
 
     def note(self, event: StationEvent, outputs: Sequence[Output]) -> None:
@@ -37,9 +38,14 @@ class Projector:
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
         elif outputs and message.header.unit_id != STATION_ID and not tracked_unit(event.unit_id):
-            self._heard[event.unit_id] = event.t_ns
+            self._note_heard(event.unit_id, event.t_ns)
             if isinstance(message, UnitDescription):
                 self._descriptions.append(message)
+
+    @property
+    def is_urgent(self) -> bool:
+        """Whether it has more than where units are and when they were heard."""
+        return bool(self._alarms or self._actions or self._descriptions)
 
     def take(self, t_ns: int) -> Projection | None:
         """None where nothing changed."""
@@ -57,6 +63,10 @@ class Projector:
         for part in parts:
             part.clear()
         return projection
+
+    def _note_heard(self, unit_id: str, t_ns: int) -> None:
+        if t_ns - self._heard_before.get(unit_id, 0) >= NS_PER_S:
+            self._heard_before[unit_id] = self._heard[unit_id] = t_ns
 
     def _note_track(self, fused: FusedPosition) -> None:
         second = fused.t_meas_ns // NS_PER_S

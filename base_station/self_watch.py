@@ -28,9 +28,13 @@ class SelfWatch:
         """A mistake in one event's handling must not end the station."""
         try:
             yield
-        except Exception as error:
-            log.exception("the station's %s failed", part)
-            self.note(part, f"The station's {part} failed: {error!r}; please report it")
+        except Exception as error:  # noqa: BLE001  # told, and the station goes on
+            self.failed(part, error)
+
+    def failed(self, part: str, error: Exception) -> None:
+        """A mistake in the program, to be told as such."""
+        log.error("the station's %s failed", part, exc_info=error)
+        self.note(part, f"The station's {part} failed: {error!r}; please report it")
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
         """``seen``: what is wrong now, by part, empty where nothing is; ``known``: what has been

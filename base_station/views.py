@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import msgspec
 
@@ -45,7 +45,7 @@ from base_station.pins import WAITING, Pin
 from base_station.sinks import PhotoUrls
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
-from shared.messages import AlarmChange, FusedPosition, Heartbeat, Status
+from shared.messages import AlarmChange, AlarmState, FusedPosition, Heartbeat, Status
 
 NS_PER_MS = 1_000_000
 RADII_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's normal distribution
@@ -65,8 +65,22 @@ class StationFacts(msgspec.Struct, frozen=True):
     standby: StandbyView | None = None
 
 
-def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> UnitView:
-    """A unit's card and place."""
+def unit_views(
+    state: StationState, units: Iterable[UnitState], photo_urls: PhotoUrls
+) -> tuple[UnitView, ...]:
+    """Units' cards and places."""
+    open_alarms: dict[str, list[str]] = {}
+    for alarm in state.alarms.values():
+        if alarm.state is not AlarmState.RESOLVED:
+            open_alarms.setdefault(alarm.unit_id, []).append(alarm.alarm_id)
+    return tuple(
+        _unit_view(state, unit, photo_urls, open_alarms.get(unit.unit_id, ())) for unit in units
+    )
+
+
+def _unit_view(
+    state: StationState, unit: UnitState, photo_urls: PhotoUrls, open_alarms: Sequence[str]
+) -> UnitView:
     heat = state.alarms.get(f"heat|{unit.unit_id}")
     return UnitView(
         unit_id=unit.unit_id,
@@ -82,11 +96,7 @@ def unit_view(state: StationState, unit: UnitState, photo_urls: PhotoUrls) -> Un
         position=_position_view(state, unit.fused) if unit.fused else None,
         inside_since_ms=_ms(unit.inside_since_ns),
         duty=_duty_view(unit.duty) if unit.duty else None,
-        alarms=tuple(
-            alarm.alarm_id
-            for alarm in state.alarms.values()
-            if alarm.unit_id == unit.unit_id and alarm.is_open
-        ),
+        alarms=tuple(open_alarms),
         trust=trust_view(state, unit),
         clock=_clock_view(unit.heartbeat),
         cloned=_is_open(state, f"cloned-unit|{unit.unit_id}"),
@@ -270,7 +280,7 @@ def snapshot(
         seq=seq,
         now_ms=state.t_ns // NS_PER_MS,
         incident=incident_view(state.incident) if state.incident else None,
-        units=tuple(unit_view(state, unit, photo_urls) for unit in state.units.values()),
+        units=unit_views(state, state.units.values(), photo_urls),
         alarms=tuple(map(alarm_view, shown)),
         commands=tuple(map(command_view, state.commands.values())),
         trails={

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 
 from shared.errors import ConfigError, UnknownChannelError
 from shared.messages import (
@@ -38,6 +39,7 @@ ROOT = "muster/v1"
 STATIONS_ROOT = "muster/stations/v1"  # what two stations say to each other; units neither
 EVERY_UNIT = "all"
 NO_TRACKER = "none"  # in a description: the unit's tracking agent computes its positions
+_KEYS_KNOWN = 16_384  # a thousand units' keys are parsed once
 _BACKFILLED = "journal/"
 _TRACKER_OF = "@tracker"  # "@" is in no unit's id
 
@@ -120,6 +122,7 @@ def channel_of(message: Message) -> Channel:
     return _BY_MESSAGE[type(message)]
 
 
+@lru_cache(maxsize=_KEYS_KNOWN)
 def parse_key(key: str) -> tuple[str, Channel]:
     """``(unit_id, channel)`` of a key; UnknownChannelError where no row of the table has it."""
     parts = key.split("/", 3)
@@ -135,6 +138,7 @@ def backfilled_key(unit_id: str, suffix: str) -> str:
     return f"{ROOT}/{unit_id}/{_BACKFILLED}{suffix}"
 
 
+@lru_cache(maxsize=_KEYS_KNOWN)
 def is_backfilled(key: str) -> bool:
     """Whether a logged message came out of a unit's journal rather than live."""
     parts = key.split("/", 3)

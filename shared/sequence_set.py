@@ -31,6 +31,9 @@ class SequenceSet(msgspec.Struct, array_like=True):
 
     def add(self, number: int) -> bool:
         """True where the number was not there yet."""
+        if self.lasts and number == self.lasts[-1] + 1:  # nearly always
+            self.lasts[-1] = number
+            return True
         place = bisect_right(self.firsts, number)
         if place and number <= self.lasts[place - 1]:
             return False

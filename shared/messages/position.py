@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import msgspec
 
 from shared.messages.header import Header
@@ -81,8 +83,13 @@ class Position(msgspec.Struct, frozen=True):
             pressure_pa=wire.pressure_dpa * 0.1 if wire.pressure_dpa else None,
             stationary=wire.stationary,
             quality=known(Quality, wire.quality),
-            reasons=Reason(wire.reasons & _ALL_REASONS),
+            reasons=_reasons(wire.reasons & _ALL_REASONS),
         )
 
 
 _ALL_REASONS = int(sum(Reason))
+
+
+@lru_cache(maxsize=512)
+def _reasons(bits: int) -> Reason:
+    return Reason(bits)

@@ -6,16 +6,24 @@ import math
 
 _TWO_PI = 2.0 * math.pi
 _CDEG_PER_RAD = 18_000.0 / math.pi
+_SIGNED_MOST = 2**31 - 1
+_UNSIGNED_MOST = 2**32 - 1
 
 
 def signed32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a sint32; NaN is a caller's mistake and raises ValueError."""
-    return max(-(2**31) + 1, min(2**31 - 1, _rounded(value * scale)))
+    number = _rounded(value * scale)
+    if -_SIGNED_MOST <= number <= _SIGNED_MOST:
+        return number
+    return _SIGNED_MOST if number > 0 else -_SIGNED_MOST
 
 
 def unsigned32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a uint32; negative becomes 0."""
-    return max(0, min(2**32 - 1, _rounded(value * scale)))
+    number = _rounded(value * scale)
+    if 0 <= number <= _UNSIGNED_MOST:
+        return number
+    return _UNSIGNED_MOST if number > 0 else 0
 
 
 def unsigned_known(value: float, scale: float) -> int:
@@ -38,6 +46,7 @@ def angle_std_to_cdeg(std_rad: float) -> int:
 
 
 def _rounded(value: float) -> int:
-    if math.isinf(value):
-        return 2**62 if value > 0 else -(2**62)
-    return round(value)
+    try:
+        return round(value)
+    except OverflowError:  # infinite
+        return 2**62 if value > 0.0 else -(2**62)

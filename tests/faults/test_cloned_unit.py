@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from base_station.views import unit_view
+from base_station.views import unit_views
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, Header, Position
 from shared.messages.station import ResolveAlarm
@@ -57,7 +57,7 @@ def alarms(script: Script) -> list[AlarmState]:
 
 def is_shown_as_cloned(script: Script) -> bool:
     state = script.pipeline.state
-    return unit_view(state, state.units[U], lambda _: None).cloned
+    return unit_views(state, [state.units[U]], lambda _: None)[0].cloned
 
 
 @pytest.fixture

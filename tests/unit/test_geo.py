@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import pymap3d
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -39,6 +40,17 @@ def test_there_and_back(north_m: float, east_m: float, down_m: float, turn_rad: 
     anchor = Anchor(-33.0, 151.0, 30.0, turn_rad)
     back = anchor.to_incident_m(*anchor.to_geodetic(north_m, east_m, down_m))
     assert back == pytest.approx((north_m, east_m, down_m), abs=1e-5)
+
+
+@given(st.floats(-89.9, 89.9), st.floats(-180.0, 180.0), st.floats(-400.0, 9000.0), METRES, METRES)
+def test_a_place_is_where_the_library_has_it(
+    lat_deg: float, lon_deg: float, height_m: float, north_m: float, east_m: float
+) -> None:
+    place = Anchor(lat_deg, lon_deg, height_m).to_geodetic(north_m, east_m, -3.0)
+    theirs = pymap3d.ned2geodetic(north_m, east_m, -3.0, lat_deg, lon_deg, height_m)
+    assert place[0] == pytest.approx(theirs[0], abs=1e-10)
+    assert wrap_pi(math.radians(place[1] - float(theirs[1]))) == pytest.approx(0.0, abs=1e-9)
+    assert place[2] == pytest.approx(theirs[2], abs=1e-6)
 
 
 @given(st.floats(-500.0, 500.0), st.floats(-500.0, 500.0))

@@ -10,7 +10,7 @@ import pytest
 
 from base_station.api.wire import ClockView
 from base_station.live_state import TRAIL_POINTS, UnitState
-from base_station.views import StationFacts, health_view, snapshot, unit_view
+from base_station.views import StationFacts, health_view, snapshot, unit_views
 from shared.messages import EventKind, Heartbeat
 from shared.messages.station import Assign, OpenIncident, RegisterUnit, SetPlan, Unassign
 from tests.station_script import Script
@@ -82,7 +82,7 @@ def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
     state = script.pipeline.state
 
     def region_m() -> float:
-        view = unit_view(state, unit(script), lambda _: None)
+        [view] = unit_views(state, [unit(script)], lambda _: None)
         assert view.position is not None
         return view.position.ellipse_major_m
 
@@ -140,7 +140,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     unit(script).fused = msgspec.structs.replace(
         fused, std_north_m=2.0, std_east_m=1.0, correlation_ne=0.0
     )
-    view = unit_view(script.pipeline.state, unit(script), lambda _: None).position
+    view = unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].position
     assert view is not None
     assert view.ellipse_major_m == pytest.approx(2.0 * 2.4477, rel=1e-3)
     assert view.ellipse_minor_m == pytest.approx(1.0 * 2.4477, rel=1e-3)
@@ -148,7 +148,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     unit(script).fused = msgspec.structs.replace(
         fused, std_north_m=1.0, std_east_m=1.0, correlation_ne=0.9
     )
-    view = unit_view(script.pipeline.state, unit(script), lambda _: None).position
+    view = unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].position
     assert view is not None
     assert view.ellipse_heading_rad == pytest.approx(math.pi / 4.0), "towards north-east"
 
@@ -187,7 +187,7 @@ def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
 
 def test_a_card_says_what_the_unit_knows_of_the_time(script: Script) -> None:
     def clock() -> ClockView | None:
-        return unit_view(script.pipeline.state, unit(script), lambda _: None).clock
+        return unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].clock
 
     script.say(Heartbeat(script.header(U), 1, 1))
     assert clock() is None, "the station never answered it"
