@@ -9,18 +9,20 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays, StartReplay
 from base_station.api.services import Services
-from base_station.backfill import Backfill
+from base_station.backfill import Backfill, Report
 from base_station.checkpoints import Checkpoints
 from base_station.clock_server import ClockServer
 from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
+from base_station.db.kept import KeptTables
 from base_station.db.models import Incident
 from base_station.db.projecting import project_into
 from base_station.db.projection import SqlProjection
@@ -32,6 +34,7 @@ from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
 from base_station.fusion import FUSERS
+from base_station.live_state import StationState
 from base_station.pipeline import Checkpoint, StationPipeline
 from base_station.pki.expiry import ExpiryWatch
 from base_station.pki.folder import PkiFolder
@@ -46,6 +49,9 @@ from base_station.router_process import RouterProcess
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, bind, serve_until_stopped
 from base_station.sinks import Projection
+from base_station.standby.places import Place
+from base_station.standby.setting_aside import set_aside
+from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
 from base_station.surroundings import Surroundings
 from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
@@ -60,8 +66,21 @@ Announce = Callable[[str], None]
 _log = logging.getLogger(__name__)
 
 
+class _Again(NamedTuple):
+    """The station is to start anew, as the standby of another one."""
+
+    cut: Place | None  # behind which the log goes its own way
+
+
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    while (again := _run_once(config, announce)) is not None:
+        if again.cut is not None:
+            announce("what the other station does not have is set aside, and handed to it")
+            _set_aside(config.data, again.cut)
+
+
+def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
     joining = station_endpoint(config.data, config.bus.listen)  # refuses before anything is made
     clock = SystemClock()
     with ExitStack() as closing:
@@ -71,82 +90,98 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         )
         closing.callback(recorder.close)
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-        is_new = not folder.database.exists()
-        store = closing.enter_context(Store(folder.database))
+        store = _open_store(folder, recorder, announce, closing)
         accounts, records = Accounts(store, clock), Records(store, clock)
-        if is_new and recorder.segments():
-            announce("the database is new; it is made again from the log")
-            _project_log(store, folder.log, lambda _: None)
-        _announce_first_login(accounts, folder.first_login, announce)
-
         roster, hub = Roster(store, clock), Hub()
         projection = SqlProjection(store)
         closing.callback(projection.close)
         steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
         feed = LiveFeed(steady)
-        router = RouterProcess(folder.path, config.bus.listen)
+        router = RouterProcess(folder.path, config.bus.listen, config.standby.peer)
         closing.callback(router.close)
         bus = ZenohBus(joining)
         closing.callback(bus.close)
-        hearing = bus.subscribe(f"{ROOT}/**", feed.offer)
+        again: list[_Again] = []
+
+        def start_again(cut: Place | None) -> None:
+            again.append(_Again(cut))
+            server.stop()
+
+        pki = PkiFolder(folder.path)
+        side = _side(
+            config,
+            Parts(
+                data=folder.path,
+                bus=bus,
+                log=recorder,
+                disk=LogFeed(folder.log, recorder.flush),
+                live=feed,
+                clock=steady,
+                tables=KeptTables(store),
+                records=records,
+                pki=pki,
+                on_people=roster.read_again,
+                on_lead=lambda: _announce_first_login(accounts, folder.first_login, announce),
+                start_again=start_again,
+            ),
+        )
+        hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
         closing.callback(bus.serve(clock_key("*"), ClockServer(steady).replies).close)
-        backfill = Backfill(bus, feed.deliver, clock)
+        backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
+        def report(held: Report) -> None:
+            side.note_report()
+            backfill.report(held)
+
         checkpoints = Checkpoints(folder.checkpoints)
-        pki = PkiFolder(folder.path)
         expiry = ExpiryWatch(pki, clock)
         drive = _start_drive(
             LogFeed(folder.log, recorder.flush),
             Surroundings(
-                feed=feed,
-                log=recorder,
+                feed=side.feed,
+                log=side.log,
                 live=hub,
                 projection=projection,
                 checkpoints=checkpoints,
                 photo_urls=roster.photo_url,
-                facts=lambda: _facts(config, recorder, feed, router, expiry),
+                facts=lambda: _facts(config, recorder, feed, router, expiry, side),
                 clock=steady,
                 boot_id=secrets.randbits(63),
-                report=backfill.report,
-                say=downlink.report,
+                report=report,
+                say=lambda orders: downlink.report(orders if side.leads else ()),
             ),
+            side.begin,
         )
+        gate = side.gate_to(drive)
         closing.callback(drive.stop)
         closing.callback(hearing.close)  # first: what still comes is stepped before the end
         backfill.start()
         closing.callback(backfill.close)
         downlink.start()
         closing.callback(downlink.close)
-        closing.callback(feed.close)
+        closing.callback(side.feed.close)
         archive = Archive(LogFeed(folder.log, recorder.flush).records, checkpoints, _pipeline)
         services = Services(
             accounts=accounts,
             roster=roster,
             records=records,
             hub=hub,
-            gate=drive,
+            gate=gate,
             settle=projection.flush,
             replays=Replays(_replay_starter(archive, roster, steady)),
             clock=steady,
             secure=config.http.certificate is not None,
+            standing=side.standing,
             accountability=config.accountability,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
-        index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
-        enrolled = EnrolledUnits(pki, drive, roster.registered_units)
-
-        def keep_house() -> None:
-            index.update(recorder.segments())
-            enrolled.update()
-
-        asyncio.run(
-            serve_until_stopped(
-                ConsoleServer(app, listening, config.http.certificate, config.http.private_key),
-                announce,
-                keep_house,
-            )
-        )
+        enrolled = EnrolledUnits(pki, gate, roster.registered_units)
+        keep_house = _housekeeping(recorder, records, enrolled, side)
+        server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
+        side.start(gate, closing)
+        asyncio.run(serve_until_stopped(server, announce, keep_house))
+        return again[0] if again else None
 
 
 def run_replay_station(
@@ -221,15 +256,60 @@ def open_accounts(data: Path, closing: ExitStack) -> Accounts:
     return Accounts(store, SystemClock())
 
 
-def _start_drive(log: LogFeed, surroundings: Surroundings) -> StationDrive:
-    """A drive whose live state is what the log says."""
+def _open_store(
+    folder: DataFolder, recorder: Recorder, announce: Announce, closing: ExitStack
+) -> Store:
+    is_new = not folder.database.exists()
+    store = closing.enter_context(Store(folder.database))
+    if is_new and recorder.segments():
+        announce("the database is new; it is made again from the log")
+        _project_log(store, folder.log, lambda _: None)
+    return store
+
+
+def _housekeeping(
+    recorder: Recorder, records: Records, enrolled: EnrolledUnits, side: Side
+) -> Callable[[], None]:
+    index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
+
+    def keep_house() -> None:
+        index.update(recorder.segments())
+        if side.leads:
+            enrolled.update()
+
+    return keep_house
+
+
+def _start_drive(
+    log: LogFeed,
+    surroundings: Surroundings,
+    begin: Callable[[tuple[int, int], StationState], None],
+) -> StationDrive:
+    """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
     saved = surroundings.checkpoints.latest()
-    drive = StationDrive(_pipeline(saved.pipeline if saved else None), surroundings)
+    pipeline = _pipeline(saved.pipeline if saved else None)
+    drive = StationDrive(pipeline, surroundings)
     place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
     stepped = drive.rebuild(log.records(place[0]), place)
     _log.info("live state from the log: %d events after the checkpoint", stepped)
+    begin(drive.place, pipeline.state)
     drive.start()
     return drive
+
+
+def _side(config: StationConfig, parts: Parts) -> Side:
+    return OneOfTwo(config.standby, parts) if config.standby.name else OnlyStation(parts)
+
+
+def _set_aside(data: Path, place: Place) -> None:
+    """What is queried must not know either of what is cut from the log."""
+    folder = DataFolder(data)
+    lock = folder.lock()
+    try:
+        set_aside(folder, place)
+    finally:
+        lock.close()
+    rebuild(data, _ignore)
 
 
 def _pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
@@ -251,8 +331,9 @@ def _facts(
     feed: LiveFeed,
     router: RouterProcess,
     expiry: ExpiryWatch,
+    side: Side,
 ) -> StationFacts:
-    problems = [*config.standing_problems(), *expiry.problems()]
+    problems = [*config.standing_problems(), *expiry.problems(), *side.problems()]
     if not router.is_open:
         problems.append("The bus's router is away and is started again; no unit is linked")
     if feed.overflowed:
@@ -262,6 +343,7 @@ def _facts(
         log_bytes=recorder.log_bytes,
         disk_free_bytes=recorder.disk_free_bytes,
         insecure=bool(config.plain_endpoints()),
+        standby=None if side.standing is None else side.standing.view(),
     )
 
 

@@ -12,7 +12,7 @@ from base_station.api.console_files import serve_console
 from base_station.api.headers import SecurityHeaders
 from base_station.api.problems import ProblemDocument, handle_problems
 from base_station.api.routes import ROUTERS
-from base_station.api.security import LoginThrottle, check_origin
+from base_station.api.security import LoginThrottle, check_origin, check_standing
 from base_station.api.services import Services
 
 PREFIX = "/api/v1"
@@ -44,7 +44,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # its pages would load from elsewhere
         redoc_url=None,
-        dependencies=[Depends(check_origin)],
+        dependencies=[Depends(check_origin), Depends(check_standing)],
         max_body_size=MOST_BODY_BYTES,
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
     )

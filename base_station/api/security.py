@@ -20,11 +20,13 @@ from limits.strategies import MovingWindowRateLimiter
 from starlette.requests import HTTPConnection
 
 from base_station.api.problems import Problem
-from base_station.api.services import Services, Station
+from base_station.api.services import Services, Station, services_of
 from base_station.db.accounts import Principal, Role
 
 COOKIE = "muster_session"
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+# What a standby lets people do all the same: log in, look, and make it lead.
+_AT_A_STANDBY = ("login", "logout", "replays", "standby")
 _LOGINS_OF_ONE = parse("10/minute")  # one name from one address
 _LOGINS_OF_ALL = parse("60/minute")  # any name from one address
 
@@ -63,6 +65,17 @@ def check_origin(connection: HTTPConnection) -> None:
     by_cookie = COOKIE in connection.cookies and "authorization" not in connection.headers
     if by_cookie and "origin" not in connection.headers:
         raise Problem(403, "A browser's request must name its origin; programs use an API token.")
+
+
+def check_standing(connection: HTTPConnection) -> None:
+    """Dependency of every route: of two stations, things are changed at the one that leads."""
+    standing = services_of(connection).standing
+    if standing is None or connection.scope.get("method", "GET") in _SAFE_METHODS:
+        return
+    resource = connection.scope["path"].removeprefix("/api/v1/").partition("/")[0]
+    refusal = None if resource in _AT_A_STANDBY else standing.refusal()
+    if refusal is not None:
+        raise Problem(503, f"Nothing was changed: {refusal}.")
 
 
 def _signed_in(

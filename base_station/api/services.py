@@ -12,6 +12,7 @@ from starlette.requests import HTTPConnection
 
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
+from base_station.api.standing import Standing
 from base_station.api.wire import Snapshot
 from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
@@ -36,6 +37,7 @@ class Services:
     replays: Replays
     clock: Clock
     secure: bool  # the console is served over TLS
+    standing: Standing | None = None  # None: this is the only station
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def act(self, by: str, action: Action) -> ActionDone:

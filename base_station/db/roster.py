@@ -83,6 +83,10 @@ class Roster:
             return None
         return found[0], found[1]
 
+    def read_again(self) -> None:
+        """Somebody else has changed people and photos."""
+        self._photo_hashes = self._load_photo_hashes()
+
     def photo_url(self, person_id: str) -> str | None:
         """Where the console finds the photo; asked in the drive's thread, so from memory."""
         photo_hash = self._photo_hashes.get(person_id)

@@ -18,6 +18,7 @@ from base_station.api.routes import (
     people,
     replays,
     site,
+    standby,
     tokens,
     tracks,
     units,
@@ -41,5 +42,6 @@ ROUTERS: tuple[APIRouter, ...] = (
     exports.router,
     health.router,
     audit.router,
+    standby.router,
     live.router,
 )

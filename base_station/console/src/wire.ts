@@ -175,6 +175,17 @@ export interface IncidentView {
   work_limit_s: number;
 }
 
+/** Which of two stations this is. */
+export interface StandbyView {
+  station: string;
+  role: string; // active | standby | waiting
+  url: string; // where consoles find it
+  other: string; // "" while the other has not been heard
+  other_role: string; // "" while it is not heard
+  other_url: string;
+  in_step: boolean; // the standby has what the active station has
+}
+
 export interface HealthView {
   problems: string[];
   messages: number;
@@ -184,6 +195,7 @@ export interface HealthView {
   disk_free_bytes: number;
   messages_per_s: number;
   insecure: boolean;
+  standby: StandbyView | null; // null: this is the only station
 }
 
 export interface ReplayView {

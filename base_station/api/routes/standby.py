@@ -1,0 +1,43 @@
+"""Which of two stations this is, and taking over by hand."""
+
+from __future__ import annotations
+
+import msgspec
+from fastapi import APIRouter
+from pydantic import BaseModel
+
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.api.standing import Standing
+
+router = APIRouter(tags=["standby"])
+
+
+class Standby(BaseModel):
+    station: str
+    role: str  # active | standby | waiting
+    url: str
+    other: str
+    other_role: str
+    other_url: str
+    in_step: bool
+
+
+@router.get("/standby")
+def get_standby(station: Station, _: Viewer) -> Standby:
+    return Standby.model_validate(msgspec.to_builtins(_standing_or_404(station).view()))
+
+
+@router.post("/standby/take-over", status_code=202)
+def take_over(station: Station, who: Commander) -> None:
+    """This station leads from now on; the other one, where it hears of it, becomes its standby."""
+    standing = _standing_or_404(station)
+    station.records.audit(who.username, "TakeOverByHand", standing.view().station)
+    standing.take_over()
+
+
+def _standing_or_404(station: Services) -> Standing:
+    if station.standing is None:
+        raise Problem(404, "This is the only station: it has no [standby] settings.")
+    return station.standing

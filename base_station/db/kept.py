@@ -1,0 +1,147 @@
+"""What no log can make again, as it stands: users, sessions, tokens, people.
+
+A standby station copies it from the active one.  Photos travel by themselves, named by their
+hashes; the audit is only ever added to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import msgspec
+from sqlalchemy import delete, select
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from base_station.db.models import ApiToken, AuditEntry, Base, LoginSession, Person, User
+from base_station.db.store import Store
+
+Row = dict[str, Any]
+_PHOTO = "photo"
+
+
+class Kept(msgspec.Struct, frozen=True):
+    """Rows by column; photos only as their hashes."""
+
+    users: tuple[Row, ...]
+    tokens: tuple[Row, ...]
+    sessions: tuple[Row, ...]
+    people: tuple[Row, ...]
+
+
+class KeptTables:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+        self._copied_sessions: set[str] = set()
+
+    def read(self) -> Kept:
+        with self._store.read() as session:
+            return Kept(
+                users=_rows(session, User),
+                tokens=_rows(session, ApiToken),
+                sessions=_rows(session, LoginSession),
+                people=_rows(session, Person),
+            )
+
+    def copy(self, kept: Kept) -> tuple[str, ...]:
+        """Make these tables like the active station's.  Gives who and what was only here.
+
+        Sessions that began here stay; photos are kept where their hash is the same.
+        """
+        with self._store.write() as session:
+            dropped = (
+                *_only_here(session, User.username, "user", kept.users),
+                *_only_here(session, ApiToken.token_id, "token", kept.tokens),
+                *_only_here(session, Person.person_id, "person", kept.people),
+            )
+            _replace(session, User, User.username, kept.users)
+            _replace(session, ApiToken, ApiToken.token_id, kept.tokens)
+            _put_people(session, kept.people)
+            self._copy_sessions(session, kept.sessions)
+        return dropped
+
+    def missing_photos(self) -> Sequence[str]:
+        """Ids of people whose photo has not come yet."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Person.person_id).where(
+                    Person.photo_hash.is_not(None), Person.photo.is_(None)
+                )
+            ).all()
+
+    def photo(self, person_id: str) -> bytes | None:
+        with self._store.read() as session:
+            return session.scalar(select(Person.photo).where(Person.person_id == person_id))
+
+    def put_photo(self, person_id: str, jpeg: bytes) -> None:
+        with self._store.write() as session:
+            person = session.get(Person, person_id)
+            if person is not None:
+                person.photo = jpeg
+
+    def audit_from(self, t_ns: int, limit: int) -> list[Row]:
+        """Entries of that time and later, oldest first."""
+        with self._store.read() as session:
+            entries = session.scalars(
+                select(AuditEntry)
+                .where(AuditEntry.t_ns >= t_ns)
+                .order_by(AuditEntry.t_ns, AuditEntry.entry_id)
+                .limit(limit)
+            )
+            return [_row(entry) for entry in entries]
+
+    def add_audit(self, rows: Sequence[Row]) -> None:
+        """Those that are not there yet."""
+        if not rows:
+            return
+        with self._store.write() as session:
+            session.execute(insert(AuditEntry).on_conflict_do_nothing(), list(rows))
+
+    def _copy_sessions(self, session: Session, rows: tuple[Row, ...]) -> None:
+        there = {row["token_hash"] for row in rows}
+        ended = self._copied_sessions - there
+        session.execute(delete(LoginSession).where(LoginSession.token_hash.in_(ended)))
+        if rows:
+            session.execute(insert(LoginSession).on_conflict_do_nothing(), list(rows))
+        self._copied_sessions = there
+
+
+def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
+    return tuple(map(_row, session.scalars(select(table).order_by(*table.__table__.primary_key))))
+
+
+def _row(entry: Base) -> Row:
+    names = (column.name for column in entry.__table__.columns if column.name != _PHOTO)
+    return {name: getattr(entry, name) for name in names}
+
+
+def _only_here(
+    session: Session, key: InstrumentedAttribute[str], what: str, rows: Iterable[Row]
+) -> Iterable[str]:
+    here = set(session.scalars(select(key)))
+    return (f"{what} {one}" for one in sorted(here - {row[key.key] for row in rows}))
+
+
+def _replace(
+    session: Session, table: type[Base], key: InstrumentedAttribute[str], rows: tuple[Row, ...]
+) -> None:
+    session.execute(delete(table).where(key.not_in([row[key.key] for row in rows])))
+    for row in rows:
+        statement = insert(table).values(**row)
+        session.execute(statement.on_conflict_do_update(index_elements=[key], set_=row))
+
+
+def _put_people(session: Session, rows: tuple[Row, ...]) -> None:
+    session.execute(delete(Person).where(Person.person_id.not_in([r["person_id"] for r in rows])))
+    for row in rows:
+        person = session.get(Person, row["person_id"])
+        if person is None:
+            session.add(Person(**row, photo=None))
+            continue
+        if person.photo_hash != row["photo_hash"]:
+            person.photo = None
+        for name, value in row.items():
+            setattr(person, name, value)

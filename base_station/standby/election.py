@@ -1,0 +1,99 @@
+"""Which of two stations is in charge.  Pure: time and news come in, a decision comes out.
+
+A station leads for as long as it is heard (its lease).  Two stations cannot tell a dead one from a
+cut cable, so the units are asked in a way: who hears none of them, while the other one had some, is
+probably the one that is cut off, and waits for a person.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from base_station.standby.places import Place
+from base_station.standby.words import Beat, Role
+
+Decision = Literal["stay", "follow", "lead", "step back"]
+_GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
+
+
+class Me(NamedTuple):
+    """How this station stands at the moment."""
+
+    station: str
+    preferred: bool
+    term: int  # of the last take-over in its log
+    place: Place
+    units: int  # that it hears
+
+
+class Election:
+    """``hear`` what the other one says, then ``decide``, several times a second."""
+
+    def __init__(self, lease_ns: int, now_ns: int) -> None:
+        self._lease_ns = lease_ns
+        self._since_ns = now_ns  # waits to hear of another one
+        self._other: Beat | None = None
+        self._heard_ns = 0
+        self._token_there = False
+        self.role: Role = "waiting"
+
+    @property
+    def other(self) -> Beat | None:
+        """What the other station said last, however long ago."""
+        return self._other
+
+    def hear(self, beat: Beat, now_ns: int) -> None:
+        self._other, self._heard_ns = beat, now_ns
+        self._token_there = True
+
+    def note_token(self, *, there: bool) -> None:
+        """Whether the other one's liveliness token is on the bus."""
+        self._token_there = there
+
+    def is_there(self, now_ns: int) -> bool:
+        """Whether the other station is heard."""
+        if self._other is None:
+            return False
+        patience_ns = self._lease_ns * (1.0 if self._token_there else _GONE_SHARE)
+        return now_ns - self._heard_ns < patience_ns
+
+    def is_cut_off(self, me: Me, now_ns: int) -> bool:
+        """This standby hears neither the active station nor any of the units that it had."""
+        other = self._other
+        alone = self.role == "standby" and not self.is_there(now_ns)
+        return alone and other is not None and other.units > 0 and me.units == 0
+
+    def decide(self, me: Me, now_ns: int) -> Decision:
+        other = self._other if self.is_there(now_ns) else None
+        if self.role == "active":
+            loses = other is not None and other.role == "active" and _claim(other) > _claim_of(me)
+            return "step back" if loses else "stay"
+        if other is None:
+            return self._alone(me, now_ns)
+        if other.role == "active":
+            return "stay" if self.role == "standby" else "follow"
+        return "lead" if _rank_of(me) > _rank(other) else "stay"
+
+    def _alone(self, me: Me, now_ns: int) -> Decision:
+        if self.role == "standby":
+            return "stay" if self.is_cut_off(me, now_ns) else "lead"
+        patience_ns = self._lease_ns if me.preferred else 2 * self._lease_ns
+        return "lead" if now_ns - self._since_ns >= patience_ns else "stay"
+
+
+def _claim(beat: Beat) -> tuple[int, bool, str]:
+    """Of two that lead, the later take-over stays."""
+    return beat.term, beat.preferred, beat.station
+
+
+def _claim_of(me: Me) -> tuple[int, bool, str]:
+    return me.term, me.preferred, me.station
+
+
+def _rank(beat: Beat) -> tuple[int, Place, bool, str]:
+    """Of two that do not lead, whoever has more of the log begins."""
+    return beat.term, Place(*beat.place), beat.preferred, beat.station
+
+
+def _rank_of(me: Me) -> tuple[int, Place, bool, str]:
+    return me.term, me.place, me.preferred, me.station

@@ -1,0 +1,156 @@
+"""Keeps what is in no log the same at both stations: accounts, people, audit, who is enrolled.
+
+The standby asks once a second whether anything has changed; the answer is all of it, or nothing.
+The audit is added to, in both directions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections.abc import Callable, Iterator
+from threading import Event, Thread
+
+import msgspec
+
+from base_station.db.kept import Kept, KeptTables, Row
+from base_station.pki.folder import PkiFolder
+from base_station.pki.registry import Registry
+from base_station.standby.words import key_of, pack, unpack
+from shared.bus import Bus, Subscription
+from shared.errors import MusterError
+
+logger = logging.getLogger(__name__)
+
+_LOOK_EVERY_S = 1.0
+_TIMEOUT_S = 5.0
+_AUDIT_ENTRIES = 500
+
+
+class KeptServer:
+    """Serves ``kept/all``, ``kept/photo``, ``kept/audit`` and ``kept/enrolled``."""
+
+    def __init__(self, station: str, bus: Bus, tables: KeptTables, pki: PkiFolder) -> None:
+        self._tables = tables
+        self._pki = pki
+        self._serving: list[Subscription] = [
+            bus.serve(key_of(station, "kept/all"), self._all),
+            bus.serve(key_of(station, "kept/photo"), self._photo),
+            bus.serve(key_of(station, "kept/audit"), self._audit),
+            bus.serve(key_of(station, "kept/enrolled"), self._enrolled),
+        ]
+
+    def close(self) -> None:
+        for subscription in self._serving:
+            subscription.close()
+
+    def _all(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        """Nothing where the asker knows it by its hash."""
+        said = pack(self._tables.read())
+        if _hash(said) != payload:
+            yield said
+
+    def _enrolled(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        """As ``kept/all``."""
+        said = pack(self._pki.registry()) if self._pki.exists() else payload
+        if said != payload and _hash(said) != payload:
+            yield said
+
+    def _photo(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        photo = self._tables.photo(payload.decode())
+        if photo is not None:
+            yield photo
+
+    def _audit(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        entries = self._tables.audit_from(int(payload), _AUDIT_ENTRIES)
+        yield msgspec.msgpack.encode(entries)
+
+
+class KeptCopy:
+    """Copies, for as long as another station is there."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        tables: KeptTables,
+        pki: PkiFolder,
+        leader: Callable[[], str | None],
+        other: Callable[[], str | None],
+        on_people: Callable[[], None],
+        on_dropped: Callable[[str], None],
+    ) -> None:
+        """``leader``: whom to copy from, where that is another; ``other``: whose audit to add.
+
+        ``on_people`` is told when people or photos may have changed, ``on_dropped`` in a sentence
+        of what was only here.
+        """
+        self._bus = bus
+        self._tables = tables
+        self._pki = pki
+        self._leader = leader
+        self._other = other
+        self._on_people = on_people
+        self._on_dropped = on_dropped
+        self._known = self._known_enrolled = b""
+        self._audit_ns = 0
+        self._closing = Event()
+        self._thread = Thread(target=self._run, name="kept-copy", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def close(self) -> None:
+        self._closing.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._closing.wait(_LOOK_EVERY_S):
+            try:
+                leader, other = self._leader(), self._other()
+                if leader is not None:
+                    self._copy(leader)
+                if other is not None:
+                    self._add_audit(other)
+                    self._take_enrolled(other)
+            except MusterError as error:
+                logger.warning("accounts cannot be copied from the other station: %s", error)
+
+    def _copy(self, leader: str) -> None:
+        said = self._ask(leader, "all", self._known)
+        if said is not None:
+            dropped = self._tables.copy(unpack(said, Kept))
+            if dropped and not self._known:  # else the active station has removed them
+                self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
+            self._known = _hash(said)
+        missing = self._tables.missing_photos()
+        for person_id in missing:
+            photo = self._ask(leader, "photo", person_id.encode())
+            if photo is not None:
+                self._tables.put_photo(person_id, photo)
+        if said is not None or missing:
+            self._on_people()
+
+    def _add_audit(self, other: str) -> None:
+        answer = self._ask(other, "audit", str(self._audit_ns).encode())
+        entries = [] if answer is None else unpack(answer, list[Row])
+        self._tables.add_audit(entries)
+        if entries:
+            newest_ns = int(entries[-1]["t_ns"])
+            # Of entries of one time some may not have come.
+            crowded = len(entries) == _AUDIT_ENTRIES and newest_ns == self._audit_ns
+            self._audit_ns = newest_ns + crowded
+
+    def _take_enrolled(self, other: str) -> None:
+        said = self._ask(other, "enrolled", self._known_enrolled)
+        if said is not None and self._pki.exists():
+            self._pki.take_registry(unpack(said, Registry))
+            self._known_enrolled = _hash(said)
+
+    def _ask(self, station: str, what: str, payload: bytes) -> bytes | None:
+        for reply in self._bus.query(key_of(station, f"kept/{what}"), payload, _TIMEOUT_S):
+            return reply
+        return None
+
+
+def _hash(said: bytes) -> bytes:
+    return hashlib.sha256(said).digest()

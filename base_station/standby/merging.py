@@ -1,0 +1,167 @@
+"""What a station heard and people did there while it was apart comes to the one that leads.
+
+The standby serves what it has set aside; the active station fetches it.  Units' messages go the
+way of what was fetched late, so that those that are in the log are left out.  What people did is
+written down and shown, and not applied.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from itertools import islice
+from pathlib import Path
+from threading import Event, Thread
+
+from base_station.sinks import OperatorGate
+from base_station.standby.places import Record
+from base_station.standby.setting_aside import mark_told, parts, read_part
+from base_station.standby.words import Batch, key_of, pack, unpack
+from shared.bus import Bus, Subscription
+from shared.channels import OPERATOR, Direction, backfilled_key, parse_key
+from shared.codec import decode
+from shared.errors import MusterError, UnknownChannelError, WireError
+from shared.messages import STATION_ID, OperatorAction
+from shared.messages.station import DoneApart, ReportProblem
+
+logger = logging.getLogger(__name__)
+
+_LOOK_EVERY_S = 2.0
+_BATCH = 1000  # events
+_TIMEOUT_S = 5.0
+_PART = "apart"
+
+
+class PartServer:
+    """Serves what was set aside: ``apart/names``, ``apart/records``, ``apart/told``."""
+
+    def __init__(self, station: str, bus: Bus, data: Path) -> None:
+        self._data = data
+        self._reading: tuple[str, int, Iterator[Record]] | None = None
+        self._serving: list[Subscription] = [
+            bus.serve(key_of(station, "apart/names"), self._names),
+            bus.serve(key_of(station, "apart/records"), self._records),
+            bus.serve(key_of(station, "apart/told"), self._told),
+        ]
+
+    def close(self) -> None:
+        for subscription in self._serving:
+            subscription.close()
+
+    def _names(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
+        for name in parts(self._data):
+            yield name.encode()
+
+    def _records(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        """``NAME SKIP``: events of the part, behind the first SKIP."""
+        name, _, skip_text = payload.decode().partition(" ")
+        skip = int(skip_text)
+        if name not in parts(self._data):
+            return
+        if self._reading is None or self._reading[:2] != (name, skip):
+            self._reading = name, skip, islice(read_part(self._data, name), skip, None)
+        records = tuple(islice(self._reading[2], _BATCH))
+        self._reading = name, skip + len(records), self._reading[2]
+        yield pack(Batch(records))
+
+    def _told(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        name = payload.decode()
+        if name in parts(self._data):
+            mark_told(self._data, name)
+            yield b"told"
+
+
+class Merging:
+    """Fetches what the other station has set aside, for as long as this one leads."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        gate: OperatorGate,
+        deliver: Callable[[str, bytes], None],
+        other: Callable[[], str | None],
+    ) -> None:
+        """``other``: the standby to be asked; None: this station does not lead, or is alone."""
+        self._bus = bus
+        self._gate = gate
+        self._deliver = deliver
+        self._other = other
+        self._closing = Event()
+        self._thread = Thread(target=self._run, name="merging", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def close(self) -> None:
+        self._closing.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._closing.wait(_LOOK_EVERY_S):
+            station = self._other()
+            if station is None:
+                continue
+            try:
+                for name in self._ask(station, "names", b""):
+                    self._merge(station, name)
+            except MusterError as error:
+                logger.warning("what %s has set aside cannot be taken: %s", station, error)
+
+    def _merge(self, station: str, name: bytes) -> None:
+        taken, actions = 0, 0
+        while not self._closing.is_set():
+            batch = next(iter(self._ask(station, "records", b"%s %d" % (name, taken))), None)
+            if batch is None:
+                return  # it has gone again; next time from the beginning, and nothing comes twice
+            records = unpack(batch, Batch).records
+            if not records:
+                break
+            for record in records:
+                actions += self._take(station, record)
+            taken += len(records)
+        for _ in self._ask(station, "told", name):
+            logger.warning("%d events that %s had set aside are taken", taken, station)
+        if actions:
+            text = (
+                f"While the stations were apart, {actions} things were done at {station} that are "
+                "not in force here; the audit names them: do again what still matters"
+            )
+            self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text))
+
+    def _take(self, station: str, record: Record) -> int:
+        """Gives 1 for what a person did."""
+        t_ns, key, payload = record
+        try:
+            unit_id, channel = parse_key(key)
+        except UnknownChannelError:
+            self._deliver(key, payload)
+            return 0
+        if channel.direction is Direction.UP:
+            self._deliver(backfilled_key(unit_id, channel.suffix), payload)
+        elif channel is OPERATOR:
+            action = _persons_action(payload)
+            if action is not None:
+                done = DoneApart(station, t_ns, action.by, _in_words(action))
+                self._gate.submit(STATION_ID, done)
+                return 1
+        return 0
+
+    def _ask(self, station: str, what: str, payload: bytes) -> Iterator[bytes]:
+        yield from self._bus.query(key_of(station, f"{_PART}/{what}"), payload, _TIMEOUT_S)
+
+
+def _persons_action(payload: bytes) -> OperatorAction | None:
+    try:
+        message = decode(OPERATOR, payload)
+    except WireError:
+        return None
+    if isinstance(message, OperatorAction) and message.by != STATION_ID:
+        return message
+    return None
+
+
+def _in_words(done: OperatorAction) -> str:
+    """As the audit writes it, and short."""
+    values = (getattr(done.action, name) for name in done.action.__struct_fields__)
+    said = ", ".join(str(value) for value in values if isinstance(value, str | int | float))
+    return f"{type(done.action).__name__} {said}"[:300]

@@ -1,0 +1,304 @@
+"""This station as one of two: says that it is there, hears the other, and takes its place.
+
+A thread looks several times a second.  Whatever changes who leads is decided there, and by
+``Election`` alone.
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Condition, Thread
+
+from base_station.api.wire import StandbyView
+from base_station.config import StandbyConfig
+from base_station.feed import LogFeed, SteadyClock
+from base_station.standby.confirming import OtherCopy
+from base_station.standby.election import Election, Me
+from base_station.standby.following import Follower, Leader
+from base_station.standby.places import Place
+from base_station.standby.shared_log import SharedLog
+from base_station.standby.shipping import Shipping
+from base_station.standby.standby_feed import StandbyFeed
+from base_station.standby.words import PROTOCOL, Beat, Have, key_of, pack, unpack
+from shared.bus import Bus
+from shared.channels import OPERATOR, STATIONS_ROOT, Qos, alive_key
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import WireError
+from shared.messages import STATION_ID, OperatorAction
+from shared.messages.station import TakeOver
+
+logger = logging.getLogger(__name__)
+
+_LOOK_EVERY_S = 0.2
+_STEP_S = 5.0  # that the drive may take for what was delivered
+
+
+@dataclass(frozen=True)
+class Around:
+    """What a pair works with."""
+
+    bus: Bus
+    log: SharedLog
+    disk: LogFeed
+    feed: StandbyFeed
+    clock: SteadyClock
+    on_lead: Callable[[], None]  # this station takes over
+    start_again: Callable[[Place | None], None]  # as a standby; cut the log behind the place
+
+
+class Pair:
+    """``start`` it when the drive runs; ``close`` it before the drive ends."""
+
+    def __init__(self, config: StandbyConfig, around: Around) -> None:
+        self._config = config
+        self._around = around
+        clock, log = around.clock, around.log
+        self.copy = OtherCopy(clock, lambda: log.place, config.confirm_s)
+        self._election = Election(round(config.lease_s * NS_PER_S), clock.monotonic_ns())
+        self._run_id = secrets.randbits(63)
+        self._stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
+        self._units: set[str] = set()
+        self._stranger = ""
+        self._told = Condition()
+        self._by_hand = False
+        self._closed = False
+        self._ends = False  # it is going to start again
+        self._follower = Follower(config.name, around.bus, log, around.feed, self._start_again)
+        self._shipping = Shipping(config.name, around.bus, log, around.disk, lambda: self.leads)
+        self._declared = [
+            around.bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._hear_beat),
+            around.bus.subscribe(f"{STATIONS_ROOT}/*/have", self._hear_have),
+            around.bus.watch_alive(alive_key("*"), self._note_unit),
+            around.bus.watch_alive(f"{STATIONS_ROOT}/*/alive", self._note_station),
+            around.bus.declare_alive(key_of(config.name, "alive")),
+        ]
+        self._thread = Thread(target=self._run, name="pair", daemon=True)
+
+    def start(self) -> None:
+        self._follower.start()
+        self._thread.start()
+
+    def close(self) -> None:
+        with self._told:
+            self._closed = True
+            self._told.notify_all()
+        self._thread.join()
+        self._follower.close()
+        self.copy.close()
+        self._shipping.close()
+        for one in self._declared:
+            one.close()
+
+    # ---- from any thread
+
+    @property
+    def leads(self) -> bool:
+        return self._election.role == "active" and not self._ends
+
+    def refusal(self) -> str | None:
+        """Why nothing can be done here; None: this station leads."""
+        if self.leads:
+            return None
+        other = self._election.other
+        if other is not None and other.role == "active":
+            where = f" at {other.url}" if other.url else ""
+            return f"this is the standby: the active station is {other.station}{where}"
+        return "this station does not lead yet; try again in some seconds"
+
+    def followed(self) -> str | None:
+        """The active station, where that is another one and it is heard."""
+        other = self._election.other
+        if self.leads or other is None or other.role != "active":
+            return None
+        return self.other_there()
+
+    def other_there(self) -> str | None:
+        """The other station, while it is heard."""
+        other = self._election.other
+        there = self._election.is_there(self._around.clock.monotonic_ns())
+        return other.station if other is not None and there else None
+
+    def take_over(self) -> None:
+        """A person wants this station to lead, whatever it hears; soon."""
+        with self._told:
+            self._by_hand = True
+            self._told.notify_all()
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console."""
+        return tuple(self._problems())
+
+    def view(self) -> StandbyView:
+        other, now_ns = self._election.other, self._around.clock.monotonic_ns()
+        there = other is not None and self._election.is_there(now_ns)
+        in_step = (
+            self.copy.is_there and not self.copy.is_behind if self.leads else self._follower.in_step
+        )
+        return StandbyView(
+            station=self._config.name,
+            role=self._election.role,
+            url=self._config.url,
+            other=other.station if other is not None else "",
+            other_role=other.role if other is not None and there else "",
+            other_url=other.url if other is not None else "",
+            in_step=in_step,
+        )
+
+    # ---- what is heard
+
+    def _hear_beat(self, _key: str, payload: bytes) -> None:
+        beat = _read(payload)
+        if beat is None or (beat.station, beat.run) == (self._config.name, self._run_id):
+            return
+        if beat.station == self._config.name:
+            self._stranger = (
+                f"Two stations call themselves {beat.station}: give each a name of its own in "
+                "[standby]"
+            )
+        elif beat.protocol != PROTOCOL:
+            self._stranger = (
+                f"Station {beat.station} is of another version: the two cannot stand by for each "
+                "other until both are updated"
+            )
+        else:
+            self._election.hear(beat, self._around.clock.monotonic_ns())
+            with self._told:
+                self._told.notify_all()
+
+    def _hear_have(self, key: str, payload: bytes) -> None:
+        try:
+            have = unpack(payload, Have)
+        except WireError as error:
+            logger.warning("%s: %s", key, error)
+            return
+        if have.run == self._run_id and self.leads:
+            self.copy.note(have.place)
+
+    def _note_unit(self, key: str, there: bool) -> None:
+        (self._units.add if there else self._units.discard)(key)
+
+    def _note_station(self, key: str, there: bool) -> None:
+        if key != key_of(self._config.name, "alive"):
+            self._election.note_token(there=there)
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        while True:
+            with self._told:
+                self._told.wait_for(lambda: self._closed or self._by_hand, _LOOK_EVERY_S)
+                if self._closed:
+                    return
+                by_hand, self._by_hand = self._by_hand, False
+            try:
+                self._look(by_hand=by_hand)
+            except Exception:
+                logger.exception("the standby's thread failed; it goes on")
+
+    def _look(self, *, by_hand: bool) -> None:
+        if self._ends:
+            return
+        now_ns = self._around.clock.monotonic_ns()
+        other = self._election.other
+        decision = self._election.decide(self._me(), now_ns)
+        if by_hand and not self.leads:
+            decision = "lead"
+        if decision == "lead":
+            self._lead()
+        elif decision == "step back":
+            logger.warning("another station has taken over: starting again as its standby")
+            self._start_again(None)
+        elif decision == "follow":
+            self._election.role = "standby"
+        if self._election.role == "standby" and other is not None and other.role == "active":
+            self._follower.follow(Leader(other.station, other.run))
+        if self.leads:
+            self.copy.check()
+        self._say_beat()
+
+    def _lead(self) -> None:
+        """Everything that was fetched is stepped, then the take-over, then what the bus says."""
+        around, other = self._around, self._election.other
+        self._follower.stop_following()
+        around.log.wait_reached(self._follower.delivered, _STEP_S)
+        place = around.log.place
+        around.clock.not_before(place.t_ns)
+        term = max(around.log.term, other.term if other is not None else 0) + 1
+        header = self._stamper.header()
+        action = TakeOver(term, self._config.name, place.t_ns, place.events)
+        action_id = f"{header.boot_id:016x}-{header.seq}"
+        message = OperatorAction(header, action_id, STATION_ID, action)
+        t_ns = max(header.t_utc_ns, place.t_ns)
+        around.feed.deliver([(t_ns, OPERATOR.key(STATION_ID), encode(message))])
+        around.feed.lead()
+        around.log.wait_reached(place.then(t_ns), _STEP_S)
+        self._election.role = "active"
+        logger.warning("%s takes over (term %d)", self._config.name, term)
+        around.on_lead()
+
+    def _start_again(self, cut: Place | None) -> None:
+        self._ends = True
+        self._around.start_again(cut)
+
+    def _me(self) -> Me:
+        log, config = self._around.log, self._config
+        return Me(config.name, config.preferred, log.term, log.place, len(self._units))
+
+    def _say_beat(self) -> None:
+        """A station that leads and writes no log, though it should every second, says nothing."""
+        if self._ends or self._is_stuck():
+            return
+        me = self._me()
+        beat = Beat(
+            station=me.station,
+            protocol=PROTOCOL,
+            role=self._election.role,
+            term=me.term,
+            place=me.place,
+            preferred=me.preferred,
+            run=self._run_id,
+            units=me.units,
+            url=self._config.url,
+        )
+        self._around.bus.publish(key_of(me.station, "beat"), pack(beat), Qos.ALERT)
+
+    def _is_stuck(self) -> bool:
+        if self._election.role != "active":
+            return False
+        silent_ns = self._around.clock.monotonic_ns() - self._around.log.written_ns
+        return silent_ns > self._config.lease_s * NS_PER_S
+
+    def _problems(self) -> list[str]:
+        other, now_ns = self._election.other, self._around.clock.monotonic_ns()
+        found = [self._stranger] if self._stranger else []
+        if self.leads:
+            if not self.copy.is_there:
+                found.append("There is no standby: what is done now is on this station alone")
+            elif self.copy.is_behind:
+                found.append("The standby is behind: what is done now is on this station alone")
+        elif self._election.is_cut_off(self._me(), now_ns):
+            assert other is not None
+            found.append(
+                f"Neither {other.station} nor any unit is heard: this station is probably cut off. "
+                "It takes over as soon as it hears a unit, or by hand"
+            )
+        elif self.followed() is None:
+            found.append("No active station is heard: this one takes over in some seconds")
+        elif not self._follower.in_step:
+            found.append("This standby has not got everything of the active station yet")
+        if self._follower.problem:
+            found.append(self._follower.problem)
+        return found
+
+
+def _read(payload: bytes) -> Beat | None:
+    try:
+        return unpack(payload, Beat)
+    except WireError as error:
+        logger.warning("%s", error)
+        return None

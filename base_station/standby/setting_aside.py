@@ -1,0 +1,93 @@
+"""Cuts a log where two stations parted; what stood behind it is kept beside, never deleted.
+
+DATA/apart/TIME-COUNT/*.mcap    whole segments, of which what stands behind the place counts
+DATA/apart/TIME-COUNT.told/     the same, when the active station has taken what it lacked
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+from base_station.data_folder import DataFolder
+from base_station.standby.places import BEGINNING, Place, Record, events_behind, is_event
+from shared.errors import LogError
+from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
+
+APART = "apart"
+_TOLD = ".told"
+_ONE_SEGMENT = SegmentPolicy(segment_s=1e9, index_entries_max=2**31)
+
+
+def set_aside(folder: DataFolder, place: Place) -> None:
+    """Leave in the log what stands up to ``place``.  No station may be running on the folder.
+
+    Interrupted, it leaves a log that ends earlier, which the standby fetches again.
+    """
+    apart = folder.path / APART / f"{place.t_ns}-{place.events}"
+    apart.mkdir(parents=True, exist_ok=True)
+    scratch = folder.path / "log.part"
+    shutil.rmtree(scratch, ignore_errors=True)
+    try:
+        moved = list(_segments_at_or_behind(folder.log, place))
+        kept = _kept(moved, place)
+        writer = SegmentWriter(scratch, _ONE_SEGMENT)
+        for record in kept:
+            writer.write(*record)
+        writer.close()
+        if writer.problem:
+            raise LogError(writer.problem)
+        for path in reversed(moved):
+            path.rename(apart / path.name)
+        for path in segment_paths(scratch):
+            path.rename(folder.log / moved[0].name)
+        scratch.rmdir()
+    except OSError as error:
+        raise LogError(f"the log cannot be cut ({error}): free or mend the disk") from error
+    for path in folder.checkpoints.glob("*.checkpoint"):
+        if int(path.stem) >= place.t_ns:
+            path.unlink()
+
+
+def parts(data: Path) -> list[str]:
+    """Names of what was set aside, and the active station has not heard of, oldest first."""
+    folder = data / APART
+    if not folder.is_dir():
+        return []
+    names = (path.name for path in folder.iterdir() if path.is_dir())
+    return sorted(name for name in names if not name.endswith(_TOLD))
+
+
+def read_part(data: Path, name: str) -> Iterator[Record]:
+    """The events of one part, in order."""
+    t_ns, _, count = name.partition("-")
+    return events_behind(Place(int(t_ns), int(count)), read_log(data / APART / name))
+
+
+def mark_told(data: Path, name: str) -> None:
+    part = data / APART / name
+    number = 0
+    while (told := part.with_name(f"{name}{number or ''}{_TOLD}")).exists():
+        number += 1
+    part.rename(told)
+
+
+def _segments_at_or_behind(log: Path, place: Place) -> Iterator[Path]:
+    for path in segment_paths(log):
+        with SegmentReader(path) as reader:
+            if reader.info().end_ns >= place.t_ns:
+                yield path
+
+
+def _kept(paths: list[Path], place: Place) -> Iterator[Record]:
+    """What stands up to the place, with what was decided from it."""
+    here = BEGINNING
+    for path in paths:
+        with SegmentReader(path) as reader:
+            for t_ns, key, payload in reader.records(derived=True):
+                if is_event(key):
+                    here = here.then(t_ns)
+                    if here > place:
+                        return
+                yield t_ns, key, payload

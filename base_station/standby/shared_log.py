@@ -1,0 +1,148 @@
+"""The log of a station that another one follows, or that follows another: it knows its place."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from threading import Condition
+
+from base_station.standby.places import BEGINNING, Place, Record, is_event
+from base_station.surroundings import Log
+from shared.channels import OPERATOR
+from shared.clock import Clock
+from shared.codec import decode
+from shared.errors import WireError
+from shared.messages import STATION_ID, OperatorAction
+from shared.messages.station import TakeOver
+
+_RECENT_BYTES = 16 * 1024 * 1024
+_OPERATOR_KEY = OPERATOR.key(STATION_ID)
+
+
+class SharedLog:
+    """A ``Log`` that counts events and keeps the newest at hand.  From any thread."""
+
+    def __init__(self, log: Log, clock: Clock) -> None:
+        self._log = log
+        self._clock = clock
+        self.written_ns = clock.monotonic_ns()  # when something was last written
+        self._news = Condition()
+        self._first: Place = BEGINNING  # what is at hand begins behind it
+        self._places: list[Place] = []
+        self._recent: list[Record] = []
+        self._bytes = 0
+        self._durable = BEGINNING
+        self._take_overs: list[TakeOver] = []
+        self._log_id = 0
+
+    def begin(self, place: Place, log_id: int, take_overs: Sequence[TakeOver]) -> None:
+        """Before anything is written: what the log says so far."""
+        self._first = self._durable = place
+        self._log_id = log_id
+        self._take_overs = list(take_overs)
+
+    # ---- a log
+
+    @property
+    def problem(self) -> str:
+        return self._log.problem
+
+    @property
+    def is_behind(self) -> bool:
+        return self._log.is_behind
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        with self._news:  # in one order here and there
+            kept = self._log.write(t_ns, key, payload)
+            self.written_ns = self._clock.monotonic_ns()
+            if is_event(key):
+                self._note(t_ns, key, payload)
+        return kept
+
+    def flush(self) -> bool:
+        place = self.place
+        done = self._log.flush()
+        if done:
+            with self._news:
+                self._durable = max(self._durable, place)
+                self._news.notify_all()
+        return done
+
+    # ---- for two stations
+
+    @property
+    def place(self) -> Place:
+        """Behind the last event written."""
+        with self._news:
+            return self._place()
+
+    @property
+    def durable(self) -> Place:
+        """Up to here it is on the disk."""
+        return self._durable
+
+    @property
+    def log_id(self) -> int:
+        return self._log_id
+
+    @property
+    def take_overs(self) -> tuple[TakeOver, ...]:
+        with self._news:
+            return tuple(self._take_overs)
+
+    @property
+    def term(self) -> int:
+        with self._news:
+            return self._take_overs[-1].term if self._take_overs else 0
+
+    def wait_beyond(self, place: Place, timeout_s: float) -> bool:
+        """Until something is written behind ``place``."""
+        with self._news:
+            return self._news.wait_for(lambda: self._place() > place, timeout_s)
+
+    def wait_reached(self, place: Place, timeout_s: float) -> bool:
+        with self._news:
+            return self._news.wait_for(lambda: self._place() >= place, timeout_s)
+
+    def behind(self, place: Place, most_bytes: int) -> list[Record] | None:
+        """The events behind ``place``, as many as that; None: they are no longer at hand."""
+        with self._news:
+            if place < self._first:
+                return None
+            found: list[Record] = []
+            for record in self._recent[bisect_right(self._places, place) :]:
+                found.append(record)
+                most_bytes -= len(record[2])
+                if most_bytes <= 0:
+                    break
+            return found
+
+    def _place(self) -> Place:
+        return self._places[-1] if self._places else self._first
+
+    def _note(self, t_ns: int, key: str, payload: bytes) -> None:
+        self._log_id = self._log_id or t_ns
+        self._places.append(self._place().then(t_ns))
+        self._recent.append((t_ns, key, payload))
+        self._bytes += len(payload)
+        if self._bytes > 2 * _RECENT_BYTES:
+            self._forget_oldest()
+        if key == _OPERATOR_KEY:
+            self._note_action(payload)
+        self._news.notify_all()
+
+    def _forget_oldest(self) -> None:
+        gone = 0
+        while self._bytes > _RECENT_BYTES:
+            self._bytes -= len(self._recent[gone][2])
+            gone += 1
+        self._first = self._places[gone - 1]
+        del self._places[:gone], self._recent[:gone]
+
+    def _note_action(self, payload: bytes) -> None:
+        try:
+            message = decode(OPERATOR, payload)
+        except WireError:
+            return
+        if isinstance(message, OperatorAction) and isinstance(message.action, TakeOver):
+            self._take_overs.append(message.action)

@@ -1,0 +1,72 @@
+"""What two stations say to each other, and under which keys.
+
+Nobody but stations may say or hear anything under these keys (``base_station.pki.access``); they
+lie outside ``muster/v1``, so no subscription to that tree brings them.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeVar
+
+import msgspec
+
+from base_station.standby.places import Place, Record
+from shared.channels import STATIONS_ROOT
+from shared.errors import WireError
+from shared.messages.station import TakeOver
+
+PROTOCOL = 1  # stations that differ in it do not pair
+
+Role = Literal["waiting", "standby", "active"]
+W = TypeVar("W")
+
+
+class Beat(msgspec.Struct, frozen=True):
+    """Said several times a second: who is there, and as what."""
+
+    station: str
+    protocol: int
+    role: Role
+    term: int  # of the last take-over in its log
+    place: Place  # up to which it has the log
+    preferred: bool
+    run: int  # of its program; another number: it has started anew
+    units: int  # that it hears, by whichever router
+    url: str  # where consoles find it
+
+
+class Have(msgspec.Struct, frozen=True):
+    """A standby has this on its disk."""
+
+    run: int  # of the active station whose log it follows
+    place: Place
+
+
+class History(msgspec.Struct, frozen=True):
+    """Where a station's log comes from."""
+
+    log_id: int  # the time of its first event; 0: it is empty
+    take_overs: tuple[TakeOver, ...]
+    place: Place
+
+
+class Batch(msgspec.Struct, frozen=True):
+    """Events of the active station's log, in order."""
+
+    records: tuple[Record, ...]
+
+
+def key_of(station: str, what: str) -> str:
+    return f"{STATIONS_ROOT}/{station}/{what}"
+
+
+def pack(word: msgspec.Struct) -> bytes:
+    return msgspec.msgpack.encode(word)
+
+
+def unpack(payload: bytes, kind: type[W]) -> W:
+    """Raises WireError where the bytes are something else."""
+    try:
+        return msgspec.msgpack.decode(payload, type=kind)
+    except msgspec.MsgspecError as error:
+        raise WireError(f"another station says what makes no sense: {error}") from error
