@@ -94,7 +94,8 @@ class EskfConfig(NamedTuple):
     gyro_bias_per_k_std_radps: float = 1.7e-4  # 0.01 deg/s/K
     temperature_smoothing_s: float = 1.0
     temperature_step_k: float = 0.2  # from so much on the bias follows
-    gyro_bias_walk_radps2_rthz: float = 5e-5
+    gyro_bias_walk_radps2_rthz: float = 5e-5  # warming that nobody measures included
+    gyro_bias_walk_warm_radps2_rthz: float = 2e-5  # where the temperature is known
     accel_bias_walk_mps3_rthz: float = 7e-5
 
     # What clipping hides (clipping.py).

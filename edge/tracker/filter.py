@@ -133,12 +133,16 @@ def _predict(
     gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
         _doubt_clipped(ring, state, slot, dt_s)
+    warmth_known = math.isfinite(progress.temperature_degc)
+    bias_walk = (
+        config.gyro_bias_walk_warm_radps2_rthz
+        if warmth_known
+        else config.gyro_bias_walk_radps2_rthz
+    )
     for i in range(3):
         state.covariance[VELOCITY + i, VELOCITY + i] += dt_s * accel_noise
         state.covariance[ATTITUDE + i, ATTITUDE + i] += dt_s * gyro_noise
-        state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] += (
-            dt_s * config.gyro_bias_walk_radps2_rthz**2
-        )
+        state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] += dt_s * bias_walk**2
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] += (
             dt_s * config.accel_bias_walk_mps3_rthz**2
         )
