@@ -8,7 +8,7 @@ from typing import assert_never
 
 import msgspec
 
-from base_station import accountability, command_book
+from base_station import accountability, command_book, pin_book
 from base_station.alarms.book import AlarmBook
 from base_station.command_state import SentCommand
 from base_station.events import PinsTouched
@@ -120,9 +120,10 @@ class Actions:
 
     def _forget(self, state: StationState, action: ForgetWearers) -> list[UnitState]:
         unit = _registered(state, action.unit_id)
-        if unit.person is not None:
-            raise UserError(f"somebody wears {action.unit_id}; unassign that first")
+        if state.incident is not None and state.incident.closed_ns is None:
+            raise UserError("an incident is open; close it first")
         self._positioning.forget(unit)
+        pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
         command_book.forget(state, unit)
         return [unit]

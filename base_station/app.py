@@ -33,6 +33,7 @@ from base_station.downlink import Downlink
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
+from base_station.forgetting import ClosedLog, Forgetter, Forgotten
 from base_station.fusion import FUSERS
 from base_station.live_state import StationState
 from base_station.pipeline import Checkpoint, StationPipeline
@@ -59,10 +60,11 @@ from shared.channels import ROOT, clock_key
 from shared.clock import Clock, SystemClock
 from shared.envelope import Stamper
 from shared.errors import StoreError, UserError
-from shared.mcap_log import SegmentPolicy, SegmentReader, segment_paths
+from shared.mcap_log import SegmentPolicy, SegmentReader, recover_log, segment_paths
 from shared.messages import STATION_ID
 
 Announce = Callable[[str], None]
+_BY_COMMAND = "muster base forget"  # in the audit
 _log = logging.getLogger(__name__)
 
 
@@ -170,6 +172,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             gate=gate,
             settle=projection.flush,
             replays=Replays(_replay_starter(archive, roster, steady)),
+            forgetter=Forgetter(recorder, store, checkpoints, records, steady, drive.submit),
             clock=steady,
             secure=config.http.certificate is not None,
             standing=side.standing,
@@ -218,6 +221,7 @@ def run_replay_station(
             gate=ReadOnlyGate(),
             settle=lambda: None,
             replays=replays,
+            forgetter=None,
             clock=clock,
             secure=config.http.certificate is not None,
         )
@@ -240,6 +244,38 @@ def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
         with Store(folder.database) as store:
             Records(store, SystemClock()).forget_projections()
             return _project_log(store, folder.log, on_progress)
+    finally:
+        lock.close()
+
+
+def forget(
+    data: Path, what: str, confirm: Callable[[str], None], on_progress: Callable[[float], None]
+) -> Forgotten:
+    """Forget a person (id or name) or an incident (id) in a folder that no station runs on.
+
+    ``confirm`` gets what it will be about and may raise.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        recover_log(folder.log)
+        with Store(folder.database) as store:
+            clock = SystemClock()
+            records, roster = Records(store, clock), Roster(store, clock)
+            forgetter = Forgetter(
+                ClosedLog(folder.log), store, Checkpoints(folder.checkpoints), records, clock
+            )
+            incident = records.incident(what)
+            if incident is not None:
+                confirm(f"incident {incident.name!r} of {what}")
+                return forgetter.incident(_BY_COMMAND, what, on_progress)
+            named = [one.person_id for one in roster.people() if what in (one.name, one.person_id)]
+            if len(named) > 1:
+                raise UserError(f"{len(named)} people are called {what}: give one of {named}")
+            person_id = named[0] if named else what
+            confirm(f"person {what}")
+            return forgetter.person(_BY_COMMAND, person_id, on_progress)
     finally:
         lock.close()
 

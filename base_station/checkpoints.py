@@ -51,6 +51,12 @@ class Checkpoints:
         part.replace(path)
         self._thin_out()
 
+    def clear(self) -> None:
+        """Remove all of them: a restart steps the whole log."""
+        for path in self._folder.iterdir():
+            if path.suffix in {SUFFIX, ".part"}:
+                path.unlink(missing_ok=True)
+
     def latest(self, until_ns: int | None = None) -> SavedState | None:
         """The newest usable one, at or before ``until_ns`` where that is given."""
         for path in reversed(self._paths(until_ns)):

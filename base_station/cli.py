@@ -88,6 +88,31 @@ def rebuild(data: Path = Path("muster-data")) -> None:
     typer.echo(f"{count} log records projected")
 
 
+@app.command()
+def forget(
+    what: Annotated[str, typer.Argument(help="A person's id or full name, or an incident's id.")],
+    data: Path = Path("muster-data"),
+) -> None:
+    """Delete what is stored of a person or of everybody in an incident; the audit stays."""
+    from rich.progress import Progress  # noqa: PLC0415
+
+    from base_station import app as station  # noqa: PLC0415
+
+    with Progress(transient=True) as progress:
+        task = progress.add_task("writing the log anew", total=1.0, start=False)
+
+        def confirm(about: str) -> None:
+            progress.stop()
+            _ask_again(what, about)
+            progress.start()
+            progress.start_task(task)
+
+        done = station.forget(
+            data, what, confirm, lambda part: progress.update(task, completed=part)
+        )
+    typer.echo(f"forgotten: {done}")
+
+
 @users.command("list")
 def list_users(data: Path = Path("muster-data")) -> None:
     """Names and roles."""
@@ -186,6 +211,16 @@ def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
 def _announce(line: str) -> None:
     typer.echo(line)
     sys.stdout.flush()
+
+
+def _ask_again(what: str, about: str) -> None:
+    """It cannot be undone: what is meant is typed a second time, or comes on standard input."""
+    from shared.errors import UserError  # noqa: PLC0415
+
+    question = f"This deletes all that is stored of the {about}, for good. Type it again"
+    said = typer.prompt(question) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
+    if said != what:
+        raise UserError(f"{said!r} is not {what!r}; nothing was deleted")
 
 
 def _ask_password() -> str:

@@ -47,6 +47,13 @@ def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
             return _remove_beacon(state, action.beacon_id)
 
 
+def forget(state: StationState, unit_id: str) -> None:
+    """Every pin that says where this unit was."""
+    for pin_id in [one for one, pin in state.pins.items() if unit_id in units_of(pin)]:
+        del state.pins[pin_id]
+        state.pin_verdicts.pop(pin_id, None)
+
+
 def units_of(pin: Pin) -> set[str]:
     """Whose past a pin is about."""
     return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}

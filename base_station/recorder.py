@@ -13,6 +13,7 @@ from pathlib import Path
 from threading import Condition, Thread
 
 from shared.clock import NS_PER_S, Clock
+from shared.errors import LogError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     LogRecord,
@@ -81,6 +82,7 @@ class Recorder:
         self._flushes_asked = 0
         self._flushes_done = 0
         self._closing = False
+        self._ending = False  # with the next flush the segment is complete
         self._refused = 0
         self._failure = ""
         self._turned_ns = clock.monotonic_ns()
@@ -116,6 +118,23 @@ class Recorder:
                 lambda: self._flushes_done >= mine or bool(self._failure), _LONGEST_WAIT_S
             )
         return done and not self._failure and not self._writer.problem
+
+    def complete_segments(self) -> tuple[Path, ...]:
+        """End the open segment and go on in another; all that are complete, in order.
+
+        Raises LogError where the disk does not take what is left.
+        """
+        self._ending = True
+        if not self.flush():
+            raise LogError(f"the log cannot be brought to the disk: {self.problem}")
+        return tuple(segment.path for segment in self._segments)
+
+    def note_rewritten(self, path: Path) -> None:
+        """A complete segment has another content now."""
+        with SegmentReader(path) as reader:
+            info = reader.info()
+        with self._news:
+            self._segments = tuple(info if one.path == path else one for one in self._segments)
 
     @property
     def problem(self) -> str:
@@ -185,7 +204,7 @@ class Recorder:
                 self._writer.write(t_ns, key, payload)
                 last_t_ns, seen_ns = t_ns, now_ns
             if flushes > self._flushes_done:
-                self._writer.flush()
+                self._flush_or_end()
                 self._tell_flushed(flushes)
             else:  # log time goes on although nothing comes
                 self._writer.advance(last_t_ns + now_ns - seen_ns)
@@ -193,6 +212,13 @@ class Recorder:
                 looked_ns = now_ns
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
         self._writer.close()
+
+    def _flush_or_end(self) -> None:
+        ending, self._ending = self._ending, False
+        if ending:
+            self._writer.end_segment()
+        else:
+            self._writer.flush()
 
     def _take(self) -> tuple[list[LogRecord], int, bool]:
         """What came, up to which flush was asked for, and whether it is the last."""
@@ -210,7 +236,8 @@ class Recorder:
             self._news.notify_all()
 
     def _segment_closed(self, info: SegmentInfo) -> None:
-        self._segments = (*self._segments, info)
+        with self._news:
+            self._segments = (*self._segments, info)
         self._tell(info, "")
 
     def _tell(self, info: SegmentInfo, note: str) -> None:

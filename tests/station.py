@@ -20,6 +20,7 @@ from base_station.api.hub import Hub
 from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.api.wire import Delta, Snapshot
+from base_station.checkpoints import Checkpoints
 from base_station.db.accounts import Accounts, Role
 from base_station.db.models import Incident
 from base_station.db.projection import SqlProjection
@@ -27,6 +28,7 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import Output, Received, Refused
+from base_station.forgetting import ClosedLog, Forgetter
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline
 from base_station.sinks import ActionDone, Projection
@@ -125,6 +127,14 @@ class DeskStation:
             gate=self.drive,
             settle=self.projection.flush,
             replays=Replays(no_replays),
+            forgetter=Forgetter(
+                ClosedLog(folder / "log"),
+                self.store,
+                Checkpoints(folder / "checkpoints"),
+                Records(self.store, clock),
+                clock,
+                self.drive.submit,
+            ),
             clock=clock,
             secure=False,
         )

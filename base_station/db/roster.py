@@ -74,6 +74,10 @@ class Roster:
         self._photo_hashes[person_id] = photo_hash
         return person
 
+    def forget_photo(self, person_id: str) -> None:
+        """The person is in the tables no more."""
+        self._photo_hashes.pop(person_id, None)
+
     def photo(self, person_id: str) -> tuple[bytes, str] | None:
         """JPEG and its hash."""
         with self._store.read() as session:

@@ -23,6 +23,12 @@ from shared.errors import StoreError
 
 BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
 _BEGIN = "muster_begin"
+_PRAGMAS = (
+    "journal_mode = WAL",
+    "synchronous = FULL",
+    "foreign_keys = ON",
+    "secure_delete = ON",  # what is deleted is overwritten
+)
 
 
 class Store:
@@ -72,6 +78,18 @@ class Store:
             except SQLAlchemyError as error:
                 raise StoreError(f"the database did not take a change: {_cause(error)}") from error
 
+    def compact(self) -> None:
+        """Leave no byte in the file of what was deleted or replaced."""
+        with self._writing:
+            connection = self._engine.raw_connection()
+            try:
+                for statement in ("VACUUM", "PRAGMA wal_checkpoint(TRUNCATE)"):
+                    connection.cursor().execute(statement)
+            except sqlite3.Error as error:
+                raise StoreError(f"the database cannot be made compact: {error}") from error
+            finally:
+                connection.close()
+
     def close(self) -> None:
         self._engine.dispose()
 
@@ -108,7 +126,7 @@ def _engine(path: Path) -> Engine:
     def configure(connection: Any, _record: object) -> None:
         # The driver must not begin transactions by itself: ``begin`` below says how.
         connection.isolation_level = None
-        for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+        for pragma in _PRAGMAS:
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")

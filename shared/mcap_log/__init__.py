@@ -4,10 +4,11 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 
 from __future__ import annotations
 
-from shared.mcap_log.folder import segment_paths
+from shared.mcap_log.folder import segment_began_ns, segment_paths, segments_within
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
-from shared.mcap_log.schemas import is_derived, location_topic, log_topic
+from shared.mcap_log.rewriting import remove_torn, rewrite_segment
+from shared.mcap_log.schemas import is_derived, location_topic, log_topic, wire_type_of
 from shared.mcap_log.writing import (
     SegmentInfo,
     SegmentPolicy,
@@ -28,5 +29,10 @@ __all__ = [
     "log_topic",
     "read_log",
     "recover_log",
+    "remove_torn",
+    "rewrite_segment",
+    "segment_began_ns",
     "segment_paths",
+    "segments_within",
+    "wire_type_of",
 ]

@@ -11,8 +11,8 @@ from shared.mcap_log.folder import segment_paths
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment
 
-_TORN = ".torn"
-_MAKING = ".recovering"
+TORN = ".torn"
+MAKING = ".recovering"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +38,10 @@ def recover_log(folder: Path) -> list[Recovery]:
     segments can be read all the same.
     """
     try:
-        for half_made in folder.glob(f"*.mcap{_MAKING}"):
+        for half_made in folder.glob(f"*.mcap{MAKING}"):
             half_made.unlink()
-        for torn in folder.glob(f"*.mcap{_TORN}"):
-            clean = torn.with_name(torn.name.removesuffix(_TORN))
+        for torn in folder.glob(f"*.mcap{TORN}"):
+            clean = torn.with_name(torn.name.removesuffix(TORN))
             if not clean.exists():  # the last recovery came to an end between its two renamings
                 torn.rename(clean)
         return [
@@ -61,7 +61,7 @@ def _recover_segment(path: Path) -> Recovery | None:
     with SegmentReader(path) as reader:
         if reader.is_complete:
             return None
-        clean = RebuiltSegment(path.with_name(path.name + _MAKING))
+        clean = RebuiltSegment(path.with_name(path.name + MAKING))
         try:
             for chunk in reader.intact_chunks():
                 clean.add(chunk)
@@ -80,9 +80,9 @@ def _recover_segment(path: Path) -> Recovery | None:
 
 def _free_name(path: Path) -> Path:
     """Where the torn original goes; an earlier one of the same segment is kept too."""
-    torn = path.with_name(path.name + _TORN)
+    torn = path.with_name(path.name + TORN)
     number = 2
     while torn.exists():
-        torn = path.with_name(f"{path.name}{_TORN}{number}")
+        torn = path.with_name(f"{path.name}{TORN}{number}")
         number += 1
     return torn

@@ -215,6 +215,11 @@ class SegmentWriter:
             segment.file.close()
             self._on_closed(segment.info(SegmentState.CLOSED))
 
+    def end_segment(self) -> None:
+        """The next record begins another segment; what fails is in ``problem``."""
+        self._end_segment()
+        self.flush()
+
     def close(self) -> None:
         """End the log in order; what the disk does not take is left in ``problem``."""
         self._end_segment()

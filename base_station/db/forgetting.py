@@ -1,0 +1,109 @@
+"""Takes what is to be forgotten of people out of the tables; the audit keeps who did what."""
+
+from __future__ import annotations
+
+import re
+
+from sqlalchemy import ColumnElement, and_, delete, or_, select, update
+from sqlalchemy.orm import Session
+
+from base_station.db.models import (
+    Alarm,
+    AlarmLife,
+    Assignment,
+    AuditEntry,
+    Person,
+    TrackPoint,
+    UnitStart,
+)
+from base_station.erasure import Erasure, Wearing
+from base_station.live_state import FORGOTTEN
+from base_station.redaction import name_pattern
+
+# What these say is where somebody was.
+_PLACES = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
+
+
+def forget_in(session: Session, erasure: Erasure) -> None:
+    """Every statement may run again."""
+    for one in erasure.wearings:
+        session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
+        session.execute(delete(UnitStart).where(_within(UnitStart, one)))
+    _alarms(session, erasure)
+    _audit(session, erasure)
+    if erasure.person_id:
+        nobody = {"person_name": FORGOTTEN, "crew": "", "role": ""}
+        of_person = Assignment.person_id == erasure.person_id
+        session.execute(update(Assignment).where(of_person).values(nobody))
+        session.execute(delete(Person).where(Person.person_id == erasure.person_id))
+    else:
+        _cut_out(session, erasure)
+
+
+def known_names(session: Session, person_id: str) -> set[str]:
+    """How the tables call a person, now and before."""
+    names = set(session.scalars(select(Person.name).where(Person.person_id == person_id)))
+    names |= set(
+        session.scalars(select(Assignment.person_name).where(Assignment.person_id == person_id))
+    )
+    about = AuditEntry.action.in_(("AddedPerson", "ChangedPerson"))
+    mine = AuditEntry.detail.startswith(f"{person_id} ", autoescape=True)
+    details = session.scalars(select(AuditEntry.detail).where(about, mine))
+    names |= {detail.removeprefix(f"{person_id} ") for detail in details}
+    return names - {FORGOTTEN, ""}
+
+
+def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[bool]:
+    return and_(table.unit_id == one.unit_id, table.t_ns >= one.from_ns, table.t_ns < one.until_ns)
+
+
+def _alarms(session: Session, erasure: Erasure) -> None:
+    names = name_pattern(erasure.names)
+    for alarm in session.scalars(select(Alarm)):
+        covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
+        inside = erasure.from_ns <= alarm.raised_ns < erasure.until_ns
+        if covered or (inside and (names.search(alarm.text) or names.search(alarm.by))):
+            _rewrite_alarm(session, alarm, covered, names)
+
+
+def _rewrite_alarm(session: Session, alarm: Alarm, covered: bool, names: re.Pattern[str]) -> None:
+    changes = session.scalars(select(AlarmLife).where(AlarmLife.alarm_id == alarm.alarm_id)).all()
+    for row in (alarm, *changes):
+        row.text = FORGOTTEN if covered else names.sub(FORGOTTEN, row.text)
+        row.by = names.sub(FORGOTTEN, row.by)
+
+
+def _audit(session: Session, erasure: Erasure) -> None:
+    """Names and places go; that it was done, when and by whom stays."""
+    names = name_pattern(erasure.names)
+    units = name_pattern(tuple(erasure.unit_ids))
+    inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
+    for entry in session.scalars(select(AuditEntry).where(inside)):
+        entry.detail = names.sub(FORGOTTEN, entry.detail)
+        about = units.search(entry.detail) if entry.action in _PLACES else None
+        if about is not None:
+            entry.detail = FORGOTTEN
+
+
+def _cut_out(session: Session, erasure: Erasure) -> None:
+    """Nobody wears anything in the time of the incident."""
+    from_ns, until_ns = erasure.from_ns, erasure.until_ns
+    overlapping = select(Assignment).where(
+        Assignment.from_ns < until_ns,
+        or_(Assignment.until_ns.is_(None), Assignment.until_ns > from_ns),
+    )
+    for row in session.scalars(overlapping).all():
+        goes_on = row.until_ns is None or row.until_ns > until_ns
+        if goes_on and row.from_ns < from_ns:
+            columns = {
+                column.name: getattr(row, column.name) for column in Assignment.__table__.columns
+            }
+            after = {"action_id": f"{row.action_id}-after", "from_ns": until_ns}
+            session.add(Assignment(**(columns | after)))
+            row.until_ns = from_ns
+        elif goes_on:
+            row.from_ns = until_ns
+        elif row.from_ns < from_ns:
+            row.until_ns = from_ns
+        else:
+            session.delete(row)

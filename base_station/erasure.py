@@ -1,0 +1,147 @@
+"""What is to be forgotten of people: which units they wore when, and how they were called.
+
+Found in the log alone, which knows it even where the database was lost.  Pure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import msgspec
+
+from base_station.events import Received, event_of
+from shared.errors import UserError
+from shared.messages import Header, OperatorAction
+from shared.messages.station import Assign, CloseIncident, OpenIncident, Unassign
+
+FOREVER_NS = 2**63 - 1
+Record = tuple[int, str, bytes]  # station time, key, payload
+
+
+class Wearing(msgspec.Struct, frozen=True):
+    """Who wore this unit then is to be forgotten; station times, until is left out."""
+
+    unit_id: str
+    from_ns: int
+    until_ns: int
+
+
+class Erasure(msgspec.Struct, frozen=True):
+    """Of one person, or of everybody in one incident."""
+
+    wearings: tuple[Wearing, ...]
+    names: tuple[str, ...]  # longest first
+    person_id: str = ""  # empty: everybody in the incident
+    incident_id: str = ""
+    from_ns: int = 0  # when the names are to be forgotten
+    until_ns: int = FOREVER_NS
+    worn_before: tuple[str, ...] = ()  # the units that were worn when the incident was opened
+    worn_after: tuple[Assign, ...] = ()  # what was worn when it was closed
+
+    @property
+    def unit_ids(self) -> frozenset[str]:
+        return frozenset(one.unit_id for one in self.wearings)
+
+    def covers(self, unit_id: str, t_ns: int) -> bool:
+        """Whether what this unit said at that time is to be forgotten."""
+        return any(
+            one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
+        )
+
+
+def erasure_of_person(
+    records: Iterable[Record], person_id: str, name: str, until_ns: int
+) -> Erasure:
+    """``records``: the operators' actions of the whole log; ``name``: as in the roster."""
+    names = {name} if name else set()
+    since: dict[str, int] = {}  # by unit, while the person wears it
+    wearings: list[Wearing] = []
+
+    def hand_back(unit_id: str, t_ns: int) -> None:
+        if unit_id in since:
+            wearings.append(Wearing(unit_id, since.pop(unit_id), t_ns))
+
+    for t_ns, action in _actions(records):
+        if isinstance(action.action, Assign):
+            assign = action.action
+            mine = assign.person_id == person_id
+            for unit_id in list(since):
+                if (unit_id == assign.unit_id) != mine:  # worn by another, or changed for another
+                    hand_back(unit_id, t_ns)
+            if mine:
+                names.add(assign.person_name)
+                since.setdefault(assign.unit_id, t_ns)
+        elif isinstance(action.action, Unassign):
+            hand_back(action.action.unit_id, t_ns)
+    for unit_id in list(since):
+        hand_back(unit_id, until_ns)
+    return Erasure(tuple(wearings), _longest_first(names), person_id=person_id)
+
+
+def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
+    """``records``: the operators' actions of the whole log.  UserError where it is not there or
+    still open.
+    """
+    worn: dict[str, Assign] = {}  # by unit
+    before: tuple[str, ...] = ()
+    units: set[str] = set()
+    names: set[str] = set()
+    opened_ns = closed_ns = None
+    for t_ns, action in _actions(records):
+        done = action.action
+        if isinstance(done, OpenIncident) and done.incident_id == incident_id:
+            opened_ns = t_ns
+            before = tuple(sorted(worn))
+            units, names = set(worn), {one.person_name for one in worn.values()}
+        elif isinstance(done, CloseIncident) and done.incident_id == incident_id:
+            closed_ns = t_ns
+            break
+        elif isinstance(done, Assign):
+            for unit_id in [one for one in worn if worn[one].person_id == done.person_id]:
+                del worn[unit_id]
+            worn[done.unit_id] = done
+            units.add(done.unit_id)
+            names.add(done.person_name)
+        elif isinstance(done, Unassign):
+            worn.pop(done.unit_id, None)
+    if opened_ns is None:
+        raise UserError(f"the log knows no incident {incident_id}")
+    if closed_ns is None:
+        raise UserError(f"the incident {incident_id} is open; close it first")
+    return Erasure(
+        tuple(Wearing(unit_id, opened_ns, closed_ns) for unit_id in sorted(units)),
+        _longest_first(names),
+        incident_id=incident_id,
+        from_ns=opened_ns,
+        until_ns=closed_ns,
+        worn_before=before,
+        worn_after=tuple(worn.values()),
+    )
+
+
+class Clocks:
+    """When a message was captured, by the station's clock; the least delayed one tells."""
+
+    def __init__(self) -> None:
+        self._offsets_ns: dict[tuple[str, int], int] = {}
+
+    def note(self, t_ns: int, header: Header) -> None:
+        run = header.unit_id, header.boot_id
+        offset_ns = t_ns - header.t_mono_ns
+        self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
+
+    def captured_ns(self, header: Header) -> int | None:
+        """None of a run of which nothing came live."""
+        offset_ns = self._offsets_ns.get((header.unit_id, header.boot_id))
+        return None if offset_ns is None else header.t_mono_ns + offset_ns
+
+
+def _actions(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]]:
+    for record in records:
+        event = event_of(*record)
+        if isinstance(event, Received) and isinstance(event.message, OperatorAction):
+            yield event.t_ns, event.message
+
+
+def _longest_first(names: Iterable[str]) -> tuple[str, ...]:
+    return tuple(sorted((one for one in names if one.strip()), key=lambda one: (-len(one), one)))

@@ -1,0 +1,59 @@
+"""Makes a segment again with other records in place of some."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from shared.errors import LogError
+from shared.mcap_log.durable_file import sync_folder
+from shared.mcap_log.reading import LogRecord, SegmentReader
+from shared.mcap_log.recovery import MAKING, TORN
+from shared.mcap_log.writing import Segment, SegmentPolicy
+
+Replace = Callable[[LogRecord], Sequence[LogRecord]]
+
+
+def rewrite_segment(path: Path, replace: Replace) -> int:
+    """Give the number of records that changed; where none did, the file is left as it is.
+
+    The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
+    Nobody may be writing to it.  Raises LogError when the disk refuses.
+    """
+    making = path.with_name(path.name + MAKING)
+    try:
+        making.unlink(missing_ok=True)
+        changed = _rewritten(path, making, replace)
+        if changed:
+            making.rename(path)
+            sync_folder(path.parent)
+        else:
+            making.unlink(missing_ok=True)
+    except OSError as error:
+        raise LogError(f"{path} cannot be written ({error.strerror}): mend the disk") from error
+    return changed
+
+
+def remove_torn(folder: Path) -> int:
+    """Remove what recoveries kept of torn segments; the number of files."""
+    torn = list(folder.glob(f"*.mcap{TORN}*"))
+    for path in torn:
+        path.unlink()
+    return len(torn)
+
+
+def _rewritten(path: Path, making: Path, replace: Replace) -> int:
+    changed = 0
+    segment = Segment(making, SegmentPolicy().chunk_bytes)
+    try:
+        with SegmentReader(path) as reader:
+            for record in reader.records(derived=True):
+                instead = replace(record)
+                changed += len(instead) != 1 or instead[0] != record
+                for t_ns, key, payload in instead:
+                    segment.add(t_ns, key, payload)
+        segment.finish()
+        segment.file.sync()
+    finally:
+        segment.file.close()
+    return changed
