@@ -29,11 +29,12 @@ def segment_paths(folder: Path) -> list[Path]:
     )
 
 
-def _began_s(path: Path) -> int:
-    """The time of a segment's first record in whole seconds since 1970, from its name."""
+def segment_began_ns(path: Path) -> int:
+    """The log time of a segment's first record, in whole seconds, from its name."""
     match = _NAME.fullmatch(path.name)
     assert match is not None
-    return int(datetime.strptime(match.group(2), _TIME).replace(tzinfo=UTC).timestamp())
+    began = datetime.strptime(match.group(2), _TIME).replace(tzinfo=UTC)
+    return int(began.timestamp()) * NS_PER_S
 
 
 def segment_number(path: Path) -> int:
@@ -47,8 +48,10 @@ def segments_within(paths: list[Path], start_ns: int | None, end_ns: int | None)
     return [
         path
         for path, following in zip_longest(paths, paths[1:])
-        if (end_ns is None or _began_s(path) * NS_PER_S < end_ns)
+        if (end_ns is None or segment_began_ns(path) < end_ns)
         and (  # the second in which the following one began is the last of this one
-            start_ns is None or following is None or (_began_s(following) + 1) * NS_PER_S > start_ns
+            start_ns is None
+            or following is None
+            or segment_began_ns(following) + NS_PER_S > start_ns
         )
     ]
