@@ -19,7 +19,8 @@ export const HEALTH: HealthView = {
   log_bytes: 0,
   disk_free_bytes: 0,
   messages_per_s: 0,
-  insecure: false, standby: null,
+  insecure: false,
+  standby: null,
 };
 
 export const STATUS: StatusView = {
