@@ -69,10 +69,8 @@ class Actions:
                 effects = self._register(state, action)
             case SetStart():
                 effects = self._start(state, action)
-            case SetAnchor():
-                self._positioning.set_anchor(state, _anchor(action))
-            case SetPlan():
-                state.plan = read_plan(action.geojson)
+            case SetAnchor() | SetPlan():
+                self._site(state, action)
             case TakeOver():
                 state.take_overs.append(action)
             case DoneApart():
@@ -81,9 +79,17 @@ class Actions:
                 effects = self._command(state, by, action)
             case ForgetWearers():
                 effects = self._forget(state, action)
+            case OpenIncident():
+                effects = self._open(state, by, action)
             case _:
                 effects = self._reviewed(state, _people(state, by, action))
         return effects
+
+    def _site(self, state: StationState, action: SetAnchor | SetPlan) -> None:
+        if isinstance(action, SetAnchor):
+            self._positioning.set_anchor(state, _anchor(action))
+        else:
+            state.plan = read_plan(action.geojson)
 
     def _alarm(
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
@@ -118,11 +124,17 @@ class Actions:
         yield command
         yield from self._reviewed(state, touched)
 
+    def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterable[Effect]:
+        before = state.incident
+        units = list(_people(state, by, action))
+        self._positioning.begin_incident(state, 0 if before is None else before.closed_ns or 0)
+        return self._reviewed(state, units)
+
     def _forget(self, state: StationState, action: ForgetWearers) -> list[UnitState]:
         unit = _registered(state, action.unit_id)
         if state.incident is not None and state.incident.closed_ns is None:
             raise UserError("an incident is open; close it first")
-        self._positioning.forget(unit)
+        self._positioning.forget(state, unit)
         pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
         command_book.forget(state, unit)

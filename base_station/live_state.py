@@ -13,6 +13,7 @@ import msgspec
 
 from base_station.boot_state import BootState
 from base_station.command_state import SentCommand
+from base_station.fusion.path_history import PathHistory
 from base_station.pins import Beacon, Pin, PinVerdict
 from base_station.plan import Plan
 from shared.channels import GPS, NO_TRACKER, Channel
@@ -110,6 +111,7 @@ class UnitState(msgspec.Struct):
     fused: FusedPosition | None = None
     unplaced_since_ns: int | None = None  # the fused position is lost
     trail: list[TrailStep] = msgspec.field(default_factory=list)
+    plain_trail: list[TrailStep] | None = None  # as it would be without any pin; None: as it is
     mayday_ns: int | None = None  # when the button was last pressed
     mayday_cancelled_ns: int | None = None
     fall_ns: int | None = None
@@ -214,30 +216,59 @@ class UnitState(msgspec.Struct):
 
     def extend_trail(self, fused: FusedPosition) -> bool:
         """Add a point where the wearer moved, at most one a second; True where one was added."""
-        if self.trail:
-            last = self.trail[-1]
-            age_ns = fused.t_meas_ns - last.t_ns
-            moved_m2 = (fused.north_m - last.north_m) ** 2 + (fused.east_m - last.east_m) ** 2
-            moved = moved_m2 >= TRAIL_STEP_M**2 or fused.floor != last.floor
-            if age_ns < (TRAIL_STEP_NS if moved else TRAIL_REST_NS):
-                return False
-        self.trail.append(TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
-        if len(self.trail) > TRAIL_POINTS:
-            del self.trail[0]
-        return True
+        return _extend(self.trail, fused)
 
     def fill_trail(self, fused: FusedPosition) -> bool:
         """Put a point that came late in its place, where none is near in time."""
-        place = bisect_left(self.trail, fused.t_meas_ns, key=lambda step: step.t_ns)
-        near = self.trail[max(place - 1, 0) : place + 1]
-        if len(self.trail) >= TRAIL_POINTS and place == 0:
+        return _fill(self.trail, fused)
+
+    def extend_plain_trail(self, fused: FusedPosition) -> None:
+        """Where the wearer would be shown without any pin."""
+        if self.plain_trail is not None:
+            _extend(self.plain_trail, fused)
+
+    def fill_plain_trail(self, fused: FusedPosition) -> None:
+        if self.plain_trail is not None:
+            _fill(self.plain_trail, fused)
+
+    def show_solved_trail(self, trail: list[TrailStep]) -> None:
+        """The past was solved with pins; what would be without is kept beside it."""
+        if self.plain_trail is None:
+            self.plain_trail = self.trail
+        self.trail = trail
+
+    def show_plain_trail(self) -> bool:
+        """No pin is left that matters; True where that changes the trail."""
+        if self.plain_trail is None:
             return False
-        if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in near):
-            return False
-        step = TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor)
-        self.trail.insert(place, step)
-        del self.trail[:-TRAIL_POINTS]
+        self.trail, self.plain_trail = self.plain_trail, None
         return True
+
+
+def _extend(trail: list[TrailStep], fused: FusedPosition) -> bool:
+    if trail:
+        last = trail[-1]
+        age_ns = fused.t_meas_ns - last.t_ns
+        moved_m2 = (fused.north_m - last.north_m) ** 2 + (fused.east_m - last.east_m) ** 2
+        moved = moved_m2 >= TRAIL_STEP_M**2 or fused.floor != last.floor
+        if age_ns < (TRAIL_STEP_NS if moved else TRAIL_REST_NS):
+            return False
+    trail.append(TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
+    if len(trail) > TRAIL_POINTS:
+        del trail[0]
+    return True
+
+
+def _fill(trail: list[TrailStep], fused: FusedPosition) -> bool:
+    place = bisect_left(trail, fused.t_meas_ns, key=lambda step: step.t_ns)
+    near = trail[max(place - 1, 0) : place + 1]
+    if len(trail) >= TRAIL_POINTS and place == 0:
+        return False
+    if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in near):
+        return False
+    trail.insert(place, TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
+    del trail[:-TRAIL_POINTS]
+    return True
 
 
 class Alarm(msgspec.Struct):
@@ -285,6 +316,7 @@ class StationState(msgspec.Struct):
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
     start_set: bool = False  # somebody said where a unit began
+    paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)

@@ -14,6 +14,7 @@ from base_station.live_state import StationState
 from base_station.pins import WAITING, Beacon, Pin
 from shared.clock import NS_PER_S
 from shared.errors import UserError
+from shared.geo import rotate
 from shared.messages.pins import (
     PlaceBeacon,
     RemoveBeacon,
@@ -27,6 +28,7 @@ PinAction = SetPin | StartTogether | SetMeeting | RemovePin | PlaceBeacon | Remo
 MOST_PINS = 1000
 FURTHEST_M = 1000.0  # from the plan's outlines
 FUTURE_NS = NS_PER_S
+BEFORE_NS = 10 * NS_PER_S  # of a path's beginning: that is where it is pinned
 LARGEST_STD_M = 1000.0
 
 
@@ -54,6 +56,20 @@ def forget(state: StationState, unit_id: str) -> None:
         state.pin_verdicts.pop(pin_id, None)
 
 
+def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
+    """The incident frame was moved: turned clockwise, then shifted."""
+    for pin_id, pin in state.pins.items():
+        heading_rad = None if pin.heading_rad is None else pin.heading_rad + turn_rad
+        if pin.north_m is not None and pin.east_m is not None:
+            north, east = rotate(pin.north_m, pin.east_m, turn_rad)
+            state.pins[pin_id] = msgspec.structs.replace(
+                pin, north_m=north + north_m, east_m=east + east_m, heading_rad=heading_rad
+            )
+    for beacon in state.beacons.values():
+        north, east = rotate(beacon.north_m, beacon.east_m, turn_rad)
+        beacon.north_m, beacon.east_m = north + north_m, east + east_m
+
+
 def units_of(pin: Pin) -> set[str]:
     """Whose past a pin is about."""
     return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}
@@ -78,7 +94,7 @@ def _set(state: StationState, pins: Iterable[Pin]) -> set[str]:
 
 def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
     _check_unit(state, action.unit_id)
-    _check_time(state, action.t_ns)
+    _check_time(state, action.unit_id, action.t_ns)
     _check_place(state, action)
     return Pin(kind="place", set_ns=state.t_ns, by=by, **msgspec.structs.asdict(action))
 
@@ -88,7 +104,7 @@ def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin
         raise UserError("nobody to place: name at least one unit")
     for unit_id in action.unit_ids:
         _check_unit(state, unit_id)
-        _check_time(state, action.t_ns)
+        _check_time(state, unit_id, action.t_ns)
     _check_place(state, action)
     common = msgspec.structs.asdict(action)
     del common["pin_id"], common["unit_ids"]
@@ -103,7 +119,7 @@ def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
         raise UserError("a unit cannot meet itself: name two units")
     for unit_id in (action.unit_id, action.other_unit_id):
         _check_unit(state, unit_id)
-        _check_time(state, action.t_ns)
+        _check_time(state, unit_id, action.t_ns)
     _check_std(action.std_m)
     return Pin(
         pin_id=action.pin_id,
@@ -163,10 +179,18 @@ def _check_unit(state: StationState, unit_id: str) -> None:
         raise UserError(f"no registered unit {unit_id!r}; register it first")
 
 
-def _check_time(state: StationState, t_ns: int) -> None:
+def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
     if t_ns > state.t_ns + FUTURE_NS:
         ahead_s = (t_ns - state.t_ns) / NS_PER_S
         raise UserError(f"the pin's time is {ahead_s:.0f} s in the future; say when it was")
+    history = state.paths.get(unit_id)
+    begin_ns = None if history is None else history.begin_ns
+    if t_ns and begin_ns is not None and t_ns < begin_ns - BEFORE_NS:
+        early_s = (begin_ns - t_ns) / NS_PER_S
+        raise UserError(
+            f"the pin's time is {early_s:.0f} s before the path of {unit_id} begins; there is "
+            "nothing to pin there"
+        )
 
 
 def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeacon) -> None:

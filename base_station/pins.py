@@ -41,7 +41,7 @@ class PinVerdict(msgspec.Struct, frozen=True):
     text: str = ""  # for a person: what it conflicts with, or what it waits for
 
 
-class Beacon(msgspec.Struct, frozen=True):
+class Beacon(msgspec.Struct):
     """Something with an id that hangs at a known place: a radio beacon or a tag."""
 
     beacon_id: str

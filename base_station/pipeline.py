@@ -6,7 +6,7 @@ nobody anything, and numbers its own outputs, so that the same events give the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import assert_never
 
 import msgspec
@@ -28,8 +28,11 @@ from base_station.events import (
     UnitTouched,
 )
 from base_station.fusion.port import FuserKind
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, Fault, StationState, UnitState
 from base_station.positioning import Positioning
+from base_station.sightings import note_sighting
 from base_station.thermal import dose_of
 from shared.channels import Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S
@@ -48,6 +51,7 @@ from shared.messages import (
     OperatorAction,
     Position,
     RawImu,
+    Sighting,
     Status,
     Temperature,
     Tick,
@@ -68,6 +72,7 @@ class Checkpoint(msgspec.Struct, frozen=True):
     state: StationState
     fuser: str
     fusers: dict[str, bytes]
+    pinned: dict[str, bytes]
 
 
 class StationPipeline:
@@ -78,12 +83,16 @@ class StationPipeline:
         rules: Sequence[AlarmRule],
         fuser_kind: FuserKind,
         checkpoint: Checkpoint | None = None,
+        smoother: Smoother = SMOOTHERS[0],
     ) -> None:
         self._fuser_kind = fuser_kind
         usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
         self.state = checkpoint.state if checkpoint is not None else StationState()
         self._positioning = Positioning(
-            fuser_kind, checkpoint.fusers if checkpoint is not None and usable else {}
+            fuser_kind,
+            smoother,
+            checkpoint.fusers if checkpoint is not None and usable else {},
+            checkpoint.pinned if checkpoint is not None and usable else {},
         )
         self._book = AlarmBook(rules)
         self._actions = Actions(self._book, self._positioning)
@@ -91,7 +100,12 @@ class StationPipeline:
     def checkpoint(self) -> bytes:
         """To start again from here; ``read_checkpoint`` reads it."""
         return msgspec.msgpack.encode(
-            Checkpoint(self.state, self._fuser_kind.name, self._positioning.save())
+            Checkpoint(
+                self.state,
+                self._fuser_kind.name,
+                self._positioning.save(),
+                self._positioning.save_pinned(),
+            )
         )
 
     def step(self, event: StationEvent) -> list[Output]:
@@ -141,7 +155,7 @@ class StationPipeline:
             elif isinstance(effect, SentCommand):
                 outputs.append(CommandTouched(effect.command_id))
             elif isinstance(effect, PinsTouched):
-                outputs.append(effect)
+                outputs.extend(self._repin(effect.unit_ids))
             else:
                 outputs.append(UnitTouched(effect.unit_id))
         return outputs
@@ -164,7 +178,7 @@ class StationPipeline:
             return []
         unit.link = unit.link_at(state.t_ns)
         outputs: list[Output] = []
-        if news == "new" or isinstance(message, UnitEvent | CommandReply):
+        if news == "new" or isinstance(message, UnitEvent | CommandReply | Sighting):
             outputs.extend(self._observe(unit, message))
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
@@ -214,11 +228,14 @@ class StationPipeline:
             case Position():
                 _note_position(unit, message, t_ns)
                 if unit.registered:
-                    self._positioning.follow(unit, message)
-                    return self._fuse(unit)
+                    solved = self._positioning.follow(self.state, unit, message)
+                    return [*self._fuse(unit), *self._solved(solved, unit)]
             case GpsFix():
                 if unit.registered and self._positioning.fix(self.state, unit, message).accepted:
                     return self._fuse(unit)
+            case Sighting():
+                changed = note_sighting(self.state, unit, message)
+                return self._repin(changed) if changed else []
             case Status():
                 _note_status(unit, message, t_ns)
             case Temperature():
@@ -230,13 +247,32 @@ class StationPipeline:
             case UnitEvent():
                 _note_event(unit, message, t_ns)
             case CommandReply():
-                command = command_book.note_reply(self.state, unit, message)
-                if command is not None and message.state is CommandState.ACKNOWLEDGED:
-                    accountability.note_answer(self.state, unit, command, unit.name)
-                return _touched(command)
+                return self._note_reply(unit, message)
             case _:
                 pass  # raw samples and signs of life: that they came is all that counts here
         return []
+
+    def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
+        command = command_book.note_reply(self.state, unit, reply)
+        if command is not None and reply.state is CommandState.ACKNOWLEDGED:
+            accountability.note_answer(self.state, unit, command, unit.name)
+        return _touched(command)
+
+    def _repin(self, unit_ids: Iterable[str]) -> list[Output]:
+        """Pins of these units changed: their past is solved again."""
+        solved = self._positioning.solve_pins(self.state, unit_ids)
+        touched: list[Output] = [UnitTouched(unit_id) for unit_id in sorted(unit_ids)]
+        return [*self._solved(solved), PinsTouched(tuple(sorted(unit_ids))), *touched]
+
+    def _solved(self, unit_ids: Sequence[str], fused: UnitState | None = None) -> list[Output]:
+        """Their trails are others now, and so is where they are, but for who was just fused."""
+        outputs: list[Output] = []
+        for unit_id in unit_ids:
+            unit = self.state.units[unit_id]
+            if unit is not fused:
+                outputs.extend(self._fuse(unit))
+            outputs += [TrailFilled(unit_id), UnitTouched(unit_id), PinsTouched((unit_id,))]
+        return outputs
 
     def _fuse(self, unit: UnitState) -> list[Output]:
         fused = self._positioning.fused(self.state, unit, self._header())

@@ -6,13 +6,17 @@ the live state.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Start
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
+from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
+from base_station.pin_book import reframe_pins
+from base_station.pinned import PinnedUnits
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position
@@ -25,15 +29,52 @@ WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no 
 class Positioning:
     """The fusers of all units."""
 
-    def __init__(self, kind: FuserKind, saved: Mapping[str, bytes]) -> None:
+    def __init__(
+        self,
+        kind: FuserKind,
+        smoother: Smoother,
+        saved: Mapping[str, bytes],
+        saved_pinned: Mapping[str, bytes],
+    ) -> None:
         self._kind = kind
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
+        self._pinned = PinnedUnits(kind, smoother, saved_pinned)
 
     def save(self) -> dict[str, bytes]:
         return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
 
-    def follow(self, unit: UnitState, position: Position) -> None:
-        _count(unit, self._fuser(unit).advance(position))
+    def save_pinned(self) -> dict[str, bytes]:
+        return self._pinned.save()
+
+    def follow(self, state: StationState, unit: UnitState, position: Position) -> list[str]:
+        """Gives the units whose past was solved again because this one has gone on."""
+        reason = self._fuser(unit).advance(position)
+        _count(unit, reason)
+        history = state.paths.setdefault(unit.unit_id, PathHistory())
+        history.note(position, _station_ns(state, unit, position.header.t_mono_ns), bool(reason))
+        pinned = self._pinned.get(unit.unit_id)
+        if pinned is not None:
+            pinned.advance(position)
+        if self._pinned.is_due(unit.unit_id, history):
+            return self.solve_pins(state, [unit.unit_id])
+        return []
+
+    def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> list[str]:
+        """Pins of these units changed; gives those whose trail did."""
+        return self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+
+    def begin_incident(self, state: StationState, before_ns: int) -> None:
+        """What was known of paths and pins before that time no longer matters."""
+        for history in state.paths.values():
+            history.trim(before_ns)
+        old = [pin.pin_id for pin in state.pins.values() if pin.set_ns <= before_ns]
+        for pin_id in old:
+            del state.pins[pin_id]
+            state.pin_verdicts.pop(pin_id, None)
+        for unit in state.units.values():
+            if unit.plain_trail is not None:
+                unit.plain_trail.clear()
+        self.solve_pins(state, list(state.units))
 
     def fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
         verdict = self._judge_fix(state, unit, fix)
@@ -43,10 +84,14 @@ class Positioning:
     def start(self, state: StationState, unit: UnitState, start: Start) -> None:
         state.start_set = True
         self._fuser(unit).start(start)
+        state.paths.setdefault(unit.unit_id, PathHistory()).begin_with(start)
+        self.solve_pins(state, [unit.unit_id])
 
-    def forget(self, unit: UnitState) -> None:
+    def forget(self, state: StationState, unit: UnitState) -> None:
         """Where its wearers were, and what was learnt of their walk."""
         self._fusers.pop(unit.unit_id, None)
+        self._pinned.forget(unit)
+        state.paths.pop(unit.unit_id, None)
         unit.fused, unit.position = None, None
         unit.trail.clear()
 
@@ -65,12 +110,19 @@ class Positioning:
         estimate = self._fuser(unit).estimate()
         if estimate is None:
             return None
-        floor = None
-        if state.plan is not None:
-            held = unit.fused.floor if unit.fused is not None else None
-            floor = state.plan.floor_at(estimate.down_m, held)
-        unit.fused = _as_message(estimate, unit, self._kind.name, floor, header)
+        held = unit.fused.floor if unit.fused is not None else None
+        pinned = self._pinned.get(unit.unit_id)
+        if pinned is None:
+            unit.fused = plain = self._message(state, unit, estimate, held, header)
+        else:
+            trail = unit.plain_trail or []
+            was = trail[-1].floor if trail else held
+            plain = self._message(state, unit, estimate, was, header)
+            unit.extend_plain_trail(plain)
+            unit.fused = self._message(state, unit, pinned.estimate() or estimate, held, header)
         unit.extend_trail(unit.fused)
+        if unit.unit_id in state.paths:
+            state.paths[unit.unit_id].show(estimate, plain.floor)
         if unit.fused.quality is not Quality.LOST:
             unit.unplaced_since_ns = None
         elif unit.unplaced_since_ns is None:
@@ -86,10 +138,28 @@ class Positioning:
         boot = unit.path_boot
         if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
-        floor = state.plan.floor_at(estimate.down_m, None) if state.plan is not None else None
-        fused = _as_message(estimate, unit, self._kind.name, floor, header)
+        fused = self._message(state, unit, estimate, None, header)
+        unit.fill_plain_trail(fused)
+        pinned = self._pinned.get(unit.unit_id)
+        known = None if pinned is None else pinned.recall(position)
+        if known is not None:
+            fused = self._message(state, unit, known, None, header)
         unit.fill_trail(fused)
+        if unit.unit_id in state.paths:
+            state.paths[unit.unit_id].fill(position, fused.t_meas_ns)
         return fused
+
+    def _message(
+        self,
+        state: StationState,
+        unit: UnitState,
+        estimate: Estimate,
+        held: int | None,
+        header: Header,
+    ) -> FusedPosition:
+        """``held``: the floor it was on, where that is known."""
+        floor = state.plan.floor_at(estimate.down_m, held) if state.plan is not None else None
+        return _as_message(estimate, unit, self._kind.name, floor, header)
 
     def _fuser(self, unit: UnitState) -> Fuser:
         fuser = self._fusers.get(unit.unit_id)
@@ -108,7 +178,16 @@ class Positioning:
             return FixVerdict(False, "the site has no anchor")
         assert state.anchor is not None
         place = in_incident_frame(_in_clock_of_path(unit, fix), state.anchor)
-        return place if isinstance(place, FixVerdict) else self._fuser(unit).correct(place)
+        if isinstance(place, FixVerdict):
+            return place
+        verdict = self._fuser(unit).correct(place)
+        pinned = self._pinned.get(unit.unit_id)
+        if pinned is not None:
+            pinned.correct(place)
+        if verdict.accepted:
+            history = state.paths.setdefault(unit.unit_id, PathHistory())
+            history.fix(place, _station_ns(state, unit, place.t_mono_ns))
+        return verdict
 
     def _anchor_itself(self, state: StationState, unit: UnitState, fix: GpsFix) -> bool:
         """Where neither a plan nor a person gives the frame a meaning, the first good fix does,
@@ -127,10 +206,15 @@ class Positioning:
     def _reframe(
         self, state: StationState, turn_rad: float, shift_m: tuple[float, float, float]
     ) -> None:
-        for fuser in self._fusers.values():
+        for fuser in (*self._fusers.values(), *self._pinned.all()):
             fuser.reframe(turn_rad, *shift_m)
+        for history in state.paths.values():
+            history.reframe(turn_rad, *shift_m)
         for unit in state.units.values():
             unit.trail = [_moved(step, turn_rad, shift_m) for step in unit.trail]
+            if unit.plain_trail is not None:
+                unit.plain_trail = [_moved(step, turn_rad, shift_m) for step in unit.plain_trail]
+        reframe_pins(state, turn_rad, shift_m[0], shift_m[1])
 
 
 def _moved(step: TrailStep, turn_rad: float, shift_m: tuple[float, float, float]) -> TrailStep:
@@ -146,6 +230,12 @@ def _in_clock_of_path(unit: UnitState, fix: GpsFix) -> GpsFix:
     t_mono_ns = fix.header.t_mono_ns + ahead_ns
     header = msgspec.structs.replace(fix.header, t_mono_ns=t_mono_ns)
     return msgspec.structs.replace(fix, header=header)
+
+
+def _station_ns(state: StationState, unit: UnitState, t_mono_ns: int) -> int:
+    """The station's time of a time of the unit's path; not known yet: now."""
+    boot = unit.path_boot
+    return min(boot.station_ns(t_mono_ns), state.t_ns) if boot.is_placed else state.t_ns
 
 
 def _count(unit: UnitState, reason: str) -> None:

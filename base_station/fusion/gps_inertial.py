@@ -18,7 +18,7 @@ from base_station.fusion.height import HeightFilter, SavedHeight
 from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal
 from base_station.fusion.outliers import Outliers
 from base_station.fusion.path_memory import PathMemory
-from base_station.fusion.port import Estimate, FixVerdict, PlaceFix, Start
+from base_station.fusion.port import Estimate, FixVerdict, PlaceFix, Present, Start
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
 from shared.messages import Position
@@ -104,6 +104,13 @@ class GpsInertialFuser:
         memory.outliers.clear()
         if memory.last is not None:
             self._walk(memory.last.north_m, memory.last.east_m, memory.last.down_m, 0.0)
+
+    def settle(self, present: Present) -> None:
+        self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
+        if present.down_std_m is not None:
+            self._height.begin(self._height.down_m + present.down_shift_m, present.down_std_m)
+        self._memory.assumed = False
+        self._memory.outliers.clear()
 
     def advance(self, position: Position) -> str:
         memory, last = self._memory, self._memory.last

@@ -66,6 +66,23 @@ class HeadingBank:
         return HeadingBank(means, covariance.copy(), heading_rad + offsets_rad, weights)
 
     @staticmethod
+    def given(mean: Floats, covariance: Floats) -> HeadingBank:
+        """Of a normal distribution (6,), (6, 6) of ``[north, east, c, s, b_n, b_e]``: given the
+        heading, the rest of it is normal too.
+        """
+        own, turn = [0, 1, 4, 5], [2, 3]
+        c, s = float(mean[2]), float(mean[3])
+        across = np.array([-s, c]) / (c * c + s * s)
+        with_turn = covariance[np.ix_(own, turn)] @ across
+        turn_var = float(across @ covariance[np.ix_(turn, turn)] @ across)
+        offsets_rad = SPACING_RAD * np.arange(-HYPOTHESES // 2, HYPOTHESES // 2, dtype=np.float64)
+        means = mean[own] + np.outer(offsets_rad, with_turn / turn_var)
+        left = covariance[np.ix_(own, own)] - np.outer(with_turn, with_turn) / turn_var
+        weights = np.exp(-0.5 * offsets_rad**2 / turn_var)
+        turns_rad = math.atan2(s, c) + offsets_rad
+        return HeadingBank(means, left, turns_rad, weights / weights.sum())
+
+    @staticmethod
     def restore(saved: SavedBank) -> HeadingBank:
         return HeadingBank(
             np.array(saved.means),

@@ -109,6 +109,16 @@ class HorizontalFilter:
             + heading_std_rad**2 * np.outer(across, across)
         )
 
+    def settle(self, mean: Floats, covariance: Floats) -> None:
+        """Begin again with ``[north, east, c, s, w]``; of fixes' slow error nothing is known."""
+        self._bank = None
+        whole, spread = np.zeros(6), np.eye(6)
+        whole[:4], spread[:4, :4] = mean[:4], covariance[:4, :4]
+        self._filter.x, self._filter.P = whole.reshape(6, 1), spread
+        if self.turn()[1] > self._linear_rad:
+            self._bank = HeadingBank.given(whole, spread)
+            self._stale = True
+
     def forget_heading(self, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> None:
         own = np.ix_(_PLACE_AND_SLOW, _PLACE_AND_SLOW)
         now = self._current()

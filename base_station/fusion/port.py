@@ -37,6 +37,20 @@ class Start(msgspec.Struct, frozen=True):
     heading_std_rad: float  # pi and above: unknown
 
 
+class Present(msgspec.Struct, frozen=True):
+    """Where a unit is now, as everything that is known of its past tells it.
+
+    ``mean`` (5) and ``covariance`` (5, 5) of ``[north, east, c, s, w]``: ``c + i s`` is scale and
+    turn of the own frame (see ``horizontal``), ``w`` the rate in rad/s at which its heading drifts
+    while the wearer moves.
+    """
+
+    mean: list[float]
+    covariance: list[list[float]]
+    down_shift_m: float = 0.0  # what is known of the height beside what was estimated
+    down_std_m: float | None = None  # None: nothing
+
+
 class FixVerdict(msgspec.Struct, frozen=True):
     accepted: bool
     reason: str = ""  # why not, for a person; the same words for the same cause
@@ -65,6 +79,10 @@ class Fuser(Protocol):
 
     def start(self, start: Start) -> None:
         """Place the unit's own frame; whatever it walked since then is walked from there."""
+        ...
+
+    def settle(self, present: Present) -> None:
+        """Go on from here: what was believed of place, turn and drift is replaced."""
         ...
 
     def advance(self, position: Position) -> str:

@@ -1,0 +1,307 @@
+"""One unit's own path since an incident began, thinned, with the satellite fixes that were taken.
+
+Small enough to be kept in the pipeline's state for hours (60 bytes a point) and enough to solve
+the whole past again.  Times are the station's, so that a unit that starts again, or whose clock
+is judged better later, goes on in the same history.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.port import Estimate, PlaceFix, Start
+from shared.clock import NS_PER_S
+from shared.geo import rotate
+from shared.messages import Position
+from shared.quality import Quality
+
+STEP_M = 1.0
+CLIMB_M = 0.5
+STEP_NS = 10 * NS_PER_S
+MOVING_M = 0.05  # between two positions: the wearer moved
+FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
+FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
+CHUNK = 128
+MOST_POINTS = 14_400  # some four hours of walking; beyond it every other old one goes
+
+Records = NDArray[np.void]
+Floats = NDArray[np.float64]
+_POINT = np.dtype(
+    [
+        ("t_ns", "<i8"),
+        ("north_mm", "<i4"),  # own frame
+        ("east_mm", "<i4"),
+        ("std_mm", "<i4"),  # as the tracker states it
+        ("heading_e4", "<i4"),  # own frame, 1e-4 rad
+        ("moving_ms", "<i4"),  # since the point before
+        ("shown_north_mm", "<i4"),  # in the incident frame, as estimated then without any pin
+        ("shown_east_mm", "<i4"),
+        ("shown_std_mm", "<i4"),  # along the longer axis
+        ("shown_down_mm", "<i4"),
+        ("shown_down_std_mm", "<i4"),
+        ("floor", "<i4"),
+        ("flags", "<i4"),
+    ]
+)
+_FIX = np.dtype([("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("std_mm", "<i4")])
+NO_FLOOR = -(2**31)
+BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not join
+
+_SHOWN = (
+    "shown_north_mm", "shown_east_mm", "shown_std_mm", "shown_down_mm", "shown_down_std_mm",
+    "floor",
+)  # fmt: skip
+
+
+class Point(msgspec.Struct, array_like=True):
+    """One place of the own path; fields as in the packed rows."""
+
+    t_ns: int
+    north_mm: int
+    east_mm: int
+    std_mm: int
+    heading_e4: int
+    moving_ms: int = 0
+    shown_north_mm: int = 0
+    shown_east_mm: int = 0
+    shown_std_mm: int = 0
+    shown_down_mm: int = 0
+    shown_down_std_mm: int = 0
+    floor: int = NO_FLOOR
+    flags: int = 0
+
+
+@dataclass(frozen=True)
+class PathArrays:
+    """A history in SI units; every array has one row a point."""
+
+    t_ns: NDArray[np.int64]
+    own_m: Floats  # (n, 2) north, east in the unit's own frame
+    std_m: Floats  # (n,) as stated, growing
+    heading_rad: Floats  # (n,) own frame
+    moving_s: Floats  # (n,) since the point before
+    shown_m: Floats  # (n, 2) north, east in the incident frame, as estimated then without any pin
+    shown_std_m: Floats  # (n,) along the longer axis
+    down_m: Floats  # (n,) incident frame, as estimated then
+    down_std_m: Floats
+    floor: NDArray[np.int64]  # NO_FLOOR: not known
+    flags: NDArray[np.int64]
+    fix_t_ns: NDArray[np.int64]
+    fix_m: Floats  # (m, 2) north, east in the incident frame
+    fix_std_m: Floats  # (m,)
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+
+class PathHistory(msgspec.Struct):
+    """Points come in order; the newest one follows the wearer until it is far enough away."""
+
+    boot_id: int = 0
+    boot_begin_ns: int = 0
+    packed: bytes = b""
+    points: list[Point] = msgspec.field(default_factory=list)  # behind the packed ones
+    packed_fixes: bytes = b""
+    start: Start | None = None  # as a person said
+    start_ns: int = 0  # when the own frame began that it is about
+    count: int = 0  # points ever begun
+    solved_count: int = 0  # of these, when the path was last solved with its pins
+    awaited_ns: int | None = None  # a pin waits for the path to come to this time
+
+    @property
+    def begin_ns(self) -> int | None:
+        if self.packed:
+            return int(np.frombuffer(self.packed, _POINT, 1)["t_ns"][0])
+        return self.points[0].t_ns if self.points else None
+
+    @property
+    def end_ns(self) -> int | None:
+        return self.points[-1].t_ns if self.points else None
+
+    def note(self, position: Position, t_ns: int, jumped: bool) -> None:
+        """The own path went on; ``jumped``: not from where it was."""
+        boot_id = position.header.boot_id
+        restarted = bool(self.points) and boot_id != self.boot_id
+        if boot_id != self.boot_id:
+            self.boot_id, self.boot_begin_ns = boot_id, t_ns
+        point = _point_of(position, max(t_ns, self.points[-1].t_ns + 1) if self.points else t_ns)
+        point.flags |= RESTART * restarted | BREAK * (jumped and not restarted)
+        if not self.points:
+            self.points.append(point)
+            self.count += 1
+            return
+        tip = self.points[-1]
+        for name in _SHOWN:
+            setattr(point, name, getattr(tip, name))
+        if not point.flags & (BREAK | RESTART):
+            stepped_mm = abs(point.north_mm - tip.north_mm) + abs(point.east_mm - tip.east_mm)
+            point.moving_ms = (
+                (point.t_ns - tip.t_ns) // 1_000_000 if stepped_mm > MOVING_M * 1e3 else 0
+            )
+        if self._is_settled(tip, point):
+            self._append(point)
+        else:
+            point.moving_ms += tip.moving_ms
+            point.flags |= tip.flags
+            self.points[-1] = point
+
+    def fill(self, position: Position, t_ns: int) -> None:
+        """A position that came late, where none near it is known."""
+        row = bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
+        if not 0 < row < len(self.points) or position.header.boot_id != self.boot_id:
+            return
+        before, after = self.points[row - 1], self.points[row]
+        near_ns = min(t_ns - before.t_ns, after.t_ns - t_ns)
+        if near_ns < FILL_NS or after.flags & (BREAK | RESTART):
+            return
+        moving_ms = round(after.moving_ms * (t_ns - before.t_ns) / (after.t_ns - before.t_ns))
+        after.moving_ms -= moving_ms
+        late = _point_of(position, t_ns)
+        late.moving_ms = moving_ms
+        for name in _SHOWN:
+            setattr(late, name, getattr(before, name))
+        self.points.insert(row, late)
+
+    def show(self, estimate: Estimate, floor: int | None) -> None:
+        """What is estimated at the newest point without any pin."""
+        if self.points:
+            tip = self.points[-1]
+            tip.shown_north_mm, tip.shown_east_mm = _mm(estimate.north_m), _mm(estimate.east_m)
+            tip.shown_std_mm = _mm(max(estimate.std_north_m, estimate.std_east_m))
+            tip.shown_down_mm = _mm(estimate.down_m)
+            tip.shown_down_std_mm = _mm(estimate.std_down_m)
+            tip.floor = NO_FLOOR if floor is None else floor
+
+    def begin_with(self, start: Start) -> None:
+        """A person said where the own frame of the running boot begins."""
+        self.start, self.start_ns = start, self.boot_begin_ns
+
+    def trim(self, before_ns: int) -> None:
+        """What lies before that time is no longer wanted."""
+        rows = np.frombuffer(self.packed, _POINT)
+        self.packed = rows[rows["t_ns"] >= before_ns].tobytes()
+        self.points = [point for point in self.points if point.t_ns >= before_ns]
+        fixes = np.frombuffer(self.packed_fixes, _FIX)
+        self.packed_fixes = fixes[fixes["t_ns"] >= before_ns].tobytes()
+
+    def fix(self, fix: PlaceFix, t_ns: int) -> None:
+        """A fix that was taken; others close by tell the same."""
+        last = np.frombuffer(self.packed_fixes[-_FIX.itemsize :], _FIX)
+        if len(last) and abs(t_ns - int(last["t_ns"][0])) < FIX_NS:
+            return
+        row = (t_ns, _mm(fix.north_m), _mm(fix.east_m), _mm(fix.horizontal_std_m))
+        self.packed_fixes += np.array([row], _FIX).tobytes()
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
+        """The incident frame was moved: turned clockwise, then shifted."""
+        shift = turn_rad, north_m, east_m
+        fixes = np.frombuffer(self.packed_fixes, _FIX).copy()
+        _move(fixes, "north_mm", "east_mm", *shift)
+        self.packed_fixes = fixes.tobytes()
+        rows = self._rows()
+        _move(rows, "shown_north_mm", "shown_east_mm", *shift)
+        rows["shown_down_mm"] += _mm(down_m)
+        packed = len(self.packed) // _POINT.itemsize
+        self.packed = rows[:packed].tobytes()
+        self.points = [Point(*row) for row in rows[packed:].tolist()]
+        if self.start is not None:
+            moved = rotate(self.start.north_m, self.start.east_m, turn_rad)
+            self.start = msgspec.structs.replace(
+                self.start,
+                north_m=moved[0] + north_m,
+                east_m=moved[1] + east_m,
+                down_m=self.start.down_m + down_m,
+                heading_rad=self.start.heading_rad + turn_rad,
+            )
+
+    def arrays(self) -> PathArrays:
+        rows = self._rows()
+        fixes = np.frombuffer(self.packed_fixes, _FIX)
+        fixes = fixes[np.argsort(fixes["t_ns"], kind="stable")]
+        metres = {name: rows[f"{name}_mm"] * 1e-3 for name in ("north", "east", "std")}
+        return PathArrays(
+            t_ns=rows["t_ns"].astype(np.int64),
+            own_m=np.column_stack((metres["north"], metres["east"])),
+            std_m=metres["std"],
+            heading_rad=rows["heading_e4"] * 1e-4,
+            moving_s=rows["moving_ms"] * 1e-3,
+            shown_m=np.column_stack((rows["shown_north_mm"], rows["shown_east_mm"])) * 1e-3,
+            shown_std_m=rows["shown_std_mm"] * 1e-3,
+            down_m=rows["shown_down_mm"] * 1e-3,
+            down_std_m=rows["shown_down_std_mm"] * 1e-3,
+            floor=rows["floor"].astype(np.int64),
+            flags=rows["flags"].astype(np.int64),
+            fix_t_ns=fixes["t_ns"].astype(np.int64),
+            fix_m=np.column_stack((fixes["north_mm"], fixes["east_mm"])) * 1e-3,
+            fix_std_m=fixes["std_mm"] * 1e-3,
+        )
+
+    def _is_settled(self, tip: Point, point: Point) -> bool:
+        """Whether the tip stays where it is and a new one begins."""
+        if point.flags & (BREAK | RESTART) or (point.flags ^ tip.flags) & DOUBTFUL:
+            return True
+        if len(self.points) == 1:
+            return True
+        before = self.points[-2]
+        moved_mm = np.hypot(tip.north_mm - before.north_mm, tip.east_mm - before.east_mm)
+        return bool(
+            moved_mm >= STEP_M * 1e3
+            or abs(tip.shown_down_mm - before.shown_down_mm) >= CLIMB_M * 1e3
+            or tip.t_ns - before.t_ns >= STEP_NS
+        )
+
+    def _append(self, point: Point) -> None:
+        self.points.append(point)
+        self.count += 1
+        if len(self.points) >= 2 * CHUNK:
+            self.packed += _pack(self.points[:CHUNK]).tobytes()
+            del self.points[:CHUNK]
+            if len(self.packed) > MOST_POINTS * _POINT.itemsize:
+                self.packed = _thinned(np.frombuffer(self.packed, _POINT)).tobytes()
+
+    def _rows(self) -> Records:
+        return np.concatenate((np.frombuffer(self.packed, _POINT), _pack(self.points)))
+
+
+def _point_of(position: Position, t_ns: int) -> Point:
+    return Point(
+        t_ns=t_ns,
+        north_mm=_mm(position.north_m),
+        east_mm=_mm(position.east_m),
+        std_mm=_mm(max(position.std_north_m, position.std_east_m)),
+        heading_e4=round(position.heading_rad * 1e4),
+        flags=0 if position.quality is Quality.GOOD else DOUBTFUL,
+    )
+
+
+def _mm(metres: float) -> int:
+    return max(-(2**31) + 1, min(2**31 - 1, round(metres * 1e3)))
+
+
+def _pack(points: list[Point]) -> Records:
+    return np.array([msgspec.structs.astuple(point) for point in points], _POINT)
+
+
+def _move(
+    rows: Records, north: str, east: str, turn_rad: float, north_m: float, east_m: float
+) -> None:
+    cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
+    north_mm, east_mm = rows[north].astype(float), rows[east].astype(float)
+    rows[north] = np.rint(cosine * north_mm - sine * east_mm + north_m * 1e3)
+    rows[east] = np.rint(sine * north_mm + cosine * east_mm + east_m * 1e3)
+
+
+def _thinned(rows: Records) -> Records:
+    """Every other point of the older half goes, but not where the path does not join."""
+    half = len(rows) // 2
+    keep = np.ones(len(rows), bool)
+    keep[1:half:2] = (rows["flags"][1:half:2] & (BREAK | RESTART)) != 0
+    after = np.flatnonzero(~keep) + 1
+    thinned = rows.copy()
+    thinned["moving_ms"][after] += rows["moving_ms"][after - 1]
+    return thinned[keep]

@@ -1,0 +1,103 @@
+"""What a smoother is: from the own paths of units and all that is known of them, whole trails.
+
+A smoother is pure: the same evidence gives the same trails.  Places are in the incident frame,
+times are the station's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.path_history import PathArrays
+from base_station.fusion.port import Present, Start
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PlaceSeen:
+    """A unit was at a place; which way its wearer went then may be known too."""
+
+    name: str  # of the pin
+    t_ns: int
+    north_m: float
+    east_m: float
+    std_m: float  # each axis
+    down_m: float | None = None
+    heading_rad: float | None = None  # of travel, in the incident frame
+    heading_std_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class Tie:
+    """Two units were beside each other."""
+
+    name: str
+    unit_id: str
+    other_id: str
+    t_ns: int
+    std_m: float  # each axis
+
+
+@dataclass(frozen=True)
+class UnitEvidence:
+    """All that is known of one unit."""
+
+    path: PathArrays  # at least one point
+    start: Start | None  # of the own frame that begins at ``start_ns``
+    start_ns: int = 0
+    places: Sequence[PlaceSeen] = ()  # in the order in which they came to be known
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a place or a tie."""
+
+    used: bool
+    residual_m: float  # between it and the trail
+    sigmas: float  # the same in standard deviations of what was expected without it
+    against: str = ""  # the one it contradicts most; empty: the path and the fixes
+
+
+@dataclass(frozen=True)
+class SmoothedPath:
+    """One row a point of the evidence's path; NED metres."""
+
+    t_ns: NDArray[np.int64]
+    north_m: Floats
+    east_m: Floats
+    down_m: Floats
+    std_north_m: Floats
+    std_east_m: Floats
+    correlation_ne: Floats
+    std_down_m: Floats
+    turn_rad: Floats  # heading of the own frame's north
+    present: Present  # the last point
+
+
+@dataclass(frozen=True)
+class Solution:
+    paths: Mapping[str, SmoothedPath]  # by unit
+    verdicts: Mapping[str, Verdict]  # by name of the place or tie
+
+
+class Smoother(Protocol):
+    """A frozen dataclass whose fields are the smoother's parameters."""
+
+    @property
+    def name(self) -> str:
+        """Short, lower case, with hyphens."""
+        ...
+
+    def solve(self, units: Mapping[str, UnitEvidence], ties: Sequence[Tie] = ()) -> Solution:
+        """Trails from what is said, at once: while the incident runs."""
+        ...
+
+    def smooth(self, units: Mapping[str, UnitEvidence], ties: Sequence[Tie] = ()) -> Solution:
+        """As ``solve``, and with whatever the trails tell of each other: afterwards."""
+        ...

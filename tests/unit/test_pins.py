@@ -1,0 +1,346 @@
+"""Pins in the pipeline: what they correct, what removing them undoes, what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.events import PinsTouched, Refused, TrailFilled
+from base_station.live_state import TrailStep
+from base_station.pipeline import read_checkpoint
+from shared.messages import Sighting, SightingKind
+from shared.messages.pins import (
+    PlaceBeacon,
+    RemoveBeacon,
+    RemovePin,
+    SetMeeting,
+    SetPin,
+    StartTogether,
+)
+from shared.messages.station import CloseIncident, OpenIncident, SetPlan, SetStart
+from tests.live_station import make_pipeline
+from tests.station_script import START_NS, Script
+
+DRIFT_RADPS = 1e-3
+PLAN = (
+    b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
+    b'{"floor":1,"down_m":-3.2}]},"features":[{"type":"Feature","properties":{"kind":"outline"},'
+    b'"geometry":{"type":"Polygon","coordinates":[[[0,0],[40,0],[40,30],[0,30],[0,0]]]}}]}'
+)
+
+
+def truth(second: float) -> tuple[float, float]:
+    """A square of 40 m, walked at 1 m/s."""
+    side, along = divmod(second % 160.0, 40.0)
+    return [(along, 0.0), (40.0, along), (40.0 - along, 40.0), (0.0, 40.0 - along)][int(side)]
+
+
+class Walk:
+    """Units that walk the square together with paths that turn away, each in its own frame."""
+
+    def __init__(self, *unit_ids: str, turn_rad: float = 0.0) -> None:
+        self.script = Script()
+        self.script.register(*unit_ids)
+        self.script.act(OpenIncident("i1", "Mill Lane"))
+        self.units = unit_ids
+        self.turn_rad = turn_rad
+        self.own = dict.fromkeys(unit_ids, (0.0, 0.0))
+        self.walked_s = 0
+
+    def go(self, seconds: int, silent: tuple[str, ...] = ()) -> None:
+        for _ in range(seconds):
+            self.script.now_s += 1.0
+            self.walked_s += 1
+            before, after = truth(self.walked_s - 1), truth(self.walked_s)
+            north_m, east_m = after[0] - before[0], after[1] - before[1]
+            for number, unit_id in enumerate(self.units):
+                angle = self.turn_rad + (-1) ** number * DRIFT_RADPS * self.walked_s
+                cosine, sine = math.cos(angle), math.sin(angle)
+                own_north_m, own_east_m = self.own[unit_id]
+                self.own[unit_id] = (
+                    own_north_m + cosine * north_m - sine * east_m,
+                    own_east_m + sine * north_m + cosine * east_m,
+                )
+                if unit_id not in silent:
+                    self.script.position(
+                        unit_id, *self.own[unit_id], distance_m=float(self.walked_s)
+                    )
+
+    def start(self, unit_id: str, heading_std_rad: float = 0.05) -> None:
+        self.script.act(SetStart(unit_id, 0.0, 0.0, 0.0, -self.turn_rad, 0.5, heading_std_rad))
+
+    def pin(self, pin_id: str, unit_id: str, second: float, off_m: float = 0.0) -> list[object]:
+        north_m, east_m = truth(second)
+        t_ns = self.script.t_ns - round((self.walked_s - second) * 1e9)
+        pin = SetPin(pin_id, unit_id, t_ns, north_m + off_m, east_m, 0.5, None, None, 0.0, "")
+        return list(self.script.act(pin))
+
+    def trail(self, unit_id: str) -> list[TrailStep]:
+        return self.script.pipeline.state.units[unit_id].trail
+
+    def worst_m(self, unit_id: str, begin_s: float = 0.0, end_s: float = math.inf) -> float:
+        begin_ns = self.script.t_ns - self.walked_s * 10**9
+        apart = [0.0]
+        for step in self.trail(unit_id):
+            second = (step.t_ns - begin_ns) / 1e9
+            if begin_s <= second <= end_s:
+                apart.append(math.dist((step.north_m, step.east_m), truth(second)))
+        return max(apart)
+
+    def state(self, pin_id: str) -> str:
+        return self.script.pipeline.state.pin_verdicts[pin_id].state
+
+    def now_off_m(self, unit_id: str) -> float:
+        fused = self.script.pipeline.state.units[unit_id].fused
+        assert fused is not None
+        return math.dist((fused.north_m, fused.east_m), truth(self.walked_s))
+
+
+@pytest.fixture
+def walk() -> Walk:
+    walk = Walk("FF-01")
+    walk.start("FF-01")
+    walk.go(300)
+    return walk
+
+
+def test_a_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
+    before_m, now_m = walk.worst_m("FF-01"), walk.now_off_m("FF-01")
+    outputs = walk.pin("p1", "FF-01", 300.0)
+    assert walk.state("p1") == "used"
+    assert any(isinstance(output, TrailFilled) for output in outputs)
+    assert any(isinstance(output, PinsTouched) for output in outputs)
+    assert now_m > 5.0
+    assert walk.now_off_m("FF-01") < 1.0
+    assert walk.worst_m("FF-01") < 0.5 * before_m
+
+
+def test_what_comes_after_a_pin_goes_on_from_it(walk: Walk) -> None:
+    plain = Walk("FF-01")
+    plain.start("FF-01")
+    plain.go(400)
+    walk.pin("p1", "FF-01", 150.0)
+    walk.pin("p2", "FF-01", 300.0)
+    walk.go(100)
+    assert walk.now_off_m("FF-01") < 0.5 * plain.now_off_m("FF-01")
+
+
+def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
+    plain, pinned = Walk("FF-01"), Walk("FF-01")
+    for walk in (plain, pinned):
+        walk.start("FF-01")
+        walk.go(200)
+    pinned.pin("p1", "FF-01", 120.0)
+    for walk in (plain, pinned):
+        walk.go(150)
+    assert pinned.trail("FF-01") != plain.trail("FF-01")
+    pinned.script.act(RemovePin("p1"))
+    for walk in (plain, pinned):
+        walk.go(30)
+    mine, theirs = (walk.script.pipeline.state.units["FF-01"] for walk in (pinned, plain))
+    assert mine.fused is not None
+    assert theirs.fused is not None
+    assert mine.fused.north_m == theirs.fused.north_m
+    assert mine.fused.std_north_m == theirs.fused.std_north_m
+    assert mine.trail == theirs.trail
+    assert pinned.script.pipeline.state.pins == {}
+
+
+def test_removing_one_of_two_leaves_the_trail_of_the_other() -> None:
+    one, both = Walk("FF-01"), Walk("FF-01")
+    for walk in (one, both):
+        walk.start("FF-01")
+        walk.go(300)
+    both.pin("p2", "FF-01", 200.0, off_m=3.0)
+    both.pin("p1", "FF-01", 100.0)
+    both.script.act(RemovePin("p2"))
+    one.pin("p1", "FF-01", 100.0)
+    assert both.trail("FF-01") == one.trail("FF-01")
+    fused = [walk.script.pipeline.state.units["FF-01"].fused for walk in (one, both)]
+    assert fused[0] is not None
+    assert fused[1] is not None
+    assert fused[0].north_m == fused[1].north_m
+
+
+def test_a_pin_that_is_moved_is_the_same_as_one_set_there(walk: Walk) -> None:
+    other = Walk("FF-01")
+    other.start("FF-01")
+    other.go(300)
+    walk.pin("p1", "FF-01", 250.0, off_m=5.0)
+    walk.pin("p1", "FF-01", 250.0)
+    other.pin("p1", "FF-01", 250.0)
+    assert walk.trail("FF-01") == other.trail("FF-01")
+
+
+def test_a_pin_that_contradicts_everything_is_kept_and_nobody_moves(walk: Walk) -> None:
+    walk.pin("p1", "FF-01", 100.0)
+    before = walk.now_off_m("FF-01")
+    trail = walk.trail("FF-01")
+    walk.pin("bad", "FF-01", 200.0, off_m=200.0)
+    verdict = walk.script.pipeline.state.pin_verdicts["bad"]
+    assert verdict.state == "conflict"
+    assert "not used" in verdict.text
+    assert verdict.residual_m == pytest.approx(200.0, abs=10.0)
+    assert walk.state("p1") == "used"
+    assert walk.now_off_m("FF-01") == pytest.approx(before, abs=1e-9)
+    assert walk.trail("FF-01") == trail
+
+
+def test_most_pins_outvote_the_first(walk: Walk) -> None:
+    walk.pin("wrong", "FF-01", 150.0, off_m=80.0)
+    for number, second in enumerate((100.0, 200.0, 290.0)):
+        walk.pin(f"p{number}", "FF-01", second)
+    assert walk.state("wrong") == "conflict"
+    assert [walk.state(f"p{number}") for number in range(3)] == ["used"] * 3
+
+
+def test_pins_alone_tell_the_heading() -> None:
+    """Nobody said where the unit began or which way it looked."""
+    walk = Walk("FF-01", turn_rad=2.0)
+    walk.go(120)
+    for number, second in enumerate((5.0, 60.0, 115.0)):
+        walk.pin(f"p{number}", "FF-01", second)
+    assert walk.worst_m("FF-01") < 2.0
+    walk.go(40)
+    assert walk.now_off_m("FF-01") < 3.0
+
+
+def test_all_start_at_the_engine_looking_the_same_way() -> None:
+    walk = Walk("FF-01", "FF-02", turn_rad=1.0)
+    walk.go(100)
+    # What their own frames call heading 0 is the way they looked.
+    start = StartTogether("s", ("FF-01", "FF-02"), 0, 0.0, 0.0, 0.5, None, -1.0, 0.05, "engine 1")
+    walk.script.act(start)
+    assert set(walk.script.pipeline.state.pins) == {"s:FF-01", "s:FF-02"}
+    for unit_id in walk.units:
+        assert walk.worst_m(unit_id) < 6.0
+    walk.script.act(RemovePin("s"))
+    assert walk.script.pipeline.state.pins == {}
+
+
+def test_who_meets_somebody_well_known_is_well_known() -> None:
+    walk = Walk("FF-01", "FF-02")
+    for unit_id in walk.units:
+        walk.start(unit_id)
+    walk.go(300)
+    for number, second in enumerate((100.0, 200.0, 300.0)):
+        walk.pin(f"p{number}", "FF-02", second)
+    before_m = walk.now_off_m("FF-01")
+    walk.script.act(SetMeeting("m", "FF-01", "FF-02", walk.script.t_ns, 1.0, ""))
+    assert walk.state("m") == "used"
+    assert walk.now_off_m("FF-01") < 0.5 * before_m
+    walk.script.act(RemovePin("m"))
+    assert walk.now_off_m("FF-01") == before_m
+
+
+def sighting(walk: Walk, kind: SightingKind, seen_id: str, range_m: float | None = None) -> None:
+    header = walk.script.header("FF-01")
+    walk.script.say(Sighting(header, kind, seen_id, range_m))
+
+
+def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None:
+    sighting(walk, SightingKind.TAG, "door-3")
+    (pin,) = walk.script.pipeline.state.pins.values()
+    assert walk.state(pin.pin_id) == "waiting"
+    before_m = walk.now_off_m("FF-01")
+    north_m, east_m = truth(walk.walked_s)
+    walk.script.act(PlaceBeacon("door-3", "door", north_m, east_m, None, 0.2, 0.5))
+    assert walk.state(pin.pin_id) == "used"
+    assert walk.now_off_m("FF-01") < 1.0 < before_m
+    walk.script.act(RemoveBeacon("door-3"))
+    assert walk.state(pin.pin_id) == "waiting"
+    assert walk.now_off_m("FF-01") == before_m
+
+
+def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
+    for range_m in (8.0, 3.0, 1.0, 5.0):
+        sighting(walk, SightingKind.BEACON, "b1", range_m)
+        walk.go(2)
+    (pin,) = walk.script.pipeline.state.pins.values()
+    assert pin.std_m == pytest.approx(math.hypot(1.0 / math.sqrt(2.0), 0.5))
+    walk.go(30)
+    sighting(walk, SightingKind.BEACON, "b1", 4.0)
+    assert len(walk.script.pipeline.state.pins) == 2
+
+
+def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None:
+    sighting(walk, SightingKind.UNIT, "stranger")
+    sighting(walk, SightingKind.UNIT, "FF-01")
+    sighting(walk, SightingKind.UNKNOWN, "x")
+    sighting(walk, SightingKind.BEACON, "far", 5000.0)
+    assert walk.script.pipeline.state.pins == {}
+    assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 4
+
+
+def test_a_pin_waits_for_a_path_that_comes_late(walk: Walk) -> None:
+    walk.go(60, silent=("FF-01",))
+    walk.pin("p1", "FF-01", float(walk.walked_s))
+    assert walk.state("p1") == "waiting"
+    walk.go(1)
+    assert walk.state("p1") == "used"
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"unit_id": "nobody"}, "no registered unit"),
+        ({"north_m": math.nan}, "no pair of numbers"),
+        ({"std_m": 0.0}, "more than 0"),
+        ({"std_m": -1.0}, "more than 0"),
+        ({"std_m": math.nan}, "cannot be weighed"),
+        ({"t_ns": 10**10}, "before the path"),
+        ({"t_ns": 4 * 10**18}, "in the future"),
+        ({"floor": 7}, "no floor 7"),
+        ({"north_m": 9000.0}, "from the plan's building"),
+        ({"heading_rad": math.inf}, "heading needs"),
+        ({"heading_rad": 1.0, "heading_std_rad": 0.0}, "more than 0"),
+    ],
+)
+def test_bad_pins_are_refused_with_a_sentence(
+    walk: Walk, changes: dict[str, object], sentence: str
+) -> None:
+    walk.script.act(SetPlan(PLAN))
+    before = walk.trail("FF-01")
+    good = SetPin("p", "FF-01", walk.script.t_ns, 1.0, 1.0, 1.0, None, None, 0.3, "")
+    fields = {name: getattr(good, name) for name in good.__struct_fields__} | changes
+    outputs = walk.script.act(SetPin(**fields))
+    (refused,) = [output for output in outputs if isinstance(output, Refused)]
+    assert sentence in refused.reason
+    assert walk.script.pipeline.state.pins == {}
+    assert walk.trail("FF-01") == before
+
+
+def test_a_pin_on_a_floor_brings_the_height(walk: Walk) -> None:
+    walk.script.act(SetPlan(PLAN))
+    north_m, east_m = truth(300.0)
+    walk.script.act(SetPin("p", "FF-01", walk.script.t_ns, north_m, east_m, 1.0, 1, None, 0.0, ""))
+    fused = walk.script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    assert fused.floor == 1
+
+
+def test_a_checkpoint_knows_pins_and_goes_on_the_same(walk: Walk) -> None:
+    walk.pin("p1", "FF-01", 200.0)
+    saved = read_checkpoint(walk.script.pipeline.checkpoint())
+    assert saved is not None
+    again = make_pipeline(saved)
+    walk.go(150)
+    straight = walk.script.pipeline
+    walk.script.pipeline, records = again, walk.script.records
+    begin_ns = walk.script.t_ns - 150 * 10**9
+    for t_ns, key, payload in [record for record in records if record[0] > begin_ns]:
+        walk.script.now_s = (t_ns - START_NS) / 1e9
+        walk.script.record(key, payload)
+    assert again.state.units["FF-01"] == straight.state.units["FF-01"]
+    assert again.checkpoint() == straight.checkpoint()
+
+
+def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
+    walk.pin("p1", "FF-01", 200.0)
+    walk.script.act(CloseIncident("i1"))
+    walk.go(5)
+    walk.script.act(OpenIncident("i2", "Another"))
+    assert walk.script.pipeline.state.pins == {}
+    walk.go(5)
+    assert len(walk.trail("FF-01")) <= 6
