@@ -1,4 +1,4 @@
-"""The building's plan as far as the station itself uses it: storeys and outlines.
+"""The building's plan as far as the station itself uses it: storeys, outlines, walls and stairs.
 
 A plan is GeoJSON in site metres: coordinates are ``[east_m, north_m]`` in the incident frame,
 and the member ``muster`` says so and lists the storeys::
@@ -7,12 +7,14 @@ and the member ``muster`` says so and lists the storeys::
      "muster": {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0},
                                               {"floor": 1, "down_m": -3.2}]},
      "features": [{"type": "Feature", "properties": {"kind": "outline", "floor": 0}, ...}]}
+
+A feature of kind ``wall`` is a line that nobody walks through (doors are its gaps), one of kind
+``stairs`` the ring within which people change floor.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import msgspec
@@ -30,12 +32,24 @@ class Storey(msgspec.Struct, frozen=True):
     down_m: float
 
 
+class Wall(msgspec.Struct, frozen=True, array_like=True):
+    floor: int
+    line: Ring  # not closed
+
+
+class Stairs(msgspec.Struct, frozen=True, array_like=True):
+    floor: int
+    ring: Ring
+
+
 class Plan(msgspec.Struct, frozen=True):
     """What is left of a plan once it was understood; ``geojson`` is what the console draws."""
 
     geojson: bytes
     storeys: tuple[Storey, ...]  # by height, lowest first
     outlines: tuple[Ring, ...]
+    walls: tuple[Wall, ...] = ()
+    stairs: tuple[Stairs, ...] = ()
 
     def floor_at(self, down_m: float, floor: int | None) -> int | None:
         """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
@@ -50,8 +64,12 @@ class Plan(msgspec.Struct, frozen=True):
 
     def is_inside(self, north_m: float, east_m: float, inside: bool) -> bool:
         """Whether a place is in the building; near a wall, as it was before."""
-        signed_m = max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
-        return signed_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
+        depth_m = self.depth_m(north_m, east_m)
+        return depth_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
+
+    def depth_m(self, north_m: float, east_m: float) -> float:
+        """How far within the outer walls, negative outside of them; 0 where there is no outline."""
+        return max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
 
     def away_m(self, north_m: float, east_m: float) -> float:
         """How far from the nearest outline a place is; 0 within one or where there is none."""
@@ -79,24 +97,36 @@ def read_plan(geojson: bytes) -> Plan:
             (Storey(int(item["floor"]), float(item["down_m"])) for item in site.get("floors", ())),
             key=lambda storey: -storey.down_m,
         )
-        outlines = tuple(_outlines(document.get("features", ())))
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+        features = [(item["properties"], item) for item in document.get("features", ())]
+        outlines = tuple(_line(item) for about, item in features if about.get("kind") == "outline")
+        walls = tuple(
+            Wall(int(about.get("floor", 0)), _line(item))
+            for about, item in features
+            if about.get("kind") == "wall"
+        )
+        stairs = tuple(
+            Stairs(int(about.get("floor", 0)), _line(item))
+            for about, item in features
+            if about.get("kind") == "stairs"
+        )
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise UserError(
-            f"the plan has a storey or outline that cannot be read: {error!r}"
+            f"the plan has a storey, outline, wall or stairs that cannot be read: {error!r}"
         ) from error
     if not all(math.isfinite(storey.down_m) for storey in storeys):
         raise UserError("the plan has a storey whose height is no number")
-    return Plan(geojson, tuple(storeys), outlines)
+    lines = (*outlines, *(wall.line for wall in walls), *(one.ring for one in stairs))
+    if not all(math.isfinite(value) for line in lines for point in line for value in point):
+        raise UserError("the plan has a coordinate that is no number")
+    return Plan(geojson, tuple(storeys), outlines, walls, stairs)
 
 
-def _outlines(features: Iterable[Any]) -> Iterable[Ring]:
-    for feature in features:
-        if feature["properties"].get("kind") != "outline":
-            continue
-        geometry = feature["geometry"]
-        rings = geometry["coordinates"]
-        outer = rings if geometry["type"] == "LineString" else rings[0]
-        yield tuple((float(point[0]), float(point[1])) for point in outer)
+def _line(feature: Any) -> Ring:
+    """The points of a line, or of a polygon's outer ring."""
+    geometry = feature["geometry"]
+    points = geometry["coordinates"]
+    outer = points if geometry["type"] == "LineString" else points[0]
+    return tuple((float(point[0]), float(point[1])) for point in outer)
 
 
 def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:

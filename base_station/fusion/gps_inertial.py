@@ -1,7 +1,7 @@
 """GPS and inertial path in one filter, whatever the initial heading, with and without GPS.
 
-Plane and height are ``horizontal`` and ``height``; here is what a fix has to stand up to before
-they take it, and what is said of the result.
+Plane and height are ``walled`` and ``height``, the path's errors ``own_path``, and what a fix has
+to stand up to ``fix_trust``; here they are put together, and what is said of the result.
 """
 
 from __future__ import annotations
@@ -13,12 +13,16 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.floor_grid import FloorGrid
+from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight
-from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal
-from base_station.fusion.outliers import Outliers
+from base_station.fusion.horizontal import HorizontalFilter
+from base_station.fusion.own_path import OwnPath, Stretch, climb_var_m2
+from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import PathMemory
 from base_station.fusion.port import Estimate, FixVerdict, PlaceFix, Present, Start
+from base_station.fusion.walled import SavedWalled, WalledFilter
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
 from shared.messages import Position
@@ -28,28 +32,10 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class GpsInertial:
-    """Parameters, and the kind that makes fusers of them."""
+class GpsInertial(Parameters):
+    """The kind that makes these fusers."""
 
     name: str = "gps-inertial"
-    walk_m_per_sqrt_m: float = 0.06  # the own path's error by distance, each axis
-    turn_rad_per_sqrt_m: float = 0.004  # its heading's wander by distance
-    turn_part: float = 0.004  # and by turning
-    scale_std: float = 0.03
-    climb_part: float = 0.03  # height error by height climbed
-    climb_m_per_sqrt_m: float = 0.02  # and by distance
-    wander_part: float = 0.7  # of a fix's variance that wanders slowly
-    wander_s: float = 30.0  # with this correlation time
-    gate: float = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
-    linear_rad: float = 0.2  # heading standard deviation from which one hypothesis will do
-    aligned_rad: float = 0.35  # and from which the heading is called known
-    height_std_floor_m: float = 5.0
-    fastest_mps: float = 12.0
-    unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
-    restart_m: float = 5.0  # and how far while the unit starts again
-    stuck_fixes: int = 5
-    stuck_m: float = 8.0
-    distrust_most: int = 20
 
     def new(self) -> GpsInertialFuser:
         return GpsInertialFuser(self, _Memory())
@@ -61,20 +47,15 @@ class GpsInertial:
 class _Memory(msgspec.Struct):
     """Everything beside the filters, and what these were when written out."""
 
-    horizontal: SavedHorizontal | None = None
+    horizontal: SavedWalled | None = None
     height: SavedHeight | None = None
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
     last: Position | None = None
-    last_step_rad: float | None = None  # direction of the last increment, own frame
+    own: OwnPath = msgspec.field(default_factory=OwnPath)
     path: PathMemory = msgspec.field(default_factory=PathMemory)
     fix_t_mono_ns: int | None = None  # the newest accepted fix
     wander_t_mono_ns: int | None = None
-    last_fix_m: tuple[float, float] | None = None
-    same_fixes: int = 0
-    same_since_m: float = 0.0  # distance walked when the fix last changed
-    distrust: int = 0  # grows by one with a fix that does not fit, falls by two with one that does
-    outliers: Outliers = msgspec.field(default_factory=Outliers)
-    surprise: float = 1.0  # how much worse fixes fit than they claim
+    trust: FixTrust = msgspec.field(default_factory=FixTrust)
 
 
 class GpsInertialFuser:
@@ -83,7 +64,10 @@ class GpsInertialFuser:
     def __init__(self, kind: GpsInertial, memory: _Memory) -> None:
         self._kind = kind
         self._memory = memory
-        self._horizontal = HorizontalFilter(kind.scale_std, kind.linear_rad)
+        self._horizontal = WalledFilter(
+            HorizontalFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
+        )
+        self._horizontal.expect_drift(kind.drift_radps)
         self._height = HeightFilter(kind.wander_part)
         if memory.horizontal is not None and memory.height is not None:
             self._horizontal.load(memory.horizontal)
@@ -101,25 +85,27 @@ class GpsInertialFuser:
         )
         self._height.begin(start.down_m, start.std_m)
         memory.assumed = False
-        memory.outliers.clear()
+        memory.trust.outliers.clear()
         if memory.last is not None:
-            self._walk(memory.last.north_m, memory.last.east_m, memory.last.down_m, 0.0)
+            self._walk(OwnPath().stretch(self._kind, None, memory.last))
 
     def settle(self, present: Present) -> None:
         self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
         if present.down_std_m is not None:
             self._height.begin(self._height.down_m + present.down_shift_m, present.down_std_m)
         self._memory.assumed = False
-        self._memory.outliers.clear()
+        self._memory.trust.outliers.clear()
+
+    def consider(self, grid: FloorGrid | None) -> None:
+        self._horizontal.consider(grid)
 
     def advance(self, position: Position) -> str:
         memory, last = self._memory, self._memory.last
         t_ns = position.header.t_mono_ns
-        if last is None:
-            self._walk(position.north_m, position.east_m, position.down_m, 0.0)
-        elif last.header.boot_id != position.header.boot_id:
-            self._restart(position)
-        else:
+        if last is not None and last.header.boot_id != position.header.boot_id:
+            self._restart()
+            last = None
+        if last is not None:
             duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
             if duration_s < 0.0:
                 return "older than the last position"
@@ -128,18 +114,16 @@ class GpsInertialFuser:
                 self._horizontal.spread((self._kind.unguided_mps * duration_s) ** 2)
                 memory.last, memory.path = position, PathMemory()
                 return "the unit's own path jumped"
-            extra_m2 = max(0.0, _variance(position) - _variance(last))
-            doubtful = position.quality is not Quality.GOOD
-            self._walk(
-                north_m, east_m, position.down_m - last.down_m, extra_m2 if doubtful else 0.0
-            )
+        self._walk(memory.own.stretch(self._kind, last, position))
+        self._horizontal.expect_drift(memory.own.drift_radps(self._kind, position))
         memory.last = position
         memory.path.note(t_ns, position.north_m, position.east_m)
         return ""
 
     def correct(self, fix: PlaceFix) -> FixVerdict:
         memory = self._memory
-        if self._is_stuck(fix):
+        walked_m = memory.last.distance_m if memory.last else 0.0
+        if memory.trust.is_stuck(self._kind, fix, walked_m):
             return FixVerdict(False, "the receiver is stuck")
         then = memory.path.at(fix.t_mono_ns)
         if isinstance(then, str):
@@ -149,17 +133,14 @@ class GpsInertialFuser:
             self._horizontal.forget_place()
             self._horizontal.forget_heading()
         self._let_wander(fix.t_mono_ns)
-        sighting = self._sighting(fix, then)
-        distance2 = self._horizontal.distance2(sighting)
+        distance2 = self._horizontal.distance2(self._sighting(fix, then, lasts=1.0))
         if distance2 > self._kind.gate:
             return self._turned_away(fix, then)
-        if memory.distrust > 0:
-            memory.distrust -= 2
+        if not memory.trust.fits():
             return FixVerdict(False, "fits, but the receiver was wrong just before")
-        memory.outliers.clear()
-        surprise = memory.surprise * (1.0 + 0.05 * (distance2 / 2.0 - 1.0))
-        memory.surprise = min(4.0, max(1.0, surprise))
-        self._horizontal.update(sighting)
+        if self._unguided_m2(fix.t_mono_ns) == 0.0:
+            memory.trust.compare(distance2)
+        self._horizontal.update(self._sighting(fix, then, self._kind.doubt_lasts))
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
             self._height.correct(fix.down_m, std_m)
@@ -169,7 +150,7 @@ class GpsInertialFuser:
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         self._horizontal.reframe(turn_rad, north_m, east_m)
         self._height.climb(down_m, 0.0)
-        self._memory.outliers.clear()
+        self._memory.trust.outliers.clear()
 
     def estimate(self) -> Estimate | None:
         memory = self._memory
@@ -177,7 +158,7 @@ class GpsInertialFuser:
             return None
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        place = self._horizontal.place_m, self._horizontal.place_var_m2
+        place = self._horizontal.place_before(0.0, 0.0)
         height = self._height.down_m, self._height.variance_m2
         return self._estimate_at(t_mono_ns, last.heading_rad if last else 0.0, place, height)
 
@@ -195,7 +176,7 @@ class GpsInertialFuser:
         climbed_m = last.down_m - position.down_m
         place_var_m2 = place_var_m2 + np.eye(2) * kind.walk_m_per_sqrt_m**2 * walked_m
         height_m = self._height.down_m - climbed_m
-        height_var_m2 = self._height.variance_m2 + self._climb_var_m2(climbed_m, walked_m)
+        height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
         return self._estimate_at(
             position.header.t_mono_ns,
             position.heading_rad,
@@ -236,47 +217,42 @@ class GpsInertialFuser:
             since_gps_s=since_s,
         )
 
-    def _walk(self, north_m: float, east_m: float, down_m: float, extra_m2: float) -> None:
-        """Errors grow with the way and its turns, not with time."""
+    def _walk(self, stretch: Stretch) -> None:
         kind = self._kind
-        length_m = math.hypot(north_m, east_m)
-        turn_var = kind.turn_rad_per_sqrt_m**2 * length_m
-        turn_var += (kind.turn_part * self._turned(north_m, east_m, length_m)) ** 2
-        place_var_m2 = kind.walk_m_per_sqrt_m**2 * length_m + extra_m2
-        self._horizontal.walk(north_m, east_m, place_var_m2, turn_var)
-        self._height.climb(down_m, self._climb_var_m2(down_m, length_m))
+        path = (stretch.north_m, stretch.east_m, stretch.moving_s, -stretch.down_m)
+        noise = kind.walk_m_per_sqrt_m**2, kind.turn_rad_per_sqrt_m**2
+        self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
+        self._height.climb(stretch.down_m, climb_var_m2(kind, stretch.down_m, stretch.length_m))
 
-    def _climb_var_m2(self, climbed_m: float, walked_m: float) -> float:
-        kind = self._kind
-        return kind.climb_part**2 * abs(climbed_m) + kind.climb_m_per_sqrt_m**2 * walked_m
-
-    def _turned(self, north_m: float, east_m: float, length_m: float) -> float:
-        if length_m < 0.1:
-            return 0.0
-        step_rad = math.atan2(east_m, north_m)
-        last_rad = self._memory.last_step_rad
-        self._memory.last_step_rad = step_rad
-        return 0.0 if last_rad is None else abs(wrap_pi(step_rad - last_rad))
-
-    def _restart(self, position: Position) -> None:
+    def _restart(self) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown."""
         self._horizontal.spread(self._kind.restart_m**2)
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
-        self._walk(position.north_m, position.east_m, position.down_m, 0.0)
 
-    def _sighting(self, fix: PlaceFix, then: tuple[float, float]) -> Sighting:
-        memory, last, part = self._memory, self._memory.last, self._kind.wander_part
+    def _sighting(self, fix: PlaceFix, then: tuple[float, float], lasts: float) -> Sighting:
+        """``lasts``: so many fixes in a row have about the same doubtful error."""
+        last, trust, part = self._memory.last, self._memory.trust, self._kind.wander_part
+        std_m = trust.best_m(fix)
+        doubt_m2 = lasts * trust.doubt_m2(fix, self._walls_std_m()) + self._unguided_m2(
+            fix.t_mono_ns
+        )
         own_m = (0.0, 0.0) if last is None else (last.north_m, last.east_m)
-        white_m2 = memory.surprise * fix.horizontal_std_m**2 * (1.0 - part)
         return Sighting(
             north_m=fix.north_m,
             east_m=fix.east_m,
             since_north_m=own_m[0] - then[0],
             since_east_m=own_m[1] - then[1],
-            slow_m=fix.horizontal_std_m * math.sqrt(part),
-            white_m2=white_m2 + self._unguided_m2(fix.t_mono_ns),
+            slow_m=std_m * math.sqrt(part),
+            white_m2=std_m**2 * (1.0 - part) + doubt_m2,
         )
+
+    def _walls_std_m(self) -> float:
+        """What the building does to a fix taken beside or in it."""
+        outside_m, kind = self._horizontal.outside_m(), self._kind
+        if outside_m < -1.0:
+            return kind.inside_std_m
+        return kind.wall_std_m * math.exp(-max(outside_m, 0.0) / kind.wall_reach_m)
 
     def _unguided_m2(self, t_mono_ns: int) -> float:
         """How far a wearer may have got since the last word of the own path."""
@@ -296,27 +272,11 @@ class GpsInertialFuser:
         self._horizontal.fade(keep)
         self._height.fade(keep)
 
-    def _is_stuck(self, fix: PlaceFix) -> bool:
-        """The very same place again and again while the wearer walks on."""
-        memory, kind = self._memory, self._kind
-        walked_m = memory.last.distance_m if memory.last else 0.0
-        place = (fix.north_m, fix.east_m)
-        if memory.last_fix_m != place:
-            memory.last_fix_m, memory.same_fixes, memory.same_since_m = place, 1, walked_m
-            return False
-        memory.same_fixes += 1
-        walked_since_m = walked_m - memory.same_since_m
-        return memory.same_fixes >= kind.stuck_fixes and walked_since_m > kind.stuck_m
-
     def _turned_away(self, fix: PlaceFix, then: tuple[float, float]) -> FixVerdict:
         """Outside the gate; but fixes that draw the shape of the walk are right after all."""
-        memory = self._memory
-        memory.distrust = min(memory.distrust + 1, self._kind.distrust_most)
-        shape = memory.outliers.add((fix.north_m, fix.east_m), then)
+        shape = self._memory.trust.misses(self._kind, fix, then)
         if shape is None:
             return FixVerdict(False, "does not fit the path walked")
-        memory.outliers.clear()
-        memory.distrust = 0
         held_rad, held_std_rad = self._horizontal.turn()
         shape_std_rad = 2.0 * fix.horizontal_std_m / shape.spread_m
         apart_rad = abs(wrap_pi(shape.turn_rad - held_rad))
@@ -338,7 +298,3 @@ class GpsInertialFuser:
             (tracker is Quality.DEGRADED, Quality.DEGRADED, "the unit's tracker is unsure"),
         )
         return next(((quality, why) for holds, quality, why in causes if holds), (Quality.GOOD, ""))
-
-
-def _variance(position: Position) -> float:
-    return max(position.std_north_m, position.std_east_m) ** 2

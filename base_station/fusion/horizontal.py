@@ -7,10 +7,11 @@ unit's own path moves the wearer by
 
     north += c dn - s de        east += s dn + c de
 
-which is *linear* in the state ``[north, east, c, s, b_n, b_e]``.  ``b`` is the slowly wandering
-part of the fixes' error in units of their stated standard deviation (first-order Gauss-Markov),
-so that a minute of fixes is not believed to average it away.  A fix that comes late is an
-observation of the present state less the path walked since.
+which is *linear* in ``[north, east, c, s, b_n, b_e, w]``.  ``b`` is the slowly wandering part of
+the fixes' error in units of their stated standard deviation (first-order Gauss-Markov), so that
+a minute of fixes is not believed to average it away.  ``w`` is the rate at which the unit's own
+heading drifts while the wearer moves: what fixes tell of it outside goes on being right inside.
+A fix that comes late is an observation of the present state less the path walked since.
 """
 
 from __future__ import annotations
@@ -27,68 +28,82 @@ from base_station.fusion.heading_bank import HeadingBank, SavedBank, Sighting
 Floats = NDArray[np.float64]
 
 _UNKNOWN_VAR_M2 = 1e8
+REOPEN = 1.5  # times the width at which one hypothesis was enough
+_STATES = 7
 _PLACE_AND_SLOW = [0, 1, 4, 5]
+_DRIFT = 6
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
     x: list[float]
     covariance: list[list[float]]
     bank: SavedBank | None
+    drift_std_radps: float
 
 
 class HorizontalFilter:
     """Begins at the origin with the own frame's heading taken for the incident frame's."""
 
-    def __init__(self, scale_std: float, linear_rad: float) -> None:
-        """``linear_rad``: heading standard deviation from which one hypothesis will do."""
+    def __init__(self, scale_std: float, linear_rad: float, wander_radps: float) -> None:
+        """``linear_rad``: heading standard deviation from which one hypothesis will do;
+        ``wander_radps``: of the drift rate in a minute of walking.
+        """
         self._scale_std = scale_std
         self._linear_rad = linear_rad
-        self._filter = KalmanFilter(dim_x=6, dim_z=2)
-        self._filter.x = np.array([[0.0], [0.0], [1.0], [0.0], [0.0], [0.0]])
-        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0])
+        self._wander_var = wander_radps**2 / 60.0
+        self._drift_std_radps = 0.0
+        self._filter = KalmanFilter(dim_x=_STATES, dim_z=2)
+        self._filter.x = np.zeros((_STATES, 1))
+        self._filter.x[2, 0] = 1.0
+        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0])
         self._bank: HeadingBank | None = None  # where it is, the filter mirrors its moments
         self._stale = False  # and is behind it
 
     def save(self) -> SavedHorizontal:
         bank = None if self._bank is None else self._bank.save()
         now = self._current()
-        return SavedHorizontal(now.x.ravel().tolist(), now.P.tolist(), bank)
+        return SavedHorizontal(now.x.ravel().tolist(), now.P.tolist(), bank, self._drift_std_radps)
 
     def load(self, saved: SavedHorizontal) -> None:
-        self._filter.x = np.array(saved.x).reshape(6, 1)
+        self._filter.x = np.array(saved.x).reshape(_STATES, 1)
         self._filter.P = np.array(saved.covariance)
+        self._drift_std_radps = saved.drift_std_radps
         self._bank = None if saved.bank is None else HeadingBank.restore(saved.bank)
 
     @property
-    def place_m(self) -> Floats:
-        """North and east (2,)."""
-        place: Floats = self._current().x[:2, 0]
-        return place
+    def is_linear(self) -> bool:
+        """One heading is left."""
+        return self._bank is None
 
-    @property
-    def place_var_m2(self) -> Floats:
-        """Their covariance (2, 2)."""
-        covariance: Floats = self._current().P[:2, :2]
-        return covariance
-
-    def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
-        """Place and covariance before this much of own path was walked, as it looks now."""
-        back = np.array(
-            [[1.0, 0.0, -north_m, east_m, 0.0, 0.0], [0.0, 1.0, -east_m, -north_m, 0.0, 0.0]]
-        )
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean (7,) and covariance (7, 7) of the whole state."""
         now = self._current()
-        return (back @ now.x)[:, 0], back @ now.P @ back.T
+        return now.x[:, 0].copy(), now.P.copy()
 
-    def turn(self) -> tuple[float, float]:
-        """Heading correction and its standard deviation, pi where it is not known."""
-        now = self._current()
-        c, s = float(now.x[2, 0]), float(now.x[3, 0])
-        scale2 = c * c + s * s
-        if scale2 < 0.05:
-            return 0.0, math.pi
-        across = np.array([-s, c]) / scale2
-        variance = float(across @ now.P[2:4, 2:4] @ across)
-        return math.atan2(s, c), min(math.sqrt(max(variance, 0.0)), math.pi)
+    def adopt(self, mean: Floats, covariance: Floats) -> None:
+        """Go on from what another filter of the same state came to."""
+        self._bank = None
+        self._filter.x, self._filter.P = mean.reshape(_STATES, 1).copy(), covariance.copy()
+
+    def settle(self, mean: Floats, covariance: Floats) -> None:
+        """Begin again with ``[north, east, c, s, w]``; of fixes' slow error nothing is known."""
+        known = [0, 1, 2, 3, _DRIFT]
+        whole, spread = np.zeros(_STATES), np.zeros((_STATES, _STATES))
+        whole[known], spread[np.ix_(known, known)] = mean, covariance
+        spread[4, 4] = spread[5, 5] = 1.0
+        self.adopt(whole, spread)
+        self._open_heading(self._linear_rad)
+
+    def _open_heading(self, from_rad: float) -> None:
+        """Past so wide a heading one hypothesis will not do."""
+        mean, covariance = self._filter.x[:_DRIFT, 0], self._filter.P[:_DRIFT, :_DRIFT]
+        if self._bank is None and turn_of(mean, covariance)[1] > from_rad:
+            self._bank = HeadingBank.given(mean, covariance)
+            self._stale = True
+
+    def expect_drift(self, std_radps: float) -> None:
+        """How fast the unit's own heading may drift, before anything is known of it."""
+        self._drift_std_radps = std_radps
 
     def begin(
         self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float
@@ -108,16 +123,7 @@ class HorizontalFilter:
             self._scale_std**2 * np.outer(along, along)
             + heading_std_rad**2 * np.outer(across, across)
         )
-
-    def settle(self, mean: Floats, covariance: Floats) -> None:
-        """Begin again with ``[north, east, c, s, w]``; of fixes' slow error nothing is known."""
-        self._bank = None
-        whole, spread = np.zeros(6), np.eye(6)
-        whole[:4], spread[:4, :4] = mean[:4], covariance[:4, :4]
-        self._filter.x, self._filter.P = whole.reshape(6, 1), spread
-        if self.turn()[1] > self._linear_rad:
-            self._bank = HeadingBank.given(whole, spread)
-            self._stale = True
+        self._forget_drift()
 
     def forget_heading(self, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> None:
         own = np.ix_(_PLACE_AND_SLOW, _PLACE_AND_SLOW)
@@ -134,21 +140,34 @@ class HorizontalFilter:
         else:
             self._reset_place_var(_UNKNOWN_VAR_M2)
 
-    def walk(self, north_m: float, east_m: float, place_var_m2: float, turn_var: float) -> None:
-        """The own path went on by this much."""
+    def walk(
+        self, north_m: float, east_m: float, moving_s: float, place_var_m2: float, turn_var: float
+    ) -> None:
+        """The own path went on by this much, moving for so long."""
         if self._bank is not None:
             self._bank.walk(north_m, east_m, place_var_m2, turn_var)
             self._stale = True
             return
-        move = np.eye(6)
-        move[0, 2], move[0, 3] = north_m, -east_m
-        move[1, 2], move[1, 3] = east_m, north_m
-        noise = np.zeros((6, 6))
+        state, covariance = self._filter.x[:, 0], self._filter.P
+        drifted_rad = float(state[_DRIFT]) * moving_s
+        cosine, sine = math.cos(drifted_rad), math.sin(drifted_rad)
+        c, s = float(state[2]), float(state[3])
+        c, s = cosine * c - sine * s, sine * c + cosine * s
+        move = np.eye(_STATES)
+        move[0, 2:4] = north_m, -east_m
+        move[1, 2:4] = east_m, north_m
+        move[2, 2:4] = cosine, -sine
+        move[3, 2:4] = sine, cosine
+        move[2, _DRIFT], move[3, _DRIFT] = -s * moving_s, c * moving_s
+        noise = np.zeros((_STATES, _STATES))
         noise[0, 0] = noise[1, 1] = place_var_m2
-        c, s = float(self._filter.x[2, 0]), float(self._filter.x[3, 0])
         noise[2, 2], noise[3, 3] = turn_var * s * s, turn_var * c * c
         noise[2, 3] = noise[3, 2] = -turn_var * c * s
-        self._filter.predict(F=move, Q=noise)
+        noise[_DRIFT, _DRIFT] = self._wander_var * moving_s
+        self._filter.P = move @ covariance @ move.T + noise
+        state[0] += c * north_m - s * east_m
+        state[1] += s * north_m + c * east_m
+        state[2], state[3] = c, s
 
     def spread(self, variance_m2: float) -> None:
         """The wearer may have got away from the path by so much."""
@@ -165,9 +184,9 @@ class HorizontalFilter:
             self._bank.fade(keep)
             self._stale = True
             return
-        self._filter.x[4:] *= keep
-        self._filter.P[4:, :] *= keep
-        self._filter.P[:, 4:] *= keep
+        self._filter.x[4:6] *= keep
+        self._filter.P[4:6, :] *= keep
+        self._filter.P[:, 4:6] *= keep
         self._filter.P[[4, 5], [4, 5]] += 1.0 - keep**2
 
     def distance2(self, sighting: Sighting) -> float:
@@ -180,16 +199,18 @@ class HorizontalFilter:
         return float((innovation.T @ np.linalg.solve(spread, innovation))[0, 0])
 
     def update(self, sighting: Sighting) -> None:
+        self._open_heading(REOPEN * self._linear_rad)
         if self._bank is None:
             place, observe, noise = _linear(sighting)
             self._filter.update(place, R=noise, H=observe)
             return
         self._bank.update(sighting)
         self._stale = True
-        if self.turn()[1] < self._linear_rad:
+        if turn_of(*self.moments())[1] < self._linear_rad:
             self._bank = None
             along = self._filter.x[2:4, 0] / np.linalg.norm(self._filter.x[2:4, 0])
             self._filter.P[2:4, 2:4] += self._scale_std**2 * np.outer(along, along)
+            self._forget_drift()
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
         cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
@@ -198,7 +219,8 @@ class HorizontalFilter:
             self._bank.reframe(turn_rad, turn, np.array([north_m, east_m]))
             self._stale = True
             return
-        whole = np.kron(np.eye(3), turn)
+        whole = np.eye(_STATES)
+        whole[:6, :6] = np.kron(np.eye(3), turn)
         self._filter.x = whole @ self._filter.x
         self._filter.x[:2, 0] += north_m, east_m
         self._filter.P = whole @ self._filter.P @ whole.T
@@ -206,10 +228,18 @@ class HorizontalFilter:
     def _current(self) -> KalmanFilter:
         """The filter, abreast of the bank."""
         if self._stale and self._bank is not None:
-            mean, self._filter.P = self._bank.moments()
-            self._filter.x = mean.reshape(6, 1)
+            mean, covariance = self._bank.moments()
+            self._filter.x[:_DRIFT, 0] = mean
+            self._filter.P = np.zeros((_STATES, _STATES))
+            self._filter.P[:_DRIFT, :_DRIFT] = covariance
+            self._forget_drift()
         self._stale = False
         return self._filter
+
+    def _forget_drift(self) -> None:
+        self._filter.x[_DRIFT, 0] = 0.0
+        self._filter.P[_DRIFT, :] = self._filter.P[:, _DRIFT] = 0.0
+        self._filter.P[_DRIFT, _DRIFT] = self._drift_std_radps**2
 
     def _reset_place_var(self, variance_m2: float) -> None:
         covariance = self._filter.P
@@ -223,13 +253,24 @@ class HorizontalFilter:
         self._filter.P[2:4, 2:4] = covariance
 
 
+def turn_of(mean: Floats, covariance: Floats) -> tuple[float, float]:
+    """Heading correction of such a state and its standard deviation, pi where it is not known."""
+    c, s = float(mean[2]), float(mean[3])
+    scale2 = c * c + s * s
+    if scale2 < 0.05:
+        return 0.0, math.pi
+    across = np.array([-s, c]) / scale2
+    variance = float(across @ covariance[2:4, 2:4] @ across)
+    return math.atan2(s, c), min(math.sqrt(max(variance, 0.0)), math.pi)
+
+
 def _linear(sighting: Sighting) -> tuple[Floats, Floats, Floats]:
-    """Measurement (2, 1), its matrix (2, 6) and its covariance (2, 2)."""
+    """Measurement (2, 1), its matrix (2, 7) and its covariance (2, 2)."""
     north_m, east_m, slow_m = sighting.since_north_m, sighting.since_east_m, sighting.slow_m
     observe = np.array(
         [
-            [1.0, 0.0, -north_m, east_m, slow_m, 0.0],
-            [0.0, 1.0, -east_m, -north_m, 0.0, slow_m],
+            [1.0, 0.0, -north_m, east_m, slow_m, 0.0, 0.0],
+            [0.0, 1.0, -east_m, -north_m, 0.0, slow_m, 0.0],
         ]
     )
     place = np.array([[sighting.north_m], [sighting.east_m]])

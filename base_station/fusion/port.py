@@ -11,6 +11,7 @@ from typing import Protocol
 
 import msgspec
 
+from base_station.floor_grid import FloorGrid
 from shared.messages import Position
 from shared.quality import Quality
 
@@ -83,6 +84,10 @@ class Fuser(Protocol):
 
     def settle(self, present: Present) -> None:
         """Go on from here: what was believed of place, turn and drift is replaced."""
+        ...
+
+    def consider(self, grid: FloorGrid | None) -> None:
+        """What stands in the way, from now on; None: nothing is known of it.  Is not saved."""
         ...
 
     def advance(self, position: Position) -> str:

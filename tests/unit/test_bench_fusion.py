@@ -3,36 +3,62 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
-from base_station.bench.fusion import bench_fusion, measure
+from base_station.bench.fusion import (
+    WITH_PLAN,
+    Timing,
+    bench_fusion,
+    draw_incident,
+    fuse,
+)
+from base_station.bench.incident_people import LASTS_S
+from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
+from base_station.plan import read_plan
 
 
-def test_it_prints_a_table_and_writes_the_figures(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "figures.json"
-    bench_fusion(incidents=2, seed=3, json_file=file)
-    shown = capsys.readouterr().out
-    assert "switching" in shown
-    assert "heading solved" in shown
-    figures = json.loads(file.read_text())
-    assert figures["incidents"] == 2
-    assert figures["ce50_m"]["fused"]["outside"] < figures["ce95_m"]["fused"]["outside"]
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    file = tmp_path_factory.mktemp("bench") / "figures.json"
+    bench_fusion(incidents=1, seed=3, json_file=file)
+    found: dict[str, Any] = json.loads(file.read_text())
+    return found
+
+
+def test_it_writes_the_figures(figures: dict[str, Any]) -> None:
+    assert figures["incidents"] == 1
+    assert figures["ce50_m"][WITH_PLAN]["outside"] < figures["ce95_m"][WITH_PLAN]["outside"]
+
+
+def test_together_they_are_better_than_each_alone(figures: dict[str, Any]) -> None:
+    """The recipe is worth something only where the simpler ways are worse at all stages."""
+    for way in ("fixes alone", "switching"):
+        for stage, error_m in figures["ce95_m"][way].items():
+            assert figures["ce95_m"][WITH_PLAN][stage] < error_m, f"{way}, {stage}"
 
 
 def test_the_same_seed_gives_the_same_errors() -> None:
-    one, other = measure(FUSERS[0], 1, 5), measure(FUSERS[0], 1, 5)
-    assert (one.ce95_m, one.held_95) == (other.ce95_m, other.held_95)
-    assert measure(FUSERS[0], 1, 6).ce95_m != one.ce95_m
+    runs = []
+    for _ in range(2):
+        person = draw_incident(np.random.default_rng(3))[1]
+        runs.append(fuse(FUSERS[0], person, Timing(), with_plan=True).places_m)
+    assert np.array_equal(*runs)
 
 
-def test_together_they_are_better_than_each_alone() -> None:
-    """The recipe is worth something only where the simpler ways are worse at all stages."""
-    ce95_m = measure(FUSERS[0], 12, 1).ce95_m
-    for way in ("fixes alone", "path alone", "switching"):
-        for stage, error_m in ce95_m[way].items():
-            assert ce95_m["fused"][stage] < error_m, f"{way}, {stage}"
+def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None:
+    for person in draw_incident(np.random.default_rng(4)):
+        truth, building = person.truth, person.building
+        assert truth.t_s[-1] == pytest.approx(LASTS_S, abs=1.0)
+        assert truth.goes_in_s + 600.0 < truth.comes_out_s
+        grid = FloorGrid.of(read_plan(building.geojson()))
+        assert grid is not None
+        floors = -truth.place_m[:, 2] / building.storey_m
+        level = np.abs(floors - np.rint(floors)) < 0.05
+        for floor in range(4):
+            rows = np.flatnonzero(level[1:] & (np.rint(floors[1:]) == floor))
+            from_m, to_m = truth.place_m[rows, :2], truth.place_m[rows + 1, :2]
+            assert not grid.crossed(floor, from_m, to_m).any()

@@ -1,0 +1,154 @@
+"""A four-storey steel building that a seed draws: rooms on both sides of a corridor, one stairwell
+and one way in.
+
+All floors have the stairwell at the same place; the other partitions differ.  North and east in
+metres; the south wall lies on north 0 and the west wall on east 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import msgspec
+import numpy as np
+
+STOREYS = 4
+CORRIDOR_M = 2.0
+DOOR_M = 1.0
+STAIRWELL_M = 3.0
+WAY_IN_M = 1.6
+
+Place = tuple[float, float]  # (north_m, east_m)
+Wall = tuple[int, Place, Place]  # floor and both ends
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    floor: int
+    south_west: Place
+    north_east: Place
+    door: Place  # its middle, in the corridor's wall
+
+
+@dataclass(frozen=True, slots=True)
+class SteelBuilding:
+    length_m: float  # west to east
+    depth_m: float  # south to north
+    storey_m: float
+    stairs_east_m: float  # of the stairwell's west wall
+    entrance_east_m: float  # of the middle of the south entrance
+    rooms: tuple[Room, ...]
+    walls: tuple[Wall, ...]
+
+    @property
+    def corridor_north_m(self) -> float:
+        """Of its middle."""
+        return self.depth_m / 2.0
+
+    def down_m(self, floor: int) -> float:
+        return -self.storey_m * floor
+
+    def depth_inside_m(self, north_m: float, east_m: float) -> float:
+        """Distance to the nearest outer wall, negative outside (there a lower bound of it)."""
+        return min(north_m, self.depth_m - north_m, east_m, self.length_m - east_m)
+
+    def geojson(self) -> bytes:
+        """The plan as a commander would load it."""
+        floors = [{"floor": k, "down_m": self.down_m(k)} for k in range(STOREYS)]
+        ring = [(0.0, 0.0), (0.0, self.length_m), (self.depth_m, self.length_m)]
+        ring += [(self.depth_m, 0.0), (0.0, 0.0)]
+        south_m, west_m = self.corridor_north_m + CORRIDOR_M / 2.0, self.stairs_east_m
+        stairwell = [(south_m, west_m), (south_m, west_m + STAIRWELL_M)]
+        stairwell += [(self.depth_m, west_m + STAIRWELL_M), (self.depth_m, west_m)]
+        features = [_feature("outline", 0, "Polygon", ring)]
+        features += [
+            _feature("stairs", k, "Polygon", [*stairwell, stairwell[0]]) for k in range(STOREYS)
+        ]
+        features += [
+            _feature("wall", k, "LineString", [one, other]) for k, one, other in self.walls
+        ]
+        site = {"frame": "site-m", "floors": floors}
+        plan = {"type": "FeatureCollection", "muster": site, "features": features}
+        return msgspec.json.encode(plan)
+
+
+def draw_building(rng: np.random.Generator) -> SteelBuilding:
+    length_m = round(float(rng.uniform(30.0, 44.0)), 1)
+    depth_m = round(float(rng.uniform(14.0, 18.0)), 1)
+    stairs_m = round(float(rng.uniform(0.25, 0.7)) * length_m, 1)
+    hall_m = round(float(rng.uniform(0.3, 0.6)) * length_m, 1)
+    south_m, north_m = depth_m / 2.0 - CORRIDOR_M / 2.0, depth_m / 2.0 + CORRIDOR_M / 2.0
+    rooms: list[Room] = []
+    walls: list[Wall] = []
+    for floor in range(STOREYS):
+        hall = [(hall_m, hall_m + STAIRWELL_M)] if floor == 0 else []
+        for side_m, outer_m, kept in (
+            (south_m, 0.0, hall),
+            (north_m, depth_m, [(stairs_m, stairs_m + STAIRWELL_M)]),
+        ):
+            gaps = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
+            for west_m, east_m in _partition(rng, length_m, kept):
+                door_m = float(rng.uniform(west_m + 1.0, east_m - 1.0))
+                gaps.append((door_m, DOOR_M))
+                low_m, high_m = sorted((side_m, outer_m))
+                rooms.append(Room(floor, (low_m, west_m), (high_m, east_m), (side_m, door_m)))
+                if east_m < length_m:
+                    walls.append((floor, (low_m, east_m), (high_m, east_m)))
+            for _, east_m in kept:
+                walls.append((floor, (side_m, east_m), (outer_m, east_m)))
+            walls += _along_east(floor, side_m, length_m, gaps)
+        way_in = [(hall_m + STAIRWELL_M / 2.0, WAY_IN_M)] if floor == 0 else []
+        walls += _along_east(floor, 0.0, length_m, way_in)
+        walls += _along_east(floor, depth_m, length_m, [])
+        walls += [(floor, (0.0, east_m), (depth_m, east_m)) for east_m in (0.0, length_m)]
+        banister_m = stairs_m + STAIRWELL_M / 2.0
+        walls.append((floor, (north_m + 1.7, banister_m), (depth_m - 1.3, banister_m)))
+    return SteelBuilding(
+        length_m=length_m,
+        depth_m=depth_m,
+        storey_m=round(float(rng.uniform(2.9, 3.6)), 2),
+        stairs_east_m=stairs_m,
+        entrance_east_m=hall_m + STAIRWELL_M / 2.0,
+        rooms=tuple(rooms),
+        walls=tuple(walls),
+    )
+
+
+def _partition(
+    rng: np.random.Generator, length_m: float, kept: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """West and east of rooms from 4 to 8 m wide that fill what is not kept for something else."""
+    ends_m = [0.0, *(end_m for span in kept for end_m in span), length_m]
+    rooms: list[tuple[float, float]] = []
+    for west_m, east_m in zip(ends_m[::2], ends_m[1::2], strict=True):
+        count = max(1, round((east_m - west_m) / 5.5))
+        shares = np.cumsum([0.0, *rng.uniform(0.8, 1.25, count)])
+        cuts_m = west_m + (east_m - west_m) * shares / shares[-1]
+        rooms += [(float(a), float(b)) for a, b in pairwise(cuts_m)]
+    return rooms
+
+
+def _along_east(
+    floor: int, north_m: float, length_m: float, gaps: list[tuple[float, float]]
+) -> list[Wall]:
+    """A wall from west to east with gaps, each by its middle and width."""
+    ends_m = [0.0]
+    for middle_m, width_m in sorted(gaps):
+        ends_m += [middle_m - width_m / 2.0, middle_m + width_m / 2.0]
+    ends_m.append(length_m)
+    return [
+        (floor, (north_m, west_m), (north_m, east_m))
+        for west_m, east_m in zip(ends_m[::2], ends_m[1::2], strict=True)
+    ]
+
+
+def _feature(kind: str, floor: int, shape: str, places: list[Place]) -> dict[str, Any]:
+    line = [[east_m, north_m] for north_m, east_m in places]
+    coordinates = [line] if shape == "Polygon" else line
+    return {
+        "type": "Feature",
+        "properties": {"kind": kind, "floor": floor},
+        "geometry": {"type": shape, "coordinates": coordinates},
+    }

@@ -1,0 +1,36 @@
+"""What ``gps-inertial`` takes for granted of units, receivers and people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    walk_m_per_sqrt_m: float = 0.04  # the own path's error by distance, each axis
+    turn_rad_per_sqrt_m: float = 0.004  # its heading's wander by distance
+    turn_part: float = 0.004  # and by turning
+    scale_std: float = 0.015
+    drift_radps: float = 6e-4  # of its heading while moving, where the unit states none: 2 deg/min
+    drift_least_radps: float = 6e-5
+    drift_most_radps: float = 2e-3
+    drift_doubt: float = 1.3  # units are too sure of their heading
+    drift_wander_radps: float = 6e-5  # of that rate in a minute
+    climb_part: float = 0.03  # height error by height climbed
+    climb_m_per_sqrt_m: float = 0.02  # and by distance
+    wander_part: float = 0.8  # of a fix's variance that wanders slowly
+    wander_s: float = 30.0  # with this correlation time
+    wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it
+    wall_reach_m: float = 5.0  # falling off by distance
+    inside_std_m: float = 8.0  # and being inside
+    doubt_lasts: float = 16.0  # fixes in a row that have about the same error, where it is doubtful
+    gate: float = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
+    linear_rad: float = 0.2  # heading standard deviation from which one hypothesis will do
+    aligned_rad: float = 0.35  # and from which the heading is called known
+    height_std_floor_m: float = 5.0
+    fastest_mps: float = 12.0
+    unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
+    restart_m: float = 5.0  # and how far while the unit starts again
+    stuck_fixes: int = 5
+    stuck_m: float = 8.0
+    distrust_most: int = 20

@@ -1,0 +1,244 @@
+"""Where somebody may be, as a cloud of guesses that no wall lets through.
+
+Every guess is a place, a heading correction and a drift rate; the path moves all of them, and a
+guess that crosses a wall of the plan is hardly believed any more (Woodman and Harle 2008).  Given
+a guess's path, the fixes' slow error is a linear problem with one covariance for all guesses, as
+in ``heading_bank``.  Random numbers come from the cloud's own seeded generator, whose state is
+part of it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.floor_grid import FloorGrid
+from base_station.fusion.heading_bank import Sighting
+
+Floats = NDArray[np.float64]
+
+GUESSES = 400
+MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
+THROUGH_WALL = 0.02  # what is left of a guess's weight
+OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
+CLIMBS = 0.25  # rise over way from which a path climbs
+KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
+SHAKEN_M = 0.06  # and how far their places are shaken
+FLOOR_VAR_M2 = 0.15**2  # of any place: people do not walk on lines
+CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
+MEMORY = 1.0 / 30.0  # of that mean, a move
+
+
+class SavedCloud(msgspec.Struct, frozen=True):
+    guesses: bytes
+    weights: bytes
+    slow: bytes
+    slow_covariance: list[list[float]]
+    scale: float
+    pending: list[float]
+    contradiction: float
+    random: tuple[str, str, int, int]
+
+
+class WallCloud:
+    """Begun from the moments of ``HorizontalFilter``, and given back as such."""
+
+    def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
+        self._rng = np.random.Generator(np.random.PCG64(seed))
+        self._scale = float(np.hypot(mean[2], mean[3]))
+        own, slow = [0, 1, 2, 3, 6], [4, 5]
+        spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
+        root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
+        drawn = self._rng.normal(size=(GUESSES, 5)) @ root.T
+        gain = np.linalg.solve(spread, covariance[np.ix_(own, slow)]).T
+        self._slow = mean[slow] + drawn @ gain.T  # (n, 2)
+        self._slow_covariance = (
+            covariance[np.ix_(slow, slow)] - gain @ covariance[np.ix_(own, slow)]
+        )
+        state = mean[own] + drawn
+        self._guesses = np.column_stack(  # north, east, turn, drift
+            [state[:, :2], np.arctan2(state[:, 3], state[:, 2]), state[:, 4]]
+        )
+        self._log_weights = np.zeros(GUESSES)
+        self._pending = np.zeros(4)  # own north and east, seconds moving, climbed
+        self._contradiction = 0.0
+        self._moments: tuple[Floats, Floats] | None = None
+
+    def save(self) -> SavedCloud:
+        random = self._rng.bit_generator.state
+        inner = random["state"]
+        return SavedCloud(
+            self._guesses.tobytes(),
+            self._log_weights.tobytes(),
+            self._slow.tobytes(),
+            self._slow_covariance.tolist(),
+            self._scale,
+            self._pending.tolist(),
+            self._contradiction,
+            (str(inner["state"]), str(inner["inc"]), random["has_uint32"], random["uinteger"]),
+        )
+
+    @staticmethod
+    def restore(saved: SavedCloud) -> WallCloud:
+        cloud = WallCloud(np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.eye(7), 0)
+        cloud._guesses = np.frombuffer(saved.guesses).reshape(GUESSES, 4).copy()
+        cloud._log_weights = np.frombuffer(saved.weights).copy()
+        cloud._slow = np.frombuffer(saved.slow).reshape(GUESSES, 2).copy()
+        cloud._slow_covariance = np.array(saved.slow_covariance)
+        cloud._scale = saved.scale
+        cloud._pending = np.array(saved.pending)
+        cloud._contradiction = saved.contradiction
+        state, inc, has_uint32, uinteger = saved.random
+        cloud._rng.bit_generator.state = {
+            "bit_generator": "PCG64",
+            "state": {"state": int(state), "inc": int(inc)},
+            "has_uint32": has_uint32,
+            "uinteger": uinteger,
+        }
+        return cloud
+
+    @property
+    def is_contradicted(self) -> bool:
+        """Move after move walls stood in the way of nearly all guesses."""
+        return self._contradiction > CONTRADICTED
+
+    def walk(
+        self,
+        path: tuple[float, float, float, float],
+        noise: tuple[float, float],
+        grid: FloorGrid,
+        floor: int | None,
+    ) -> None:
+        """``path``: own north and east, seconds moving and metres climbed (up positive);
+        ``noise``: variances of place and turn by metre walked.
+        """
+        self._pending += path
+        way_m = math.hypot(self._pending[0], self._pending[1])
+        if way_m < MOVE_M:
+            return
+        north_m, east_m, moving_s, climbed_m = self._pending.tolist()
+        self._pending[:] = 0.0
+        fresh = self._rng.normal(size=(GUESSES, 3))
+        guesses = self._guesses
+        guesses[:, 2] += guesses[:, 3] * moving_s + math.sqrt(noise[1] * way_m) * fresh[:, 2]
+        from_m = guesses[:, :2].copy()
+        guesses[:, :2] += self._turned(north_m, east_m)
+        guesses[:, :2] += math.sqrt(noise[0] * way_m) * fresh[:, :2]
+        self._moments = None
+        if floor is not None and grid.knows(floor):
+            climbs = abs(climbed_m) > CLIMBS * way_m
+            self._weigh_walls(grid, floor, from_m, climbs)
+
+    def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> None:
+        before = _normal(self._log_weights)
+        lost = math.log(THROUGH_WALL) * grid.crossed(floor, from_m, self._guesses[:, :2])
+        if climbs and grid.has_stairs(floor):
+            lost = lost + math.log(OFF_STAIRS) * ~grid.on_stairs(floor, self._guesses[:, :2])
+        self._log_weights = self._log_weights + lost
+        passed = float(before @ np.exp(lost))
+        self._contradiction += MEMORY * (-math.log(passed) - self._contradiction)
+        self._draw_anew()
+
+    def spread(self, variance_m2: float) -> None:
+        self._guesses[:, :2] += math.sqrt(variance_m2) * self._rng.normal(size=(GUESSES, 2))
+        self._moments = None
+
+    def fade(self, keep: float) -> None:
+        """Time went by for the fixes' slow error, of unit variance."""
+        self._slow *= keep
+        self._slow_covariance = keep**2 * self._slow_covariance + (1.0 - keep**2) * np.eye(2)
+        self._moments = None
+
+    def distance2(self, sighting: Sighting) -> float:
+        """From the cloud as a whole, chi-square of two degrees of freedom."""
+        apart, spread = self._innovations(sighting)
+        weights = _normal(self._log_weights)
+        middle = weights @ apart
+        off = apart - middle
+        whole = spread + (off * weights[:, None]).T @ off
+        return float(middle @ np.linalg.solve(whole, middle))
+
+    def update(self, sighting: Sighting) -> None:
+        apart, spread = self._innovations(sighting)
+        inverse = np.linalg.inv(spread)
+        self._log_weights = self._log_weights - 0.5 * ((apart @ inverse) * apart).sum(axis=1)
+        gain = sighting.slow_m * self._slow_covariance @ inverse
+        self._slow += apart @ gain.T
+        self._slow_covariance = (
+            self._slow_covariance - sighting.slow_m * gain @ self._slow_covariance
+        )
+        self._moments = None
+        self._draw_anew()
+
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean (7,) and covariance (7, 7) in the state of ``HorizontalFilter``."""
+        if self._moments is None:
+            weights, guesses = _normal(self._log_weights), self._guesses
+            states = np.empty((GUESSES, 7))
+            states[:, :2] = guesses[:, :2]
+            states[:, 2], states[:, 3] = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
+            states[:, 2:4] *= self._scale
+            states[:, 4:6], states[:, 6] = self._slow, guesses[:, 3]
+            mean = weights @ states
+            apart = states - mean
+            covariance = (apart * weights[:, None]).T @ apart
+            covariance[4:6, 4:6] += self._slow_covariance
+            covariance[[0, 1], [0, 1]] += FLOOR_VAR_M2
+            self._moments = mean, covariance
+        mean, covariance = self._moments
+        north_m, east_m = float(self._pending[0]), float(self._pending[1])
+        mean = mean.copy()
+        mean[0] += mean[2] * north_m - mean[3] * east_m
+        mean[1] += mean[3] * north_m + mean[2] * east_m
+        return mean, covariance
+
+    def _innovations(self, sighting: Sighting) -> tuple[Floats, Floats]:
+        """By guess (n, 2), and their covariance (2, 2)."""
+        since_m = self._turned(
+            sighting.since_north_m - self._pending[0], sighting.since_east_m - self._pending[1]
+        )
+        seen_m = np.array([sighting.north_m, sighting.east_m])
+        apart = seen_m + since_m - self._guesses[:, :2] - sighting.slow_m * self._slow
+        spread = sighting.slow_m**2 * self._slow_covariance + sighting.white_m2 * np.eye(2)
+        return apart, spread
+
+    def _turned(self, north_m: float, east_m: float) -> Floats:
+        """An own-frame vector in the incident frame, by every guess (n, 2)."""
+        cosine = self._scale * np.cos(self._guesses[:, 2])
+        sine = self._scale * np.sin(self._guesses[:, 2])
+        return np.stack(
+            [cosine * north_m - sine * east_m, sine * north_m + cosine * east_m], axis=1
+        )
+
+    def _draw_anew(self) -> None:
+        """Guesses that are hardly believed give way to others, shaken a little."""
+        weights = _normal(self._log_weights)
+        self._log_weights -= self._log_weights.max()
+        if 1.0 / float(weights @ weights) > 0.5 * GUESSES:
+            return
+        at = (np.arange(GUESSES) + self._rng.random()) / GUESSES
+        picked = np.minimum(np.searchsorted(np.cumsum(weights), at), GUESSES - 1)
+        guesses = self._guesses[picked]
+        inner = guesses[:, 2:]
+        middle = inner[0] + _wrapped(inner - inner[0]).mean(axis=0)
+        off = _wrapped(inner - middle)
+        fresh = self._rng.normal(size=(GUESSES, 4))
+        shaken = math.sqrt(1.0 - KEPT**2) * off.std(axis=0) * fresh[:, 2:]
+        guesses[:, 2:] = middle + KEPT * off + shaken
+        guesses[:, :2] += SHAKEN_M * fresh[:, :2]
+        self._guesses, self._slow = guesses, self._slow[picked]
+        self._log_weights = np.zeros(GUESSES)
+        self._moments = None
+
+
+def _normal(log_weights: Floats) -> Floats:
+    weights = np.exp(log_weights - log_weights.max())
+    return np.asarray(weights / weights.sum())
+
+
+def _wrapped(turn_and_drift: Floats) -> Floats:
+    turn_and_drift[:, 0] = (turn_and_drift[:, 0] + math.pi) % (2.0 * math.pi) - math.pi
+    return turn_and_drift

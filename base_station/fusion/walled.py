@@ -1,0 +1,187 @@
+"""North and east of one unit where a plan may say what stands in the way.
+
+Away from the building ``HorizontalFilter`` is all there is.  Near it and in it a ``WallCloud``
+goes beside it and leads; when it comes away from the building again the filter goes on from what
+the cloud came to.  A cloud that the walls contradict move after move is given up: then the filter,
+which never heard of walls, is what is left, as wide as it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.floor_grid import FloorGrid
+from base_station.fusion.heading_bank import Sighting
+from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
+from base_station.fusion.wall_cloud import SavedCloud, WallCloud
+
+Floats = NDArray[np.float64]
+
+NEAR_M = 8.0  # of the outline: a cloud may begin
+AWAY_M = 14.0  # and ends
+BEGIN_STD_M = 6.0  # known as well as this, or a cloud would be too thin
+BEGIN_TURN_RAD = 0.35
+REPENT_M = 25.0  # walked after a cloud was given up until another begins
+
+
+class SavedWalled(msgspec.Struct, frozen=True):
+    plain: SavedHorizontal
+    cloud: SavedCloud | None
+    clouds: int
+    to_walk_m: float
+    floor: int | None
+
+
+class WalledFilter:
+    """The same questions as ``HorizontalFilter`` answers, walls considered."""
+
+    def __init__(self, plain: HorizontalFilter) -> None:
+        self._plain = plain
+        self._cloud: WallCloud | None = None
+        self._clouds = 0  # begun so far: the seed of the next
+        self._to_walk_m = 0.0
+        self._floor: int | None = None
+        self._grid: FloorGrid | None = None
+
+    def save(self) -> SavedWalled:
+        cloud = None if self._cloud is None else self._cloud.save()
+        return SavedWalled(self._plain.save(), cloud, self._clouds, self._to_walk_m, self._floor)
+
+    def load(self, saved: SavedWalled) -> None:
+        self._plain.load(saved.plain)
+        self._cloud = None if saved.cloud is None else WallCloud.restore(saved.cloud)
+        self._clouds, self._to_walk_m = saved.clouds, saved.to_walk_m
+        self._floor = saved.floor
+
+    def consider(self, grid: FloorGrid | None) -> None:
+        self._grid = grid
+        if grid is None:
+            self._cloud = None
+
+    def stand_on(self, floor: int | None) -> None:
+        self._floor = floor
+
+    @property
+    def is_walled(self) -> bool:
+        return self._cloud is not None
+
+    def outside_m(self) -> float:
+        """Distance to the building, negative inside; far where no plan is known."""
+        if self._grid is None:
+            return math.inf
+        mean, _ = self.moments()
+        return -self._grid.plan.depth_m(float(mean[0]), float(mean[1]))
+
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean (7,) and covariance (7, 7) of the state of ``HorizontalFilter``."""
+        return self._plain.moments() if self._cloud is None else self._cloud.moments()
+
+    def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
+        """Place and covariance before this much of own path was walked, as it looks now."""
+        mean, covariance = self.moments()
+        back = np.array(
+            [
+                [1.0, 0.0, -north_m, east_m, 0.0, 0.0, 0.0],
+                [0.0, 1.0, -east_m, -north_m, 0.0, 0.0, 0.0],
+            ]
+        )
+        return back @ mean, back @ covariance @ back.T
+
+    def turn(self) -> tuple[float, float]:
+        """Heading correction and its standard deviation, pi where it is not known."""
+        return turn_of(*self.moments())
+
+    def begin(
+        self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float
+    ) -> None:
+        self._cloud = None
+        self._plain.begin(place_m, std_m, heading_rad, heading_std_rad)
+
+    def settle(self, mean: Floats, covariance: Floats) -> None:
+        self._cloud = None
+        self._plain.settle(mean, covariance)
+
+    def forget_heading(self) -> None:
+        self._cloud = None
+        self._plain.forget_heading()
+
+    def forget_place(self) -> None:
+        self._cloud = None
+        self._plain.forget_place()
+
+    def expect_drift(self, std_radps: float) -> None:
+        self._plain.expect_drift(std_radps)
+
+    def walk(
+        self,
+        path: tuple[float, float, float, float],
+        place_var_m2: float,
+        turn_var: float,
+        noise: tuple[float, float],
+    ) -> None:
+        """``path``: own north and east, seconds moving, metres climbed; then the variances of
+        this stretch, and those of place and turn by metre.
+        """
+        north_m, east_m, moving_s, _ = path
+        self._plain.walk(north_m, east_m, moving_s, place_var_m2, turn_var)
+        if self._grid is None:
+            return
+        if self._cloud is not None:
+            self._cloud.walk(path, noise, self._grid, self._floor)
+        self._to_walk_m -= math.hypot(north_m, east_m)
+        if self._to_walk_m <= 0.0:
+            self._to_walk_m = 1.0
+            self._reconsider()
+
+    def _reconsider(self) -> None:
+        """Begin or end the cloud."""
+        assert self._grid is not None
+        outside_m = self.outside_m()
+        if self._cloud is None:
+            if outside_m < NEAR_M and self._is_known():
+                self._clouds += 1
+                self._cloud = WallCloud(*self._plain.moments(), self._clouds)
+        elif self._cloud.is_contradicted:
+            self._cloud = None
+            self._to_walk_m = REPENT_M
+        elif outside_m > AWAY_M:
+            self._plain.adopt(*self._cloud.moments())
+            self._cloud = None
+
+    def _is_known(self) -> bool:
+        if not self._plain.is_linear:
+            return False
+        mean, covariance = self._plain.moments()
+        std_m = math.sqrt(max(covariance[0, 0], covariance[1, 1]))
+        return std_m < BEGIN_STD_M and turn_of(mean, covariance)[1] < BEGIN_TURN_RAD
+
+    def spread(self, variance_m2: float) -> None:
+        self._plain.spread(variance_m2)
+        if self._cloud is not None:
+            self._cloud.spread(variance_m2)
+
+    def fade(self, keep: float) -> None:
+        self._plain.fade(keep)
+        if self._cloud is not None:
+            self._cloud.fade(keep)
+
+    def distance2(self, sighting: Sighting) -> float:
+        if self._cloud is not None:
+            return self._cloud.distance2(sighting)
+        return self._plain.distance2(sighting)
+
+    def update(self, sighting: Sighting) -> None:
+        self._plain.update(sighting)
+        if self._cloud is not None:
+            self._cloud.update(sighting)
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
+        """The cloud, if any, is taken up by the filter first: its walls stay where they are."""
+        if self._cloud is not None:
+            self._plain.adopt(*self._cloud.moments())
+            self._cloud = None
+        self._plain.reframe(turn_rad, north_m, east_m)
