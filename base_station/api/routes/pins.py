@@ -1,0 +1,202 @@
+"""Pins and beacons: what is known of where people were, set, moved and removed."""
+
+from __future__ import annotations
+
+import math
+import uuid
+from typing import Annotated
+
+import msgspec
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import LAST_MS, NS_PER_MS, Form, Id, Metres, Note, UnitIdText, Word
+from base_station.api.problems import Problem
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.api.wire import BeaconView, PinView
+from shared.messages.pins import (
+    PlaceBeacon,
+    RemoveBeacon,
+    RemovePin,
+    SetMeeting,
+    SetPin,
+    StartTogether,
+)
+
+router = APIRouter(tags=["pins"])
+
+Milliseconds = Annotated[int, Field(ge=0, le=LAST_MS)]
+Std = Annotated[float, Field(gt=0.0, le=1000.0)]
+Floor = Annotated[int, Field(ge=-100, le=1000)]
+Heading = Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)]
+
+
+class PlaceForm(Form):
+    """A place in the incident frame, and as well as it is known."""
+
+    north_m: Metres
+    east_m: Metres
+    std_m: Std = 1.0
+    floor: Floor | None = None
+    heading_rad: Heading | None = None  # which way the wearer looked or went
+    heading_std_rad: Annotated[float, Field(gt=0.0, le=math.pi)] = 0.35
+    note: Note = ""
+
+
+class PinForm(PlaceForm):
+    unit_id: UnitIdText
+    t_ms: Milliseconds | None = None  # station time; left out: now
+
+
+class StartForm(PlaceForm):
+    unit_ids: Annotated[list[UnitIdText], Field(min_length=1, max_length=200)]
+    t_ms: Milliseconds = 0  # 0: where each unit's path begins
+
+
+class MeetingForm(Form):
+    unit_id: UnitIdText
+    other_unit_id: UnitIdText
+    t_ms: Milliseconds | None = None
+    std_m: Std = 1.0
+    note: Note = ""
+
+
+class BeaconForm(Form):
+    label: Word = ""
+    north_m: Metres
+    east_m: Metres
+    floor: Floor | None = None
+    std_m: Std = 0.5
+    reach_m: Annotated[float, Field(ge=0.0, le=100.0)] = 3.0
+
+
+class Pin(BaseModel):
+    pin_id: str
+    kind: str
+    unit_id: str
+    other_id: str
+    t_ms: int
+    north_m: float | None
+    east_m: float | None
+    floor: int | None
+    std_m: float
+    heading_rad: float | None
+    heading_std_rad: float
+    note: str
+    by: str
+    set_ms: int
+    state: str
+    residual_m: float | None
+    sigmas: float | None
+    text: str
+
+
+class Beacon(BaseModel):
+    beacon_id: str
+    label: str
+    north_m: float
+    east_m: float
+    floor: int | None
+    std_m: float
+    reach_m: float
+    seen_ms: int | None
+
+
+@router.get("/pins")
+def list_pins(station: Station, _: Viewer) -> list[Pin]:
+    """In the order of setting, with what became of each."""
+    return [_pin(view) for view in station.picture().pins]
+
+
+@router.post("/pins", status_code=201)
+def set_pin(form: PinForm, station: Station, who: Commander) -> Pin:
+    """This unit was here then: its whole past is solved again."""
+    pin_id = uuid.uuid4().hex
+    station.act(who.username, _place_pin(station, pin_id, form))
+    return _pin_or_404(station, pin_id)
+
+
+@router.post("/pins/start", status_code=201)
+def start_together(form: StartForm, station: Station, who: Commander) -> list[Pin]:
+    """These units were together here then: all start at the engine."""
+    pin_id = uuid.uuid4().hex
+    said = form.model_dump(exclude={"t_ms", "unit_ids"})
+    action = StartTogether(pin_id, tuple(form.unit_ids), form.t_ms * NS_PER_MS, **said)
+    station.act(who.username, action)
+    return [_pin(view) for view in station.picture().pins if view.pin_id.startswith(f"{pin_id}:")]
+
+
+@router.post("/pins/meeting", status_code=201)
+def set_meeting(form: MeetingForm, station: Station, who: Commander) -> Pin:
+    """Two people met; nobody has to know where."""
+    pin_id = uuid.uuid4().hex
+    t_ns = _time(station, form.t_ms)
+    action = SetMeeting(pin_id, form.unit_id, form.other_unit_id, t_ns, form.std_m, form.note)
+    station.act(who.username, action)
+    return _pin_or_404(station, pin_id)
+
+
+@router.put("/pins/{pin_id}")
+def move_pin(pin_id: Id, form: PinForm, station: Station, who: Commander) -> Pin:
+    """Take the pin back and set it as said now; without a time, the time stays."""
+    before = _pin_or_404(station, pin_id)
+    if before.kind not in {"place", "start"}:
+        raise Problem(409, f"This pin is a {before.kind}; remove it, and set another.")
+    if form.t_ms is None:
+        form = form.model_copy(update={"t_ms": before.t_ms})
+    station.act(who.username, _place_pin(station, pin_id, form))
+    return _pin_or_404(station, pin_id)
+
+
+@router.delete("/pins/{pin_id}", status_code=204)
+def remove_pin(pin_id: Id, station: Station, who: Commander) -> None:
+    """Everything is then as if it had never been set."""
+    if not any(one.pin_id.split(":")[0] == pin_id or one.pin_id == pin_id
+               for one in station.picture().pins):  # fmt: skip
+        raise Problem(404, "There is no such pin.")
+    station.act(who.username, RemovePin(pin_id))
+
+
+@router.get("/beacons")
+def list_beacons(station: Station, _: Viewer) -> list[Beacon]:
+    return [_beacon(view) for view in station.picture().beacons]
+
+
+@router.put("/beacons/{beacon_id}")
+def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, who: Commander) -> Beacon:
+    """Say where a beacon or tag hangs, or that it hangs elsewhere than was said."""
+    station.act(who.username, PlaceBeacon(beacon_id, **form.model_dump()))
+    found = next(one for one in station.picture().beacons if one.beacon_id == beacon_id)
+    return _beacon(found)
+
+
+@router.delete("/beacons/{beacon_id}", status_code=204)
+def remove_beacon(beacon_id: Id, station: Station, who: Commander) -> None:
+    if all(one.beacon_id != beacon_id for one in station.picture().beacons):
+        raise Problem(404, "There is no such beacon.")
+    station.act(who.username, RemoveBeacon(beacon_id))
+
+
+def _place_pin(station: Services, pin_id: str, form: PinForm) -> SetPin:
+    said = form.model_dump(exclude={"t_ms", "unit_id"})
+    return SetPin(pin_id, form.unit_id, _time(station, form.t_ms), **said)
+
+
+def _time(station: Services, t_ms: int | None) -> int:
+    return station.clock.utc_ns() if t_ms is None else t_ms * NS_PER_MS
+
+
+def _pin_or_404(station: Services, pin_id: str) -> Pin:
+    for view in station.picture().pins:
+        if view.pin_id == pin_id:
+            return _pin(view)
+    raise Problem(404, "There is no such pin.")
+
+
+def _pin(view: PinView) -> Pin:
+    return Pin.model_validate(msgspec.to_builtins(view))
+
+
+def _beacon(view: BeaconView) -> Beacon:
+    return Beacon.model_validate(msgspec.to_builtins(view))

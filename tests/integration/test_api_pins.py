@@ -1,0 +1,146 @@
+"""Pins and beacons by way of the API: set, moved, removed, refused, and who may."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import httpx
+import msgspec
+import pytest
+import pytest_asyncio
+
+from base_station.db.accounts import Role
+from shared.clock import NS_PER_S, ManualClock
+from shared.messages import Header, Position
+from tests.station import DeskStation
+
+
+@pytest_asyncio.fixture
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    yield station
+    station.close()
+
+
+async def walk(
+    station: DeskStation, clock: ManualClock, commander: httpx.AsyncClient, make_position: object
+) -> None:
+    """Two registered units walk 60 m north side by side."""
+    for unit_id in ("FF-01", "FF-02"):
+        assert (await commander.post("/units", json={"unit_id": unit_id})).status_code == 201
+        start = {"north_m": 0.0, "east_m": 0.0, "heading_std_rad": 0.1}
+        await commander.put(f"/units/{unit_id}/start", json=start)
+    for second in range(60):
+        clock.advance(1.0)
+        for unit_id in ("FF-01", "FF-02"):
+            position = make_position()  # type: ignore[operator]  # a fixture's function
+            assert isinstance(position, Position)
+            header = Header(unit_id, 7, second + 1, second * NS_PER_S)
+            station.drive.hear(
+                msgspec.structs.replace(
+                    position, header=header, north_m=1.0 * second, east_m=0.0, down_m=0.0
+                )
+            )
+
+
+async def test_a_pin_is_set_moved_and_removed(
+    station: DeskStation, clock: ManualClock, make_position: object
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await walk(station, clock, commander, make_position)
+        body = {"unit_id": "FF-01", "north_m": 58.0, "east_m": 1.5, "note": "stair head"}
+        answer = await commander.post("/pins", json=body)
+        assert answer.status_code == 201, answer.text
+        pin = answer.json()
+        assert (pin["kind"], pin["state"], pin["by"]) == ("place", "used", "commander")
+        assert pin["residual_m"] < 2.0
+        position = station.drive.picture().units[0].position
+        assert position is not None
+        assert position.east_m > 0.3
+
+        moved = await commander.put(f"/pins/{pin['pin_id']}", json=body | {"east_m": -1.5})
+        assert moved.status_code == 200, moved.text
+        assert moved.json()["t_ms"] == pin["t_ms"]
+        position = station.drive.picture().units[0].position
+        assert position is not None
+        assert position.east_m < -0.3
+        assert len((await commander.get("/pins")).json()) == 1
+
+        assert (await commander.delete(f"/pins/{pin['pin_id']}")).status_code == 204
+        assert (await commander.get("/pins")).json() == []
+        assert (await commander.delete(f"/pins/{pin['pin_id']}")).status_code == 404
+        position = station.drive.picture().units[0].position
+        assert position is not None
+        assert position.east_m == pytest.approx(0.0, abs=0.1)
+
+
+async def test_units_start_together_and_meet(
+    station: DeskStation, clock: ManualClock, make_position: object
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await walk(station, clock, commander, make_position)
+        start = {"unit_ids": ["FF-01", "FF-02"], "north_m": 1.0, "east_m": 1.0, "heading_rad": 0.0}
+        answer = await commander.post("/pins/start", json=start)
+        assert answer.status_code == 201, answer.text
+        pins = answer.json()
+        assert [pin["unit_id"] for pin in pins] == ["FF-01", "FF-02"]
+        meeting = {"unit_id": "FF-01", "other_unit_id": "FF-02"}
+        met = await commander.post("/pins/meeting", json=meeting)
+        assert met.status_code == 201, met.text
+        assert met.json()["state"] == "used"
+        assert met.json()["north_m"] is None
+        moved = await commander.put(f"/pins/{met.json()['pin_id']}", json=start | {
+            "unit_id": "FF-01"})  # fmt: skip
+        assert moved.status_code == 422
+        group = pins[0]["pin_id"].split(":")[0]
+        assert (await commander.delete(f"/pins/{group}")).status_code == 204
+        assert [pin["kind"] for pin in (await commander.get("/pins")).json()] == ["meeting"]
+
+
+async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        placed = await commander.put("/beacons/door-3", json={"north_m": 3.0, "east_m": 4.0})
+        assert placed.status_code == 200, placed.text
+        assert placed.json()["reach_m"] == 3.0
+        await commander.put("/beacons/door-3", json={"north_m": 5.0, "east_m": 4.0, "label": "D3"})
+        (beacon,) = (await commander.get("/beacons")).json()
+        assert (beacon["north_m"], beacon["label"]) == (5.0, "D3")
+        assert (await commander.delete("/beacons/door-3")).status_code == 204
+        assert (await commander.delete("/beacons/door-3")).status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("changes", "status", "sentence"),
+    [
+        ({"unit_id": "nobody"}, 409, "no registered unit"),
+        ({"std_m": 0.0}, 422, "std_m"),
+        ({"t_ms": 4_000_000_000_000}, 409, "in the future"),
+        ({"floor": 3}, 409, "no floor 3"),
+        ({"unknown": 1}, 422, "unknown"),
+    ],
+)
+async def test_a_bad_pin_is_refused_with_a_sentence(
+    station: DeskStation,
+    clock: ManualClock,
+    make_position: object,
+    changes: dict[str, object],
+    status: int,
+    sentence: str,
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await walk(station, clock, commander, make_position)
+        body = {"unit_id": "FF-01", "north_m": 58.0, "east_m": 1.5} | changes
+        answer = await commander.post("/pins", json=body)
+        assert answer.status_code == status
+        assert sentence in answer.json()["detail"]
+        assert (await commander.get("/pins")).json() == []
+
+
+async def test_a_viewer_sees_pins_and_sets_none(station: DeskStation) -> None:
+    async with station.client(Role.VIEWER) as viewer:
+        assert (await viewer.get("/pins")).status_code == 200
+        body = {"unit_id": "FF-01", "north_m": 0.0, "east_m": 0.0}
+        assert (await viewer.post("/pins", json=body)).status_code == 403
