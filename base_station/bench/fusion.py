@@ -21,6 +21,7 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
+from base_station.bench.incident_bound import ENGINE_STD_M, bound_m2, draw_errors_m
 from base_station.bench.incident_building import SteelBuilding, draw_building
 from base_station.bench.incident_people import PEOPLE, Truth, live_through
 from base_station.bench.incident_scores import ERROR_STAGES, HELD_STAGES, Scores
@@ -39,8 +40,8 @@ Floats = NDArray[np.float64]
 
 SOLVED_RAD = 0.2
 PEER_HEADING_STD_RAD = math.radians(5.0)
-ENGINE_STD_M = 0.5
 WITH_PLAN, WITHOUT = "with the plan", "without a plan"
+BOUND = "the best possible without a plan"
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def bench_fusion(
 
 
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
-    names = (WITH_PLAN, WITHOUT, "fixes alone", "path alone", "switching")
+    names = (WITH_PLAN, WITHOUT, BOUND, "fixes alone", "path alone", "switching")
     ways = {name: Scores() for name in names}
     timing = Timing()
     walked_m: list[float] = []
@@ -98,8 +99,7 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
             for name in (WITH_PLAN, WITHOUT):
                 run = fuse(kind, person, timing, with_plan=name == WITH_PLAN)
                 ways[name].note(person.truth, run.places_m, run.normalised2)
-            if not person.truth.from_engine:
-                walked_m.append(run.heading_walked_m)
+            walked_m.append(run.heading_walked_m)
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
     return FusionReport(
@@ -195,7 +195,13 @@ def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
         alone[row] = last
         switching[row] = last + path_m[row] - last_path_m
     begin = truth.place_m[0, :2] - path_m[0]
-    return {"fixes alone": alone, "path alone": path_m + begin, "switching": switching}
+    best_m = draw_errors_m(rng, bound_m2(truth, person.fixes, person.building))
+    return {
+        BOUND: truth.place_m[:, :2] + best_m,
+        "fixes alone": alone,
+        "path alone": path_m + begin,
+        "switching": switching,
+    }
 
 
 def _percentiles(scores: Scores, percent: float) -> dict[str, float]:
@@ -212,7 +218,8 @@ def _errors_table(report: FusionReport) -> Table:
             f"{ce50_m[stage]:.1f} / {report.ce95_m[name][stage]:.1f}" for stage in ERROR_STAGES
         ]
         title = f"{report.fuser}, {name}" if name in report.held_95 else name
-        table.add_row(title, *cells, f"{report.seam_95_m[name]:.1f}")
+        seam = "" if name == BOUND else f"{report.seam_95_m[name]:.1f}"
+        table.add_row(title, *cells, seam)
     table.add_row("to reach", "2.0", "3.0", "", "")
     return table
 

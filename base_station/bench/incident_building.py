@@ -2,7 +2,8 @@
 and one way in.
 
 All floors have the stairwell at the same place; the other partitions differ.  North and east in
-metres; the south wall lies on north 0 and the west wall on east 0.
+metres; the south wall lies on north 0 and the west wall on east 0.  The plan that is loaded is not
+the building: it lies some decimetres aside, and some doors were made after it was drawn.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ CORRIDOR_M = 2.0
 DOOR_M = 1.0
 STAIRWELL_M = 3.0
 WAY_IN_M = 1.6
+PLAN_OFF_M = 0.25  # standard deviation, each axis
+NEW_DOORS = 0.04  # of the doors: on the plan there is a wall
 
 Place = tuple[float, float]  # (north_m, east_m)
 Wall = tuple[int, Place, Place]  # floor and both ends
@@ -41,6 +44,8 @@ class SteelBuilding:
     entrance_east_m: float  # of the middle of the south entrance
     rooms: tuple[Room, ...]
     walls: tuple[Wall, ...]
+    drawn_walls: tuple[Wall, ...]  # on the plan
+    plan_off_m: Place
 
     @property
     def corridor_north_m(self) -> float:
@@ -67,11 +72,22 @@ class SteelBuilding:
             _feature("stairs", k, "Polygon", [*stairwell, stairwell[0]]) for k in range(STOREYS)
         ]
         features += [
-            _feature("wall", k, "LineString", [one, other]) for k, one, other in self.walls
+            _feature("wall", k, "LineString", [one, other]) for k, one, other in self.drawn_walls
         ]
         site = {"frame": "site-m", "floors": floors}
+        for feature in features:
+            self._shift(feature["geometry"]["coordinates"])
         plan = {"type": "FeatureCollection", "muster": site, "features": features}
         return msgspec.json.encode(plan)
+
+    def _shift(self, coordinates: list[Any]) -> None:
+        """Put a line or polygon where the plan has it."""
+        if isinstance(coordinates[0], list):
+            for part in coordinates:
+                self._shift(part)
+        else:
+            coordinates[0] += self.plan_off_m[1]
+            coordinates[1] += self.plan_off_m[0]
 
 
 def draw_building(rng: np.random.Generator) -> SteelBuilding:
@@ -82,23 +98,27 @@ def draw_building(rng: np.random.Generator) -> SteelBuilding:
     south_m, north_m = depth_m / 2.0 - CORRIDOR_M / 2.0, depth_m / 2.0 + CORRIDOR_M / 2.0
     rooms: list[Room] = []
     walls: list[Wall] = []
+    on_corridor: list[Wall] = []
+    on_plan: list[Wall] = []
     for floor in range(STOREYS):
         hall = [(hall_m, hall_m + STAIRWELL_M)] if floor == 0 else []
         for side_m, outer_m, kept in (
             (south_m, 0.0, hall),
             (north_m, depth_m, [(stairs_m, stairs_m + STAIRWELL_M)]),
         ):
-            gaps = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
+            gaps = known = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
             for west_m, east_m in _partition(rng, length_m, kept):
                 door_m = float(rng.uniform(west_m + 1.0, east_m - 1.0))
-                gaps.append((door_m, DOOR_M))
+                gaps = [*gaps, (door_m, DOOR_M)]
+                known = [*known, *([(door_m, DOOR_M)] if rng.random() > NEW_DOORS else [])]
                 low_m, high_m = sorted((side_m, outer_m))
                 rooms.append(Room(floor, (low_m, west_m), (high_m, east_m), (side_m, door_m)))
                 if east_m < length_m:
                     walls.append((floor, (low_m, east_m), (high_m, east_m)))
             for _, east_m in kept:
                 walls.append((floor, (side_m, east_m), (outer_m, east_m)))
-            walls += _along_east(floor, side_m, length_m, gaps)
+            on_corridor += _along_east(floor, side_m, length_m, gaps)
+            on_plan += _along_east(floor, side_m, length_m, known)
         way_in = [(hall_m + STAIRWELL_M / 2.0, WAY_IN_M)] if floor == 0 else []
         walls += _along_east(floor, 0.0, length_m, way_in)
         walls += _along_east(floor, depth_m, length_m, [])
@@ -112,7 +132,9 @@ def draw_building(rng: np.random.Generator) -> SteelBuilding:
         stairs_east_m=stairs_m,
         entrance_east_m=hall_m + STAIRWELL_M / 2.0,
         rooms=tuple(rooms),
-        walls=tuple(walls),
+        walls=(*walls, *on_corridor),
+        drawn_walls=(*walls, *on_plan),
+        plan_off_m=(float(rng.normal(0.0, PLAN_OFF_M)), float(rng.normal(0.0, PLAN_OFF_M))),
     )
 
 

@@ -127,22 +127,25 @@ def fixes_of(
         white = OPEN_WHITE_M * rng.normal(size=2)
         if truth.goes_in_s + RUBBISH_INSIDE_S < t_s < truth.comes_out_s + FOUND_AGAIN_S:
             continue
-        outside_m = max(0.0, -building.depth_inside_m(north_m, east_m))
-        walls_m = WALL_M * math.exp(-outside_m / WALL_REACH_M)
-        if outside_m == 0.0:
-            walls_m = RUBBISH_M
-        error_m = OPEN_SLOW_M * slow + white + walls_m * wall_slow
+        std_m = walls_m(building, north_m, east_m)
+        error_m = OPEN_SLOW_M * slow + white + std_m * wall_slow
         fixes[row] = PlaceFix(
             t_mono_ns=mono_ns(t_s),
             north_m=float(north_m + error_m[0]),
             east_m=float(east_m + error_m[1]),
             down_m=0.0,
             horizontal_std_m=max(
-                STD_FLOOR_M, math.hypot(OPEN_SLOW_M, OPEN_WHITE_M, ADMITTED * walls_m)
+                STD_FLOOR_M, math.hypot(OPEN_SLOW_M, OPEN_WHITE_M, ADMITTED * std_m)
             ),
             vertical_std_m=None,
         )
     return fixes
+
+
+def walls_m(building: SteelBuilding, north_m: float, east_m: float) -> float:
+    """Standard deviation of what walls add to a fix, each axis."""
+    outside_m = -building.depth_inside_m(north_m, east_m)
+    return RUBBISH_M if outside_m <= 0.0 else WALL_M * math.exp(-outside_m / WALL_REACH_M)
 
 
 @dataclass(frozen=True)

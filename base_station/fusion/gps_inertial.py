@@ -221,8 +221,9 @@ class GpsInertialFuser:
         kind = self._kind
         path = (stretch.north_m, stretch.east_m, stretch.moving_s, -stretch.down_m)
         noise = kind.walk_m_per_sqrt_m**2, kind.turn_rad_per_sqrt_m**2
-        self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
         self._height.climb(stretch.down_m, climb_var_m2(kind, stretch.down_m, stretch.length_m))
+        self._horizontal.stand_at(self._height.down_m)
+        self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
 
     def _restart(self) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown."""

@@ -62,8 +62,10 @@ class WalledFilter:
         if grid is None:
             self._cloud = None
 
-    def stand_on(self, floor: int | None) -> None:
-        self._floor = floor
+    def stand_at(self, down_m: float) -> None:
+        """The height says on which storey the wearer is, and whose walls stand in the way."""
+        if self._grid is not None:
+            self._floor = self._grid.plan.floor_at(down_m, self._floor)
 
     @property
     def is_walled(self) -> bool:

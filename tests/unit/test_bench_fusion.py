@@ -46,7 +46,7 @@ def test_the_same_seed_gives_the_same_errors() -> None:
     for _ in range(2):
         person = draw_incident(np.random.default_rng(3))[1]
         runs.append(fuse(FUSERS[0], person, Timing(), with_plan=True).places_m)
-    assert np.array_equal(*runs)
+    assert np.array_equal(runs[0], runs[1])
 
 
 def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None:
