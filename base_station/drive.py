@@ -75,6 +75,7 @@ class StationDrive:
         now_ns = surroundings.clock.monotonic_ns()
         self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
+        self._repeated = 0  # messages that were in the log already
         self._health_due = False  # consoles hear of the station's health with the next delta
 
     # ---- from any thread
@@ -156,12 +157,15 @@ class StationDrive:
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
-        heard = judge(key, payload, self._pipeline.state)
+        event = self._keeping.event_of(t_ns, key, payload)
+        heard = judge(key, event, self._pipeline.state)
         if heard is Heard.FORGED:
             text = f"Somebody on the bus speaks as the station ({key}): not believed"
             self._watch.note("bus", text)
+        elif heard is Heard.REPEATED:
+            self._repeated += 1
         elif heard is not Heard.LEAVE:
-            self._keeping.keep_and_step(t_ns, key, payload, urgent=heard is Heard.URGENT)
+            self._keeping.keep(event, key, payload, urgent=heard is Heard.URGENT)
 
     def _take_actions(self) -> None:
         while self._inbox:
@@ -195,7 +199,9 @@ class StationDrive:
     def _look_around(self) -> None:
         messages = self._pipeline.state.counts.messages
         self._picture.facts = msgspec.structs.replace(
-            self._around.facts(), messages_per_s=float(messages - self._messages_before)
+            self._around.facts(),
+            messages_per_s=float(messages - self._messages_before),
+            repeated=self._repeated,
         )
         self._messages_before = messages
         self._health_due = True

@@ -67,14 +67,11 @@ class Refused(msgspec.Struct, frozen=True):
 
 
 Output = (
-    FusedPosition
-    | AlarmChange
-    | UnitTouched
-    | TrailFilled
-    | PinsTouched
-    | CommandTouched
-    | Refused
+    FusedPosition | AlarmChange | UnitTouched | TrailFilled | PinsTouched | CommandTouched | Refused
 )
+
+
+DECODER_FAILED = "the decoder failed"
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
@@ -84,6 +81,8 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         message = decode(channel, payload)
     except WireError as error:
         return Rejected(t_ns, key, str(error))
+    except Exception as error:  # noqa: BLE001  # a mistake of ours must not cost what was said
+        return Rejected(t_ns, key, f"{DECODER_FAILED}: {error!r}")
     speaker = STATION_ID if channel.direction is Direction.DOWN else unit_id
     if message.header.unit_id != speaker:
         return Rejected(

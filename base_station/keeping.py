@@ -78,11 +78,20 @@ class Keeping:
     def keep_and_step(
         self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False
     ) -> list[Output]:
+        """What followed from a record."""
+        return self.keep(self.event_of(t_ns, key, payload), key, payload, urgent=urgent)
+
+    def event_of(self, t_ns: int, key: str, payload: bytes) -> StationEvent:
         """Station time never goes back, whatever the machine's clock does."""
+        return event_of(max(t_ns, self._pipeline.state.t_ns), key, payload)
+
+    def keep(
+        self, event: StationEvent, key: str, payload: bytes, *, urgent: bool = False
+    ) -> list[Output]:
+        """What followed from an event, the bytes of which are in the log before it is stepped."""
         self._urgent = self._urgent or urgent
-        t_ns = max(t_ns, self._pipeline.state.t_ns)
-        self._log.write(t_ns, key, payload)
-        outputs = self._step(event_of(t_ns, key, payload))
+        self._log.write(event.t_ns, key, payload)
+        outputs = self._step(event)
         for output in outputs:
             if isinstance(output, _DECISIONS):
                 self._keep_output(output)

@@ -61,6 +61,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     log_bytes: int = 0
     disk_free_bytes: int = 0
     messages_per_s: float = 0.0
+    repeated: int = 0
     insecure: bool = False
     standby: StandbyView | None = None
 
@@ -261,6 +262,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         log_bytes=facts.log_bytes,
         disk_free_bytes=facts.disk_free_bytes,
         messages_per_s=facts.messages_per_s,
+        repeated=facts.repeated,
         insecure=facts.insecure,
         standby=facts.standby,
     )

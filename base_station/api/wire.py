@@ -209,6 +209,7 @@ class HealthView(msgspec.Struct, frozen=True):
     messages_per_s: float
     insecure: bool
     standby: StandbyView | None = None  # None: this is the only station
+    repeated: int = 0  # messages since the station started that came again and were kept once
 
 
 class ReplayView(msgspec.Struct, frozen=True):

@@ -68,6 +68,26 @@ def said_keys(station: LiveStation) -> list[str]:
     return [key for _, key, _ in station.log.records() if key.endswith(EVENT.suffix)]
 
 
+def test_what_is_replayed_is_in_the_log_once_and_counted_even_after_a_restart(
+    tmp_path: Path,
+) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        for seq in (1, 2, 2, 1, 1):
+            station.say(mayday(seq))
+        until(lambda: repeated(station) == 3)
+    with LiveStation(tmp_path) as station:
+        for seq in (2, 1, 3):
+            station.say(mayday(seq))
+        until(lambda: len(said_keys(station)) == 3)
+        until(lambda: repeated(station) == 2)
+        assert said_keys(station) == [EVENT.key(U)] * 3
+
+
+def repeated(station: LiveStation) -> int:
+    return station.snapshot().health.repeated
+
+
 def test_deltas_are_numbered_and_a_snapshot_carries_the_last_number(
     tmp_path: Path, make_position: MakePosition
 ) -> None:

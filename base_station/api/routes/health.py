@@ -30,6 +30,7 @@ class Health(BaseModel):
     log_bytes: int
     disk_free_bytes: int
     messages_per_s: float
+    repeated: int
     insecure: bool
     consoles: int
     segments: list[Segment]
@@ -48,6 +49,7 @@ def get_health(station: Station, _: Viewer) -> Health:
         log_bytes=view.log_bytes,
         disk_free_bytes=view.disk_free_bytes,
         messages_per_s=view.messages_per_s,
+        repeated=view.repeated,
         insecure=view.insecure,
         consoles=station.hub.watchers,
         segments=[

@@ -196,6 +196,7 @@ export interface HealthView {
   messages_per_s: number;
   insecure: boolean;
   standby: StandbyView | null; // null: this is the only station
+  repeated: number; // messages since the station started that came again and were kept once
 }
 
 export interface ReplayView {

@@ -21,6 +21,7 @@ export const HEALTH: HealthView = {
   messages_per_s: 0,
   insecure: false,
   standby: null,
+  repeated: 0,
 };
 
 export const STATUS: StatusView = {

@@ -21,6 +21,7 @@ export function HealthDialog() {
         <Figure name="Messages received" value={health.messages.toLocaleString("en")} />
         <Figure name="Messages a second" value={health.messages_per_s.toFixed(1)} />
         <Figure name="Messages that could not be read" value={String(health.undecodable)} />
+        <Figure name="Messages that came again" value={String(health.repeated)} />
         <Figure name="Unknown units" value={String(health.unknown_units)} />
         <Figure name="Recorded" value={bytes(health.log_bytes)} />
         <Figure name="Free disk space" value={bytes(health.disk_free_bytes)} />
