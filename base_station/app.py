@@ -11,6 +11,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+import msgspec
+
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -44,6 +46,8 @@ from base_station.playback import Archive
 from base_station.read_only import ReadOnlyGate
 from base_station.rebuild import project_log
 from base_station.recorder import Recorder
+from base_station.recordings.desk import RecordingDesk
+from base_station.recordings.fetch import ask_over
 from base_station.replay import ReplaySession, Window
 from base_station.router import station_endpoint
 from base_station.router_process import RouterProcess
@@ -128,7 +132,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             ),
         )
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
-        closing.callback(bus.serve(clock_key("*"), ClockServer(steady).replies).close)
+        recordings = _beside_messages(bus, folder, steady, closing)
         backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
@@ -147,7 +151,10 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
                 projection=projection,
                 checkpoints=checkpoints,
                 photo_urls=roster.photo_url,
-                facts=lambda: _facts(config, recorder, feed, router, expiry, side),
+                facts=lambda: msgspec.structs.replace(
+                    _facts(config, recorder, feed, router, expiry, side),
+                    recordings=recordings.views(),
+                ),
                 clock=steady,
                 boot_id=secrets.randbits(63),
                 report=report,
@@ -176,6 +183,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             clock=steady,
             secure=config.http.certificate is not None,
             standing=side.standing,
+            recordings=recordings,
             accountability=config.accountability,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
@@ -359,6 +367,14 @@ def _replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartRepl
         return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
 
     return start
+
+
+def _beside_messages(
+    bus: ZenohBus, folder: DataFolder, clock: Clock, closing: ExitStack
+) -> RecordingDesk:
+    """What units ask for, and are asked for, beside their messages and journals."""
+    closing.callback(bus.serve(clock_key("*"), ClockServer(clock).replies).close)
+    return closing.enter_context(RecordingDesk(ask_over(bus), folder.recordings, clock))
 
 
 def _facts(

@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.recordings.command import fetch_recording
+
 if TYPE_CHECKING:
     from base_station.config import StationConfig
 
 app = typer.Typer(help="The base station.", no_args_is_help=True, pretty_exceptions_enable=False)
 users = typer.Typer(help="Who may log in.", no_args_is_help=True)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
+app.command("fetch-recording")(fetch_recording)
 app.add_typer(users, name="users")
 app.add_typer(log, name="log")
 

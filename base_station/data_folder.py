@@ -14,6 +14,7 @@ class DataFolder:
         self.path = path
         self.log = path / LOG_FOLDER
         self.checkpoints = path / "checkpoints"
+        self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.database = path / "station.sqlite"
         self.first_login = path / "first-login.txt"
 

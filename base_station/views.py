@@ -21,6 +21,7 @@ from base_station.api.wire import (
     PersonView,
     PinView,
     PositionView,
+    RecordingView,
     ReplayView,
     Snapshot,
     StandbyView,
@@ -64,6 +65,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     repeated: int = 0
     insecure: bool = False
     standby: StandbyView | None = None
+    recordings: tuple[RecordingView, ...] = ()
 
 
 def unit_views(
@@ -90,7 +92,7 @@ def _unit_view(
         person=person_view(unit.person, photo_urls) if unit.person else None,
         link=unit.link,
         last_heard_ms=_ms(unit.heard_ns),
-        status=_status_view(unit, unit.status) if unit.status else None,
+        status=_status_view(unit, unit.shown_status) if unit.shown_status else None,
         status_ms=_ms(unit.status_ns) if unit.status else None,
         ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
         heat_level=heat.level if heat is not None and heat.is_open else "",
@@ -265,6 +267,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         repeated=facts.repeated,
         insecure=facts.insecure,
         standby=facts.standby,
+        recordings=facts.recordings,
     )
 
 

@@ -23,6 +23,7 @@ from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, sensor_of
 from edge.raw_uplink import RawUplink
+from edge.recording_server import RecordingServer
 from edge.runtime import Agent, Parts
 from edge.samples import SensorDescription
 from edge.source_reader import SourceReader
@@ -147,12 +148,12 @@ def compose_agent(
         folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
     )
     commands: SimpleQueue[bytes] = SimpleQueue()
-    server = JournalServer(unit_id, spool)
+    servers = JournalServer(unit_id, spool), RecordingServer(unit_id, folder, clock)
     link = Link(
         unit_id,
         station,
         lambda _key, payload: commands.put(payload),
-        (server.key_expression, server.replies),
+        [(server.key_expression, server.replies) for server in servers],
     )
     outbox = Outbox(unit_id, spool, link.publish)
     if damaged is not None:

@@ -16,13 +16,14 @@ from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
 from shared.errors import ConfigError
-from shared.mcap_log import SegmentWriter, segment_paths
+from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
 from shared.messages import Message, UnitDescription
 
 logger = logging.getLogger(__name__)
 
 _DESCRIBE_EVERY_NS = 60 * NS_PER_S  # so that any segment can be replayed by itself
 _LOOK_EVERY_S = 0.2
+_POLICY = SegmentPolicy(segment_s=120.0)  # a station fetches whole segments of a window
 
 Raw = tuple[Message, ...]
 
@@ -45,7 +46,7 @@ class BlackBox:
         try:
             self._make_room()
             self._writer = SegmentWriter(
-                folder / self._boot_name(), on_closed=lambda _: self._try_to_make_room()
+                folder / self._boot_name(), _POLICY, lambda _: self._try_to_make_room()
             )
         except OSError as error:
             raise ConfigError(f"the black box cannot be written: {error}") from error

@@ -7,6 +7,7 @@ thread does it; publishing without a link drops the bytes, which the journal kee
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from contextlib import ExitStack
 from threading import Condition, Lock, Thread
 from typing import Protocol
@@ -43,12 +44,12 @@ class Link:
         unit_id: str,
         station: OtherEnd,
         on_command: SampleHandler,
-        journal: tuple[str, QueryHandler],
+        served: Iterable[tuple[str, QueryHandler]],
     ) -> None:
         self._unit_id = unit_id
         self._station = station
         self._on_command = on_command
-        self._journal = journal
+        self._served = tuple(served)
         self._bus: Bus | None = None
         self._wanted_up = True
         self._ended = False
@@ -142,7 +143,8 @@ class Link:
     def _declare(self, bus: Bus, declared: ExitStack) -> None:
         for unit_id in (self._unit_id, EVERY_UNIT):
             declared.callback(bus.subscribe(COMMAND.key(unit_id), self._on_command).close)
-        declared.callback(bus.serve(*self._journal).close)
+        for key_expression, handler in self._served:
+            declared.callback(bus.serve(key_expression, handler).close)
         declared.callback(bus.declare_alive(alive_key(self._unit_id)).close)
 
     def _forget_bus(self) -> None:

@@ -10,36 +10,49 @@ import typer
 from rich.console import Console
 from rich.progress import track as progress_bar
 
+from edge.sources.black_box import BlackBoxSource
+from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
 from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality, TrackBatch
 from edge.tracker.rows import join_rows
 from shared.errors import UserError
+from shared.mcap_log import segment_paths
 
 COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
 
 
 def track(
-    recording: Annotated[Path, typer.Argument(help="A trial folder or a CSV of samples.")],
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            help="A trial folder, a CSV of samples, or a black box: a boot or a segment."
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="The CSV file to write.")],
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
 ) -> None:
     """Track a recorded walk and write time, position and standard deviations."""
-    source = RecordingSource(recording)
+    black_box = recording.suffix == ".mcap" or bool(segment_paths(recording))
+    source = BlackBoxSource(recording) if black_box else RecordingSource(recording)
     rows = run_tracker(source, tracker, quiet=False)
     write_csv(rows, out)
     step_m = rows.position_n_m[-1] - rows.position_n_m[0]
     doubtful = float(np.mean(rows.quality != Quality.GOOD))
     Console(stderr=True).print(
-        f"{source.report}\n{len(rows)} rows to {out}: {rows.distance_m[-1]:.1f} m in "
+        f"{_report(source)}{len(rows)} rows to {out}: {rows.distance_m[-1]:.1f} m in "
         f"{rows.steps[-1]} strides, ends {np.hypot(step_m[0], step_m[1]):.2f} m from its start "
         f"and {-step_m[2]:+.2f} m higher; {100 * doubtful:.0f} % of the rows are not good."
     )
 
 
-def run_tracker(source: RecordingSource, name: str, *, quiet: bool) -> TrackBatch:
+def _report(source: Source) -> str:
+    return f"{source.report}\n" if isinstance(source, RecordingSource) else ""
+
+
+def run_tracker(source: Source, name: str, *, quiet: bool) -> TrackBatch:
     """Push a whole recording through a new tracker, as its batches come."""
     tracker = make_tracker(name, source.description)
     batches = progress_bar(

@@ -132,6 +132,7 @@ class Scope(StrEnum):
     LIVE = "live"
     PEOPLE = "people"
     PINS = "pins"
+    RECORDINGS = "recordings"
     REPLAYS = "replays"
     SITE = "site"
     TOKENS = "tokens"

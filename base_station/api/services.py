@@ -19,6 +19,7 @@ from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.forgetting import Forgetter
+from base_station.recordings.desk import RecordingDesk
 from base_station.sinks import ActionDone, OperatorGate
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
@@ -40,6 +41,7 @@ class Services:
     clock: Clock
     secure: bool  # the console is served over TLS
     standing: Standing | None = None  # None: this is the only station
+    recordings: RecordingDesk | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def act(self, by: str, action: Action) -> ActionDone:

@@ -197,6 +197,17 @@ class StandbyView(msgspec.Struct, frozen=True):
     in_step: bool  # the standby has what the active station has
 
 
+class RecordingView(msgspec.Struct, frozen=True):
+    """A unit's raw recording that somebody asked for, on its way over the bus."""
+
+    fetch_id: str
+    unit_id: str
+    state: str  # waiting | fetching | done | failed
+    problem: str  # a sentence for a person
+    done_bytes: int
+    total_bytes: int  # 0: not known yet
+
+
 class HealthView(msgspec.Struct, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -209,6 +220,7 @@ class HealthView(msgspec.Struct, frozen=True):
     messages_per_s: float
     insecure: bool
     standby: StandbyView | None = None  # None: this is the only station
+    recordings: tuple[RecordingView, ...] = ()
     repeated: int = 0  # messages since the station started that came again and were kept once
 
 

@@ -52,7 +52,7 @@ def make_link(open_bus, commands) -> Link:
         "u1",
         OtherEnd(open_bus),
         lambda _, payload: commands.append(payload),
-        ("muster/v1/u1/journal/**", lambda key, parameters, payload: [b"journal"]),
+        [("muster/v1/u1/journal/**", lambda key, parameters, payload: [b"journal"])],
     )
 
 

@@ -196,6 +196,17 @@ export interface HealthView {
   messages_per_s: number;
   insecure: boolean;
   standby: StandbyView | null; // null: this is the only station
+  recordings?: RecordingView[];
+}
+
+/** A unit's raw recording that somebody asked for, on its way over the bus. */
+export interface RecordingView {
+  fetch_id: string;
+  unit_id: string;
+  state: string; // waiting | fetching | done | failed
+  problem: string; // a sentence for a person
+  done_bytes: number;
+  total_bytes: number; // 0: not known yet
   repeated: number; // messages since the station started that came again and were kept once
 }
 

@@ -1,0 +1,96 @@
+"""Units' raw recordings, pulled over the bus on request."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from base_station.api.forms import LAST_MS, NS_PER_MS, Form, Id, PersonIdText, UnitIdText, to_ms
+from base_station.api.problems import Problem
+from base_station.api.routes.incidents import incident_or_404
+from base_station.api.security import Commander, Viewer
+from base_station.api.services import Services, Station
+from base_station.recordings.desk import Pull, RecordingDesk
+from base_station.recordings.fetch import Wanted
+
+router = APIRouter(tags=["recordings"])
+
+
+class NewPull(Form):
+    """Of an incident, or of a window."""
+
+    unit_id: UnitIdText
+    incident_id: PersonIdText | None = None
+    from_ms: Annotated[int | None, Field(ge=0, le=LAST_MS)] = None
+    to_ms: Annotated[int | None, Field(ge=0, le=LAST_MS)] = None  # left out: now
+
+
+class Recording(BaseModel):
+    fetch_id: str
+    unit_id: str
+    by: str
+    from_ms: int
+    to_ms: int
+    state: str  # waiting | fetching | done | failed
+    problem: str  # a sentence for a person
+    done_bytes: int
+    total_bytes: int  # 0: not known yet
+
+
+@router.get("/recordings")
+def list_recordings(station: Station, _: Viewer) -> list[Recording]:
+    """Those that are being pulled and the last that are over."""
+    return [_recording(pull) for pull in _desk(station).pulls()]
+
+
+@router.post("/recordings", status_code=202)
+def fetch_recording(new: NewPull, station: Station, who: Commander) -> Recording:
+    """It is pulled behind live data until it is there, whoever is away or started again."""
+    desk = _desk(station)
+    if new.unit_id not in station.roster.registered_units():
+        raise Problem(404, f"There is no unit {new.unit_id}.")
+    pull = desk.add(who.username, Wanted(new.unit_id, *_window(station, new)))
+    said = f"{new.unit_id} from {pull.wanted.from_ns} to {pull.wanted.to_ns}"
+    station.records.audit(who.username, "FetchedRecording", said)
+    return _recording(pull)
+
+
+@router.delete("/recordings/{fetch_id}", status_code=204)
+def stop_recording(fetch_id: Id, station: Station, who: Commander) -> None:
+    """What has come is kept."""
+    if not _desk(station).stop(fetch_id):
+        raise Problem(404, "There is no such recording being pulled.")
+    station.records.audit(who.username, "StoppedRecording", fetch_id)
+
+
+def _window(station: Services, new: NewPull) -> tuple[int, int]:
+    now_ns = station.clock.utc_ns()
+    if (new.incident_id is None) == (new.from_ms is None):
+        raise Problem(422, "Say which window: incident_id, or from_ms and perhaps to_ms.")
+    if new.incident_id is not None:
+        incident = incident_or_404(station, new.incident_id)
+        return incident.opened_ns, incident.closed_ns or now_ns
+    assert new.from_ms is not None
+    return new.from_ms * NS_PER_MS, now_ns if new.to_ms is None else new.to_ms * NS_PER_MS
+
+
+def _desk(station: Services) -> RecordingDesk:
+    if station.recordings is None:
+        raise Problem(404, "A station that only replays has no units to ask.")
+    return station.recordings
+
+
+def _recording(pull: Pull) -> Recording:
+    return Recording(
+        fetch_id=pull.fetch_id,
+        unit_id=pull.wanted.unit_id,
+        by=pull.by,
+        from_ms=to_ms(pull.wanted.from_ns),
+        to_ms=to_ms(pull.wanted.to_ns),
+        state=pull.state.value,
+        problem=pull.problem,
+        done_bytes=pull.done_bytes,
+        total_bytes=pull.total_bytes,
+    )

@@ -1,0 +1,73 @@
+"""Puts together what pulls one recording beside a running station, whose router it uses."""
+
+from __future__ import annotations
+
+import getpass
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+from base_station.config import StationConfig
+from base_station.data_folder import DataFolder
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.store import Store
+from base_station.recordings.fetch import Fetch, FetchState, Wanted, ask_over
+from base_station.router import station_endpoint
+from shared.bus_zenoh import ZenohBus
+from shared.clock import SystemClock
+from shared.errors import StoreError, UserError
+
+Show = Callable[[Fetch], None]
+_REST_S = 0.5  # when the unit does not answer
+
+
+def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
+    """Station times of an incident, one that is open until now.  Raises UserError."""
+    clock = SystemClock()
+    with ExitStack() as closing:
+        records = Records(_store(config, closing), clock)
+        incident = records.incident(incident_id)
+        if incident is None:
+            known = ", ".join(f"{one.incident_id} ({one.name})" for one in records.incidents())
+            raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+        return incident.opened_ns, incident.closed_ns or clock.utc_ns()
+
+
+def pull(config: StationConfig, wanted: Wanted, show: Show) -> Path:
+    """Pull a recording; ``show`` hears of every step.  Gives the folder in which it is.
+
+    Raises MusterError, one sentence, where it comes to nothing.
+    """
+    clock = SystemClock()
+    with ExitStack() as closing:
+        store = _store(config, closing)
+        known = Roster(store, clock).registered_units()
+        if wanted.unit_id not in known:
+            names = ", ".join(sorted(known)) or "none"
+            raise UserError(f"there is no unit {wanted.unit_id}; known are: {names}")
+        bus = ZenohBus(station_endpoint(config.data, config.bus.listen))
+        closing.callback(bus.close)
+        folder = DataFolder(config.data).recordings
+        fetch = Fetch(ask_over(bus), folder, wanted, clock)
+        closing.callback(fetch.close)
+        said = f"{wanted.unit_id} from {wanted.from_ns} to {wanted.to_ns}"
+        Records(store, clock).audit(getpass.getuser(), "FetchedRecording", said)
+        while not fetch.state.is_over:
+            fetch.step()
+            show(fetch)
+            if fetch.state is FetchState.WAITING:
+                time.sleep(_REST_S)
+        if fetch.state is FetchState.FAILED:
+            raise UserError(fetch.problem)
+        return fetch.folder
+
+
+def _store(config: StationConfig, closing: ExitStack) -> Store:
+    database = DataFolder(config.data).database
+    if not database.exists():
+        raise StoreError(
+            f"there is no station's database in {config.data}; give the folder with --data"
+        )
+    return closing.enter_context(Store(database))

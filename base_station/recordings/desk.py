@@ -1,0 +1,167 @@
+"""Pulls the recordings that people asked for, by turns, and goes on with them after a restart."""
+
+from __future__ import annotations
+
+import secrets
+from pathlib import Path
+from threading import Event, Lock, Thread
+
+import msgspec
+
+from base_station.api.wire import RecordingView
+from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
+from shared.clock import Clock
+from shared.errors import MusterError, UserError
+
+_LIST = "wanted.json"
+_KEPT = 20  # of those that are over
+_MOST = 20  # under way at once
+_REST_S = 0.5  # when no unit answers
+
+
+class Pull(msgspec.Struct):
+    """What was asked for, by whom, and how far it has got."""
+
+    fetch_id: str
+    by: str
+    wanted: Wanted
+    state: FetchState = FetchState.WAITING
+    problem: str = ""
+    total_bytes: int = 0
+    done_bytes: int = 0
+
+
+class RecordingDesk:
+    """Pulls while it is entered; any thread may call the rest."""
+
+    def __init__(self, ask: Ask, folder: Path, clock: Clock) -> None:
+        self._ask = ask
+        self._folder = folder
+        self._clock = clock
+        self._lock = Lock()
+        self._pulls: list[Pull] = _read(folder / _LIST)
+        self._running: dict[str, Fetch] = {}
+        self._changed = Event()
+        self._closed = Event()
+        self._thread = Thread(target=self._run, name="recordings", daemon=True)
+
+    def __enter__(self) -> RecordingDesk:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed.set()
+        self._changed.set()
+        self._thread.join()
+        for fetch in self._running.values():
+            fetch.close()
+
+    def add(self, by: str, wanted: Wanted) -> Pull:
+        """Pull it, and go on until it is there; UserError where that makes no sense."""
+        if wanted.to_ns <= wanted.from_ns:
+            raise UserError("the window ends before it begins; turn the two times round")
+        with self._lock:
+            under_way = [one for one in self._pulls if not one.state.is_over]
+            if any(one.wanted.unit_id == wanted.unit_id for one in under_way):
+                raise UserError(
+                    f"a recording of {wanted.unit_id} is being pulled already; wait for it, or "
+                    "stop it"
+                )
+            if len(under_way) >= _MOST:
+                raise UserError(f"{_MOST} recordings are being pulled; wait for one, or stop one")
+            pull = Pull(secrets.token_hex(4), by, wanted)
+            over = [one for one in self._pulls if one.state.is_over]
+            self._pulls = [*over[1 - _KEPT :], *under_way, pull]
+            self._save()
+        self._changed.set()
+        return msgspec.structs.replace(pull)
+
+    def stop(self, fetch_id: str) -> bool:
+        """Give it up; what has come is kept.  False where there is no such pull under way."""
+        with self._lock:
+            for pull in self._pulls:
+                if pull.fetch_id == fetch_id and not pull.state.is_over:
+                    pull.state, pull.problem = FetchState.FAILED, "stopped by a person"
+                    self._save()
+                    return True
+        return False
+
+    def pulls(self) -> tuple[Pull, ...]:
+        """Those under way and the last that are over."""
+        with self._lock:
+            return tuple(msgspec.structs.replace(pull) for pull in self._pulls)
+
+    def views(self) -> tuple[RecordingView, ...]:
+        """As consoles see them."""
+        return tuple(
+            RecordingView(
+                one.fetch_id,
+                one.wanted.unit_id,
+                one.state.value,
+                one.problem,
+                one.done_bytes,
+                one.total_bytes,
+            )
+            for one in self.pulls()
+        )
+
+    def _run(self) -> None:
+        while not self._closed.is_set():
+            self._changed.clear()
+            with self._lock:
+                pulls = [pull for pull in self._pulls if not pull.state.is_over]
+            self._let_go({pull.fetch_id for pull in pulls})
+            answered = False
+            for pull in pulls:
+                if self._closed.is_set():
+                    return
+                answered |= self._turn(pull)
+            if not pulls:
+                self._changed.wait()
+            elif not answered:
+                self._changed.wait(_REST_S)
+
+    def _turn(self, pull: Pull) -> bool:
+        """One question to one unit; whether it answered."""
+        try:
+            fetch = self._running.get(pull.fetch_id)
+            if fetch is None:
+                fetch = Fetch(self._ask, self._folder, pull.wanted, self._clock)
+                self._running[pull.fetch_id] = fetch
+        except MusterError as error:  # another program pulls from this unit
+            self._note(pull, FetchState.WAITING, str(error))
+            return False
+        fetch.step()
+        with self._lock:
+            pull.total_bytes, pull.done_bytes = fetch.total_bytes, fetch.done_bytes
+        self._note(pull, fetch.state, fetch.problem)
+        return fetch.state is not FetchState.WAITING
+
+    def _let_go(self, under_way: set[str]) -> None:
+        for fetch_id in self._running.keys() - under_way:
+            self._running.pop(fetch_id).close()
+
+    def _note(self, pull: Pull, state: FetchState, problem: str) -> None:
+        with self._lock:
+            if pull.state.is_over:  # stopped meanwhile
+                return
+            pull.state, pull.problem = state, problem
+            if state.is_over:
+                self._save()
+
+    def _save(self) -> None:
+        """So that a station that is started again goes on; a disk that fails loses only that."""
+        making = self._folder / (_LIST + ".part")
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            making.write_bytes(msgspec.json.encode(self._pulls))
+            making.replace(self._folder / _LIST)
+        except OSError:
+            making.unlink(missing_ok=True)
+
+
+def _read(path: Path) -> list[Pull]:
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=list[Pull])
+    except (OSError, msgspec.DecodeError):
+        return []

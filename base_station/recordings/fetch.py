@@ -1,0 +1,245 @@
+"""One pull of a unit's recording: what is asked next, and what becomes of the answers.
+
+Every ``step`` asks the unit one question, so that whoever steps decides the pace.  What came is on
+the disk and is not asked for again, whichever of the two was ended in between.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+from collections.abc import Callable, Generator
+from datetime import UTC, datetime
+from enum import Enum
+from pathlib import Path, PurePosixPath
+from typing import TypeVar
+
+import msgspec
+
+from base_station.pace import Pace
+from shared.bus import Bus
+from shared.channels import ROOT
+from shared.clock import NS_PER_S, Clock
+from shared.errors import BusError, WireError
+from shared.folder_lock import FolderLock
+from shared.messages.recording import (
+    RecordedFile,
+    RecordingDigest,
+    RecordingIndex,
+    RecordingPiece,
+)
+
+HASHES = "SHA256SUMS"  # as `sha256sum --check` reads it
+_SPARED_BYTES = 256_000_000  # of the disk, for the station's log
+_PART = ".part"
+_TIMEOUT_S = 5.0  # of one question
+_CHANCES = 2  # for what is on the disk since before, and for all of it anew
+
+T = TypeVar("T")
+Steps = Generator[None, None, T]  # a pause before each question
+Ask = Callable[[str, str], bytes | None]  # unit, question -> the answer, where one comes
+
+
+class Wanted(msgspec.Struct, frozen=True):
+    """What somebody asked for; times are station time."""
+
+    unit_id: str
+    from_ns: int
+    to_ns: int
+
+
+class FetchState(Enum):
+    WAITING = "waiting"  # the unit does not answer
+    FETCHING = "fetching"
+    DONE = "done"
+    FAILED = "failed"
+
+    @property
+    def is_over(self) -> bool:
+        return self in (FetchState.DONE, FetchState.FAILED)
+
+
+class _HopelessError(Exception):
+    """It makes no sense to go on; the text is for a person."""
+
+
+class Fetch:
+    """``step`` it until ``state`` is over, then ``close`` it."""
+
+    def __init__(self, ask: Ask, folder: Path, wanted: Wanted, clock: Clock) -> None:
+        """``folder`` is of all recordings; the unit's own is made in it.
+
+        Raises DataFolderInUseError while another program pulls from the same unit.
+        """
+        self.wanted = wanted
+        self.folder = folder / wanted.unit_id
+        self.state = FetchState.WAITING
+        self.problem = ""  # a sentence for a person
+        self.total_bytes = 0  # 0: not known yet
+        self.done_bytes = 0
+        self._ask = ask
+        self._clock = clock
+        self._pace = Pace()
+        self._hashes: dict[str, str] = {}
+        self._lock = FolderLock(
+            self.folder, "pull of this unit's recording", "let that one end, or stop it"
+        )
+        self._steps = self._run()
+
+    def step(self) -> None:
+        """Ask one question more; never raises for what a unit, a link or a disk may do."""
+        if self.state.is_over:
+            return
+        try:
+            next(self._steps, None)
+        except _HopelessError as error:
+            self.state, self.problem = FetchState.FAILED, str(error)
+        except OSError as error:
+            self.state = FetchState.FAILED
+            self.problem = (
+                f"the recording cannot be written to {self.folder} ({error.strerror}): mend or "
+                "free the disk and ask again; what has come is kept"
+            )
+
+    def close(self) -> None:
+        self._steps.close()
+        self._lock.close()
+
+    def _run(self) -> Steps[None]:
+        index = yield from self._index()
+        self._check(index)
+        self.total_bytes = sum(one.size_bytes for one in index.files)
+        gone = 0
+        before_bytes = 0
+        for file in index.files:
+            gone += not (yield from self._file(file, before_bytes))
+            before_bytes += file.size_bytes
+            self.done_bytes = before_bytes
+        self._write_hashes()
+        self.state = FetchState.DONE
+        self.problem = (
+            f"{gone} of {len(index.files)} files are gone: the unit needed the room" if gone else ""
+        )
+
+    def _index(self) -> Steps[RecordingIndex]:
+        question = f"index?from={self.wanted.from_ns};to={self.wanted.to_ns}"
+        return (yield from self._answer(question, RecordingIndex.from_bytes))
+
+    def _check(self, index: RecordingIndex) -> None:
+        unit_id = self.wanted.unit_id
+        if not index.files:
+            began = datetime.fromtimestamp(index.first_ns / NS_PER_S, UTC)
+            kept = f"what it keeps begins at {began:%Y-%m-%dT%H:%M:%SZ}"
+            raise _HopelessError(
+                f"{unit_id} has no recording of that time: "
+                f"{kept if index.first_ns else 'it keeps none'}; choose another window"
+            )
+        if not all(_is_safe(one.path) for one in index.files):
+            raise _HopelessError(f"{unit_id} names files that no unit has; is it really {unit_id}?")
+        needed = sum(one.size_bytes for one in index.files) - sum(
+            path.stat().st_size for path in self.folder.rglob("*.mcap*")
+        )
+        free = shutil.disk_usage(self.folder).free - _SPARED_BYTES
+        if needed > free:
+            raise _HopelessError(
+                f"the recording needs {needed / 1e6:.0f} MB and {max(free, 0) / 1e6:.0f} MB can be "
+                f"spared at {self.folder}: free the disk or choose a shorter window"
+            )
+
+    def _file(self, file: RecordedFile, before_bytes: int) -> Steps[bool]:
+        """Have all of one file; False where the unit does not have it any more."""
+        whole = self.folder / PurePosixPath(file.path)
+        part = whole.with_name(whole.name + _PART)
+        whole.parent.mkdir(exist_ok=True)
+        if whole.exists() and not part.exists():
+            whole.rename(part)  # it may have grown since, and is looked at again
+        for _ in range(_CHANCES):
+            if not (yield from self._bytes(file, part, before_bytes)):
+                return False
+            answer = yield from self._answer(
+                f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
+            )
+            digest = _digest_of(part)
+            if digest == answer.sha256:
+                part.replace(whole)
+                self._hashes[file.path] = digest.hex()
+                return True
+            part.unlink()
+        raise _HopelessError(
+            f"{file.path} came out different from what {self.wanted.unit_id} has, {_CHANCES} "
+            "times: check the station's and the unit's disk"
+        )
+
+    def _bytes(self, file: RecordedFile, part: Path, before_bytes: int) -> Steps[bool]:
+        """Append to the part until it is whole; False where the unit does not have it any more."""
+        if part.exists() and part.stat().st_size > file.size_bytes:
+            os.truncate(part, file.size_bytes)
+        with part.open("ab") as written:
+            while (offset := written.tell()) < file.size_bytes:
+                self.done_bytes = before_bytes + offset
+                length = min(self._pace.answer_bytes, file.size_bytes - offset)
+                question = f"piece?path={file.path};offset={offset};length={length}"
+                asked_ns = self._clock.monotonic_ns()
+                piece = yield from self._answer(question, RecordingPiece.from_bytes)
+                self._pace.note(self._clock.monotonic_ns() - asked_ns)
+                if piece.gone:
+                    return False
+                if piece.offset == offset and _is_intact(piece):
+                    written.write(piece.data)
+                    written.flush()
+            os.fsync(written.fileno())
+        return True
+
+    def _answer(self, question: str, read: Callable[[bytes], T]) -> Steps[T]:
+        """Ask until there is an answer, once a step."""
+        while True:
+            yield
+            try:
+                answer = self._ask(self.wanted.unit_id, question)
+                if answer is not None:
+                    understood = read(answer)
+                    self.state, self.problem = FetchState.FETCHING, ""
+                    return understood
+            except (BusError, WireError):
+                pass  # the same as no answer: it is asked again
+            self._pace.note_nothing()
+            self.state = FetchState.WAITING
+            self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
+
+    def _write_hashes(self) -> None:
+        """Beside those of earlier pulls."""
+        path = self.folder / HASHES
+        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+        known = {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
+        text = "".join(
+            f"{digest}  {name}\n" for name, digest in sorted((known | self._hashes).items())
+        )
+        making = path.with_name(HASHES + _PART)
+        making.write_text(text, encoding="utf-8")
+        making.replace(path)
+
+
+def _is_safe(name: str) -> bool:
+    """Whatever a unit calls a file, it stays in the unit's folder."""
+    return re.fullmatch(r"[\w-][\w.-]*/[\w-][\w.-]*", name) is not None
+
+
+def _is_intact(piece: RecordingPiece) -> bool:
+    return hashlib.sha256(piece.data).digest() == piece.sha256
+
+
+def _digest_of(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").digest()
+
+
+def ask_over(bus: Bus) -> Ask:
+    """Questions over the bus, behind live data."""
+
+    def ask(unit_id: str, question: str) -> bytes | None:
+        selector = f"{ROOT}/{unit_id}/recording/{question}"
+        return next(iter(bus.query(selector, b"", _TIMEOUT_S)), None)
+
+    return ask

@@ -1,0 +1,110 @@
+"""A recording pulled from a running agent, by the command and by the API of a running station."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from edge.sources.black_box import BlackBoxSource
+from edge.warm_up import compile_trackers
+from shared.mcap_log import segment_paths
+from tests.station_command import Browser, Command, free_port, wait_until
+
+UNIT = "anna"
+RUN = "from edge.cli import app; app()"
+
+
+class Running:
+    """A station and an agent that records."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        compile_trackers()
+        self.folder = folder
+        self.data = folder / "station"
+        self.bus = f"tcp/127.0.0.1:{free_port()}"
+        where = ["--data", str(self.data), "--listen", self.bus]
+        self.where = where
+        http = ["--http", f"127.0.0.1:{free_port()}", "--insecure"]
+        station = stack.enter_context(Command(folder / "station.txt", "serve", *where, *http))
+        self.browser = stack.enter_context(Browser(station.wait_ready(), self.data))
+        self.browser.call("POST", "/units", json={"unit_id": UNIT})
+        agent = ["run", "--unit", UNIT, "--source", "simulated:straight", "--connect", self.bus]
+        agent += ["--data", str(folder / "units")]
+        command = [sys.executable, "-c", RUN, *agent]
+        with (folder / "agent.txt").open("wb") as said:
+            process = stack.enter_context(subprocess.Popen(command, stdout=said, stderr=said))
+        stack.callback(process.kill)
+        self.began_ms = round(time.time() * 1000) - 60_000
+        wait_until("the unit is linked", self._is_linked)
+        wait_until("the unit has recorded", lambda: self._recorded_bytes() > 20_000)
+
+    def fetch(self, *arguments: str) -> tuple[int, str]:
+        with Command(
+            self.folder / "fetch.txt", "fetch-recording", *arguments, *self.where
+        ) as command:
+            return command.wait(), command.said()
+
+    def pulled(self) -> list[Path]:
+        return [boot for boot in (self.data / "recordings" / UNIT).glob("2*") if boot.is_dir()]
+
+    def _is_linked(self) -> bool:
+        return "linked to the station" in (self.folder / "agent.txt").read_text()
+
+    def _recorded_bytes(self) -> int:
+        return sum(one.stat().st_size for one in (self.folder / "units").rglob("*.mcap"))
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    with ExitStack() as stack:
+        yield Running(tmp_path_factory.mktemp("fetch"), stack)
+
+
+def test_the_command_pulls_what_the_unit_has_recorded(running: Running) -> None:
+    code, said = running.fetch(UNIT, "--from", "2020-01-01T00:00+00:00")
+    assert code == 0, said
+    (boot,) = running.pulled()
+    assert boot.name in {one.name for one in (running.folder / "units" / UNIT).glob("*/*")}
+    assert segment_paths(boot)
+    assert sum(1 for _ in BlackBoxSource(boot).batches()) > 10
+
+
+def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -> None:
+    form = {"unit_id": UNIT, "from_ms": running.began_ms}
+    asked = running.browser.call("POST", "/recordings", json=form)
+
+    def state() -> dict[str, object]:
+        (pull,) = (
+            one
+            for one in running.browser.call("GET", "/recordings")
+            if one["fetch_id"] == asked["fetch_id"]
+        )
+        return dict(pull)
+
+    wait_until("it is over", lambda: state()["state"] in ("done", "failed"))
+    assert (state()["state"], state()["problem"]) == ("done", "")
+    assert state()["done_bytes"] == state()["total_bytes"] != 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["bert", "--from", "2020-01-01"], "there is no unit bert; known are: anna"),
+        ([UNIT], "say which window"),
+        ([UNIT, "--incident", "none"], "there is no incident none"),
+        ([UNIT, "--from", "yesterday"], "'yesterday' is no time"),
+        ([UNIT, "--from", "2020-01-02", "--to", "2020-01-01"], "ends before it begins"),
+        ([UNIT, "--from", "2020-01-01", "--to", "2020-01-02"], "no recording of that time"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(running: Running, arguments: list[str], said: str) -> None:
+    code, text = running.fetch(*arguments)
+    assert code == 2
+    assert said in text
+    assert len(text.strip().splitlines()) == 1
