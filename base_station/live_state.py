@@ -141,6 +141,21 @@ class UnitState(msgspec.Struct):
         remote = self.tracker if self.is_tracked_remotely else None
         return self.boots[-1] if remote is None else remote.boots[-1]
 
+    @property
+    def shown_status(self) -> Status | None:
+        """Its own status, with what only strides tell from the agent that tracks for it."""
+        agent = self.tracker if self.is_tracked_remotely else None
+        if self.status is None or agent is None or agent.status is None:
+            return self.status
+        gone = self.status_ns - agent.status_ns >= STALE_AFTER_S * NS_PER_S
+        return msgspec.structs.replace(
+            self.status,
+            activity=self.status.activity if gone else agent.status.activity,
+            steps=agent.status.steps,
+            cadence_hz=0.0 if gone else agent.status.cadence_hz,
+            floors_climbed=agent.status.floors_climbed,
+        )
+
     def link_at(self, t_ns: int) -> Link:
         if self.heard_ns is None:
             return "never"

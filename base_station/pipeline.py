@@ -188,8 +188,8 @@ class StationPipeline:
         return outputs
 
     def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:
-        """Where the wearer is, and falls, from the agent that tracks for the unit.  Neither is a
-        sign of life of the unit, nor is anything else that the agent says.
+        """Where the wearer is, what strides tell of him, and falls, from the agent that tracks
+        for the unit.  Nothing of it is a sign of life of the unit.
         """
         state = self.state
         if unit.tracker is None:
@@ -207,6 +207,8 @@ class StationPipeline:
             outputs.extend(self._recall(unit, message))
         elif isinstance(message, UnitEvent) and message.kind is EventKind.FALL:
             outputs.extend(self._observe(unit, message))
+        elif isinstance(message, Status) and news == "new":
+            unit.tracker.status, unit.tracker.status_ns = message, state.t_ns
         else:
             return []
         outputs.append(UnitTouched(unit.unit_id))

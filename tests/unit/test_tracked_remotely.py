@@ -13,7 +13,7 @@ from base_station.projector import Projector
 from shared.channels import NO_TRACKER, POSITION, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.messages import EventKind, Header, UnitDescription
+from shared.messages import Activity, AlarmState, EventKind, Header, UnitDescription
 from tests.station_script import Script, new_pipeline
 
 U = "FF-01"
@@ -121,6 +121,61 @@ def test_what_else_the_agent_says_of_itself_is_not_taken_for_the_units(script: R
     script.event(AGENT, EventKind.MAYDAY)
     script.gps(AGENT, 1.0, 1.0)
     assert msgspec.structs.replace(script.unit, tracker=None) == before
+
+
+def test_what_strides_tell_is_the_agents_and_the_rest_the_units(script: Remote) -> None:
+    script.status(U, activity=Activity.STILL, steps=0, battery=0.8)
+    assert script.unit.shown_status == script.unit.status
+    script.status(
+        AGENT, activity=Activity.STAIRS_UP, steps=120, cadence_hz=1.5, floors_climbed=2, battery=0.1
+    )
+    shown = script.unit.shown_status
+    assert shown.activity is Activity.STAIRS_UP
+    assert (shown.steps, shown.cadence_hz, shown.floors_climbed) == (120, 1.5, 2)
+    assert shown.battery == 0.8
+    assert shown.header == script.unit.status.header
+
+
+def test_an_agent_that_is_gone_does_not_keep_its_wearer_walking(script: Remote) -> None:
+    script.status(AGENT, activity=Activity.WALKING, steps=120)
+    script.wait(12, lambda: script.status(U, activity=Activity.STILL, steps=0))
+    shown = script.unit.shown_status
+    assert shown.activity is Activity.STILL
+    assert shown.cadence_hz == 0.0
+    assert shown.steps == 120
+
+
+def test_a_unit_that_tracks_itself_is_shown_as_it_says() -> None:
+    script = Remote(tracker="eskf")
+    script.status(U, steps=10)
+    script.status(AGENT, steps=120)
+    assert script.unit.shown_status == script.unit.status
+
+
+def gone(script: Remote) -> list[AlarmState]:
+    return [alarm.state for alarm in script.alarms if alarm.rule == "tracker-gone"]
+
+
+def test_that_nobody_tracks_any_more_is_told_and_resolved_by_tracking(script: Remote) -> None:
+    walk(script)
+    script.wait(28, lambda: script.status(U))
+    assert gone(script) == []
+    script.wait(4, lambda: script.status(U))
+    assert gone(script) == [AlarmState.RAISED]
+    walk(script, 5)
+    assert gone(script) == [AlarmState.RAISED, AlarmState.RESOLVED]
+
+
+def test_that_nobody_ever_tracked_is_told(script: Remote) -> None:
+    script.wait(40, lambda: script.status(U))
+    assert gone(script) == [AlarmState.RAISED]
+
+
+def test_a_unit_that_was_switched_off_needs_no_tracking(script: Remote) -> None:
+    walk(script)
+    script.event(U, EventKind.STOPPED)
+    script.wait(60, lambda: None)
+    assert gone(script) == []
 
 
 def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:

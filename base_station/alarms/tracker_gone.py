@@ -1,0 +1,49 @@
+"""A unit too weak to track sends its samples, and the agent that should track for it is silent.
+
+The wearer stands still on the screen, however far he walks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import LOST_AFTER_S, STALE_AFTER_S, UnitState
+from shared.clock import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerGone:
+    gone_after_s: float = LOST_AFTER_S
+    live_within_s: float = STALE_AFTER_S
+    name: str = "tracker-gone"
+    levels: tuple[str, ...] = ("gone",)
+    clear_after_s: float = 3.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.heard_ns is None or unit.description is None:
+            return None
+        if not unit.is_tracked_remotely:
+            return Clear(unit.heard_ns, "the unit tracks itself")
+        if unit.stopped_ns is not None:
+            return Clear(unit.stopped_ns, "the unit was switched off")
+        agent = unit.tracker
+        if agent is not None and agent.heard_ns is not None:
+            since_ns, what = agent.heard_ns, "is silent"
+        else:
+            since_ns, what = unit.boots[-1].there_from_ns, "never spoke"
+        silent_s = (t_ns - since_ns) / NS_PER_S
+        if silent_s < self.live_within_s:
+            return Clear(since_ns, "its tracking agent speaks again")
+        if silent_s < self.gone_after_s:
+            return None
+        return Finding(
+            "gone",
+            SOON,
+            f"Nobody tracks {unit.name}: the agent for {unit.unit_id} {what}; start it, "
+            "the position shown is old",
+            seen_ns=since_ns,
+            onset_ns=since_ns,
+        )
