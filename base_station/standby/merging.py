@@ -123,8 +123,8 @@ class Merging:
             logger.warning("%d events that %s had set aside are taken", taken, station)
         if actions:
             text = (
-                f"While the stations were apart, {actions} things were done at {station} that are "
-                "not in force here; the audit names them: do again what still matters"
+                f"While the stations were apart, people acted at {station} ({actions} times), and "
+                "that is not in force here: the audit names it; do again what still matters"
             )
             self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text))
 

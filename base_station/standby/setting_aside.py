@@ -1,7 +1,7 @@
 """Cuts a log where two stations parted; what stood behind it is kept beside, never deleted.
 
-DATA/apart/TIME-COUNT/*.mcap    whole segments, of which what stands behind the place counts
-DATA/apart/TIME-COUNT.told/     the same, when the active station has taken what it lacked
+DATA/apart/TIME-EVENTS-NUMBER/*.mcap    whole segments, of which what stands behind the place counts
+DATA/apart/TIME-EVENTS-NUMBER.told/     the same, when the active station has taken what it lacked
 """
 
 from __future__ import annotations
@@ -25,11 +25,10 @@ def set_aside(folder: DataFolder, place: Place) -> None:
 
     Interrupted, it leaves a log that ends earlier, which the standby fetches again.
     """
-    apart = folder.path / APART / f"{place.t_ns}-{place.events}"
-    apart.mkdir(parents=True, exist_ok=True)
     scratch = folder.path / "log.part"
     shutil.rmtree(scratch, ignore_errors=True)
     try:
+        apart = _new_part(folder.path, place)
         moved = list(_segments_at_or_behind(folder.log, place))
         kept = _kept(moved, place)
         writer = SegmentWriter(scratch, _ONE_SEGMENT)
@@ -61,16 +60,23 @@ def parts(data: Path) -> list[str]:
 
 def read_part(data: Path, name: str) -> Iterator[Record]:
     """The events of one part, in order."""
-    t_ns, _, count = name.partition("-")
-    return events_behind(Place(int(t_ns), int(count)), read_log(data / APART / name))
+    t_ns, events, _ = name.split("-")
+    return events_behind(Place(int(t_ns), int(events)), read_log(data / APART / name))
 
 
 def mark_told(data: Path, name: str) -> None:
     part = data / APART / name
-    number = 0
-    while (told := part.with_name(f"{name}{number or ''}{_TOLD}")).exists():
+    part.rename(part.with_name(name + _TOLD))
+
+
+def _new_part(data: Path, place: Place) -> Path:
+    """A station may part from the other at one place more than once."""
+    number = 1
+    while any((data / APART).glob(f"{place.t_ns}-{place.events}-{number}*")):
         number += 1
-    part.rename(told)
+    part = data / APART / f"{place.t_ns}-{place.events}-{number}"
+    part.mkdir(parents=True)
+    return part
 
 
 def _segments_at_or_behind(log: Path, place: Place) -> Iterator[Path]:

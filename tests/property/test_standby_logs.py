@@ -1,0 +1,104 @@
+"""Two logs that went apart are cut where they parted, whatever happened before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from base_station.standby.history import parting
+from base_station.standby.places import BEGINNING, Place
+from base_station.standby.words import History
+from shared.errors import ConfigError
+from shared.messages.station import TakeOver
+
+Event = tuple[int, str]  # time, what
+
+
+class Log:
+    """The events of one station, take-overs among them."""
+
+    def __init__(self, events: Sequence[Event | TakeOver] = ()) -> None:
+        self.events = list(events)
+
+    def place(self, upto: int | None = None) -> Place:
+        here = BEGINNING
+        for event in self.events[:upto]:
+            here = here.then(_time(event))
+        return here
+
+    def history(self) -> History:
+        take_overs = tuple(event for event in self.events if isinstance(event, TakeOver))
+        log_id = _time(self.events[0]) if self.events else 0
+        return History(log_id, take_overs, self.place())
+
+    def cut(self, place: Place) -> None:
+        self.events = [
+            event for count, event in enumerate(self.events, 1) if self.place(count) <= place
+        ]
+
+    def take_over(self, term: int, station: str) -> None:
+        place = self.place()
+        self.events.append(TakeOver(term, station, place.t_ns, place.events))
+
+
+def _time(event: Event | TakeOver) -> int:
+    return event.after_t_ns + 1 if isinstance(event, TakeOver) else event[0]
+
+
+STEPS = st.lists(
+    st.tuples(st.sampled_from(["say", "fetch", "crash", "part", "meet"]), st.integers(0, 6)),
+    max_size=30,
+)
+
+
+@given(STEPS)
+def test_after_any_history_a_cut_makes_one_log_the_beginning_of_the_other(
+    steps: list[tuple[str, int]],
+) -> None:
+    """``a`` and ``b`` take turns at leading; who follows may have fetched less than all."""
+    logs = {"a": Log(), "b": Log()}
+    leads, term, time = "a", 1, 10
+    logs["a"].take_over(1, "a")
+    for step, amount in steps:
+        follows = "b" if leads == "a" else "a"
+        if step == "say":
+            for number in range(amount):
+                time += number % 2  # some events have the same time
+                logs[leads].events.append((max(time, _time(logs[leads].events[-1])), f"{time}"))
+        elif step == "fetch":
+            _follow(logs[follows], logs[leads], most=amount)
+        else:  # the other takes over; the one that led may go on for a while, not knowing
+            term += 1
+            logs[follows].take_over(term, follows)
+            if step == "part":
+                for number in range(amount):
+                    last = _time(logs[leads].events[-1])
+                    logs[leads].events.append((last + number % 2, f"apart {number}"))
+            leads = follows
+            if step == "meet":
+                follows = "b" if leads == "a" else "a"
+                _follow(logs[follows], logs[leads], most=amount)
+    follows = "b" if leads == "a" else "a"
+    _follow(logs[follows], logs[leads], most=10**6)
+    assert logs[follows].events == logs[leads].events
+
+
+def _follow(mine: Log, leader: Log, most: int) -> None:
+    cut = parting(mine.history(), leader.history())
+    if cut is not None:
+        mine.cut(cut)
+    assert parting(mine.history(), leader.history()) is None
+    assert mine.events == leader.events[: len(mine.events)]
+    mine.events += leader.events[len(mine.events) : len(mine.events) + most]
+
+
+def test_an_empty_log_follows_any() -> None:
+    assert parting(History(0, (), BEGINNING), History(5, (), Place(9, 1))) is None
+
+
+def test_a_log_of_another_station_is_refused() -> None:
+    with pytest.raises(ConfigError, match="holds the log of another station"):
+        parting(History(4, (), Place(9, 1)), History(5, (), Place(9, 1)))

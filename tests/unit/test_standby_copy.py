@@ -1,0 +1,317 @@
+"""A standby's copy of the log: served from any place, fetched, cut, and confirmed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Future
+from pathlib import Path
+
+import pytest
+
+from base_station.data_folder import DataFolder
+from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.recorder import Recorder
+from base_station.sinks import ActionDone
+from base_station.standby.confirming import LeadersGate, OtherCopy
+from base_station.standby.following import Follower, Leader
+from base_station.standby.places import BEGINNING, Place, events_behind
+from base_station.standby.setting_aside import mark_told, parts, read_part, set_aside
+from base_station.standby.shared_log import SharedLog
+from base_station.standby.shipping import Shipping
+from base_station.standby.standby_feed import StandbyFeed
+from shared.bus_memory import MemoryRouter
+from shared.channels import ALARM, EVENT, FUSED, POSITION, TICK, backfilled_key
+from shared.clock import ManualClock, SystemClock
+from shared.errors import StoreError
+from shared.messages import STATION_ID
+from shared.messages.station import Action, CloseIncident, TakeOver
+from tests.live_station import until
+
+Record = tuple[int, str, bytes]
+T0 = 1_700_000_000_000_000_000
+TICKED = TICK.key(STATION_ID)
+
+
+def events(count: int, start: int = 0) -> list[Record]:
+    """Every third has the time of the one before it, and decisions stand between them."""
+    return [
+        (T0 + number - (number % 3 == 2), TICKED, b"event %d" % number)
+        for number in range(start, start + count)
+    ]
+
+
+def written(recorder: Recorder, log: SharedLog, records: list[Record]) -> None:
+    for t_ns, key, payload in records:
+        log.write(t_ns, key, payload)
+        log.write(t_ns, FUSED.key(STATION_ID), b"decided")
+    assert recorder.flush()
+
+
+@pytest.fixture
+def recorder(tmp_path: Path) -> Iterator[Recorder]:
+    recorder = Recorder(tmp_path, SystemClock())
+    yield recorder
+    recorder.close()
+
+
+@pytest.fixture
+def log(recorder: Recorder) -> SharedLog:
+    return SharedLog(recorder, SystemClock())
+
+
+def disk(recorder: Recorder) -> LogFeed:
+    return LogFeed(recorder.folder, recorder.flush)
+
+
+def test_a_place_counts_events_and_not_what_was_decided(recorder: Recorder, log: SharedLog) -> None:
+    written(recorder, log, events(6))
+    assert log.place == Place(T0 + 4, 2)
+    log.write(T0 + 9, ALARM.key(STATION_ID), b"decided")
+    assert log.place == Place(T0 + 4, 2)
+
+
+def test_what_stands_behind_any_place_is_served_from_memory_as_from_the_disk(
+    recorder: Recorder, log: SharedLog
+) -> None:
+    records = events(20)
+    written(recorder, log, records)
+    place = BEGINNING
+    for done in range(len(records) + 1):
+        assert log.behind(place, 10**6) == records[done:]
+        assert list(events_behind(place, disk(recorder).records(place.t_ns))) == records[done:]
+        if done < len(records):
+            place = place.then(records[done][0])
+
+
+def test_what_is_no_longer_at_hand_is_said_to_be_on_the_disk_only(
+    recorder: Recorder, log: SharedLog
+) -> None:
+    written(recorder, log, events(3))
+    later = SharedLog(recorder, SystemClock())
+    later.begin(log.place, T0, ())
+    assert later.behind(BEGINNING, 10**6) is None
+    assert later.behind(log.place, 10**6) == []
+
+
+class Pairing:
+    """An active log, and one that follows it."""
+
+    def __init__(self, folder: Path) -> None:
+        clock = SteadyClock(SystemClock())
+        router = MemoryRouter()
+        self.recorders = [Recorder(folder / name, clock) for name in "ab"]
+        self.active, self.standby = (SharedLog(one, clock) for one in self.recorders)
+        self.feed = StandbyFeed(LiveFeed(clock), clock)
+        self.cuts: list[Place] = []
+        self.shipping = Shipping(
+            "a", router.attach_station(), self.active, disk(self.recorders[0]), lambda: True
+        )
+        self.follower = Follower(
+            "b", router.attach_station(), self.standby, self.feed, self.cuts.append
+        )
+
+    def step(self) -> None:
+        """What a drive does."""
+        for record in self.feed.take(0.01):
+            self.standby.write(*record)
+
+    def close(self) -> None:
+        self.feed.close()
+        self.follower.close()
+        self.shipping.close()
+        for one in self.recorders:
+            one.close()
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Iterator[Pairing]:
+    pairing = Pairing(tmp_path)
+    yield pairing
+    pairing.close()
+
+
+def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> None:
+    written(pairing.recorders[0], pairing.active, events(30))
+    # As after a restart of the active station: the past is on its disk only.
+    restarted = SharedLog(pairing.recorders[0], SystemClock())
+    restarted.begin(pairing.active.place, T0, ())
+    pairing.shipping._log = restarted
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+
+    def caught_up() -> bool:
+        pairing.step()
+        return pairing.standby.place == restarted.place
+
+    until(caught_up)
+    written(pairing.recorders[0], restarted, events(30, start=30))
+    until(caught_up)
+    until(lambda: pairing.standby.durable == restarted.place)
+    pairing.recorders[1].flush()
+    assert [r for r in disk(pairing.recorders[1]).records() if r[1] == TICKED] == events(60)
+    assert pairing.cuts == []
+
+
+def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing: Pairing) -> None:
+    shared = events(6)
+    for recorder, log in zip(pairing.recorders, (pairing.active, pairing.standby), strict=True):
+        written(recorder, log, shared)
+    place = pairing.active.place
+    pairing.active.begin(place, T0, [TakeOver(2, "a", place.t_ns, place.events)])
+    pairing.standby.write(T0 + 50, TICKED, b"apart")
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    until(lambda: pairing.cuts != [])
+    assert pairing.cuts == [place]
+    pairing.step()
+    assert pairing.standby.place == Place(T0 + 50, 1)
+
+
+def test_nothing_is_delivered_any_more_once_following_was_stopped(pairing: Pairing) -> None:
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    pairing.follower.stop_following()
+    written(pairing.recorders[0], pairing.active, events(3))
+    assert list(pairing.feed.take(0.5)) == []
+
+
+@pytest.mark.parametrize("kept", [0, 1, 7, 20])
+def test_a_cut_log_holds_what_stands_up_to_the_place_and_the_rest_is_beside(
+    tmp_path: Path, kept: int
+) -> None:
+    records = events(20)
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), records)
+    recorder.close()
+    place = BEGINNING
+    for t_ns, _, _ in records[:kept]:
+        place = place.then(t_ns)
+    folder = DataFolder(tmp_path)
+    set_aside(folder, place)
+    left = list(LogFeed(folder.log).records())
+    assert [record for record in left if record[1] == TICKED] == records[:kept]
+    assert len(left) == 2 * kept  # with what was decided
+    (name,) = parts(tmp_path)
+    assert list(read_part(tmp_path, name)) == records[kept:]
+    mark_told(tmp_path, name)
+    assert parts(tmp_path) == []
+
+
+def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -> None:
+    records = events(9)
+    for begin, apart in ((0, b"once"), (9, b"twice")):
+        recorder = Recorder(tmp_path, SystemClock())
+        strays = [(T0 + 10, TICKED, apart)]
+        written(recorder, SharedLog(recorder, SystemClock()), records[begin:] + strays)
+        recorder.close()
+        set_aside(DataFolder(tmp_path), Place(T0 + 7, 2))
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), events(3, start=9))
+    recorder.close()
+    kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+    assert kept == events(12)
+    said = [[payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)]
+    assert said == [[b"once"], [b"twice"]]
+
+
+class TestFeed:
+    """What the drive takes, before this station leads and after."""
+
+    @pytest.fixture
+    def clock(self) -> ManualClock:
+        return ManualClock()
+
+    @pytest.fixture
+    def feed(self, clock: ManualClock) -> StandbyFeed:
+        return StandbyFeed(LiveFeed(SteadyClock(clock)), clock)
+
+    def test_the_other_log_comes_first_then_what_was_heard_then_the_bus(
+        self, feed: StandbyFeed
+    ) -> None:
+        feed.offer(EVENT.key("u"), b"heard")
+        feed.deliver(events(2))
+        feed.lead()
+        assert list(feed.take(1.0)) == events(2)
+        assert feed.follows
+        assert [r[1:] for r in feed.take(1.0)] == [(backfilled_key("u", EVENT.suffix), b"heard")]
+        assert not feed.follows
+        feed.offer(POSITION.key("u"), b"live")
+        assert [r[1:] for r in feed.take(1.0)] == [(POSITION.key("u"), b"live")]
+
+    def test_only_the_last_of_the_bus_is_kept(self, feed: StandbyFeed, clock: ManualClock) -> None:
+        feed.offer(EVENT.key("u"), b"long ago")
+        clock.advance(31.0)
+        feed.offer(EVENT.key("u"), b"just now")
+        feed.lead()
+        assert [payload for _, _, payload in feed.take(1.0)] == [b"just now"]
+
+    def test_nobody_but_units_is_kept(self, feed: StandbyFeed) -> None:
+        feed.offer(TICKED, b"forged")
+        feed.offer("muster/v1/u/command/send", b"the other station said it")
+        feed.lead()
+        assert list(feed.take(0.0)) == []
+
+
+class Drive:
+    """An ``OperatorGate`` that does everything at once."""
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        done: Future[ActionDone] = Future()
+        done.set_result(ActionDone("x", 1, None))
+        return done
+
+
+class TestConfirming:
+    @pytest.fixture
+    def clock(self) -> ManualClock:
+        return ManualClock()
+
+    @pytest.fixture
+    def copy(self, clock: ManualClock) -> OtherCopy:
+        self.place = Place(5, 1)
+        return OtherCopy(clock, lambda: self.place, confirm_s=1.0)
+
+    def act(self, copy: OtherCopy, refusal: str | None = None) -> Future[ActionDone]:
+        return LeadersGate(Drive(), copy, lambda: refusal).submit("ada", CloseIncident("i"))
+
+    def test_without_a_standby_an_action_is_confirmed_at_once(self, copy: OtherCopy) -> None:
+        assert self.act(copy).done()
+
+    def test_an_action_waits_until_the_standby_has_it(self, copy: OtherCopy) -> None:
+        copy.note(Place(4, 1))
+        told = self.act(copy)
+        assert not told.done()
+        copy.note(Place(5, 1))
+        assert told.done()
+
+    def test_it_does_not_wait_for_long_and_that_is_said(
+        self, copy: OtherCopy, clock: ManualClock
+    ) -> None:
+        copy.note(Place(4, 1))
+        told = self.act(copy)
+        clock.advance(0.9)
+        copy.check()
+        assert not told.done()
+        clock.advance(0.2)
+        copy.check()
+        assert told.done()
+        clock.advance(2.0)
+        copy.check()
+        assert copy.is_behind
+
+    def test_nobody_acts_at_a_standby(self, copy: OtherCopy) -> None:
+        with pytest.raises(StoreError, match="this is the standby"):
+            self.act(copy, "this is the standby").result(0.0)
+
+    def test_units_may_forget_only_what_both_have(self, copy: OtherCopy) -> None:
+        copy.report_comes()  # of what stands up to 5
+        copy.note(Place(5, 1))
+        assert not copy.has_report_before()
+        self.place = Place(6, 1)
+        copy.report_comes()
+        assert copy.has_report_before()
+        self.place = Place(7, 1)
+        copy.report_comes()
+        assert not copy.has_report_before()
+        copy.note(Place(6, 1))
+        assert copy.has_report_before()

@@ -1,0 +1,143 @@
+"""Which of two stations leads, in simulated time."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.standby.election import Decision, Election, Me
+from base_station.standby.places import BEGINNING, Place
+from base_station.standby.words import PROTOCOL, Beat, Role
+from shared.clock import NS_PER_S
+
+LEASE_S = 3.0
+HERE = Place(50, 1)
+
+
+class Site:
+    """One station's election, and what it hears of the other."""
+
+    def __init__(self, *, preferred: bool = False, units: int = 1) -> None:
+        self.now_s = 100.0
+        self.election = Election(round(LEASE_S * NS_PER_S), self.now_ns)
+        self.me = Me("b", preferred, term=1, place=HERE, units=units)
+
+    @property
+    def now_ns(self) -> int:
+        return round(self.now_s * NS_PER_S)
+
+    def hear(self, role: Role, *, term: int = 1, place: Place = HERE, units: int = 1) -> None:
+        beat = Beat("a", PROTOCOL, role, term, place, True, 1, units, "http://a")
+        self.election.hear(beat, self.now_ns)
+
+    def decide(self, after_s: float = 0.0) -> Decision:
+        self.now_s += after_s
+        return self.election.decide(self.me, self.now_ns)
+
+    def become(self, role: Role) -> None:
+        self.election.role = role
+
+
+@pytest.mark.parametrize(("preferred", "waits_s"), [(True, LEASE_S), (False, 2 * LEASE_S)])
+def test_alone_it_leads_after_a_while(preferred: bool, waits_s: float) -> None:
+    site = Site(preferred=preferred)
+    assert site.decide(waits_s - 0.1) == "stay"
+    assert site.decide(0.1) == "lead"
+
+
+def test_where_another_one_leads_it_follows_whatever_it_had() -> None:
+    site = Site(preferred=True)
+    site.hear("active", term=1, place=BEGINNING)
+    assert site.decide() == "follow"
+
+
+def test_of_two_that_wait_who_has_more_of_the_log_leads() -> None:
+    site = Site()
+    site.hear("waiting", place=Place(50, 2))
+    assert site.decide() == "stay"
+    site.hear("waiting", place=Place(49, 9))
+    assert site.decide() == "lead"
+
+
+def test_of_two_that_have_the_same_the_preferred_one_leads() -> None:
+    site = Site(preferred=False)
+    site.hear("waiting")
+    assert site.decide() == "stay"
+
+
+def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active")
+    assert site.decide(LEASE_S - 0.1) == "stay"
+    assert site.decide(0.1) == "lead"
+
+
+def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active")
+    site.election.note_token(there=False)
+    assert site.decide(LEASE_S / 2 - 0.1) == "stay"
+    assert site.decide(0.1) == "lead"
+
+
+def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> None:
+    site = Site()
+    site.become("standby")
+    for _ in range(20):
+        site.hear("active")
+        site.election.note_token(there=False)
+        assert site.decide(0.5) == "stay"
+
+
+def test_who_hears_no_unit_that_the_active_station_had_is_cut_off_and_waits() -> None:
+    site = Site(units=0)
+    site.become("standby")
+    site.hear("active", units=2)
+    assert site.decide(10 * LEASE_S) == "stay"
+    assert site.election.is_cut_off(site.me, site.now_ns)
+    site.me = site.me._replace(units=1)
+    assert site.decide() == "lead"
+
+
+def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
+    site = Site(units=0)
+    site.become("standby")
+    site.hear("active", units=0)
+    assert site.decide(LEASE_S) == "lead"
+
+
+def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("waiting", place=Place(49, 1))
+    assert site.decide() == "lead"
+
+
+@pytest.mark.parametrize(("theirs", "decision"), [(2, "step back"), (1, "step back"), (0, "stay")])
+def test_of_two_that_lead_the_later_take_over_stays(theirs: int, decision: Decision) -> None:
+    site = Site(preferred=False)  # the other is, which decides between equal terms
+    site.become("active")
+    site.hear("active", term=theirs)
+    assert site.decide() == decision
+
+
+def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
+    for mine in (1, 2, 3):
+        for theirs in (1, 2, 3):
+            here = Site(preferred=False)
+            here.become("active")
+            here.me = here.me._replace(term=mine)
+            here.hear("active", term=theirs)
+            there = Election(round(LEASE_S * NS_PER_S), 0)
+            there.role = "active"
+            there.hear(Beat("b", PROTOCOL, "active", mine, BEGINNING, False, 2, 1, ""), 0)
+            other = there.decide(Me("a", True, theirs, BEGINNING, 1), 0)
+            assert {here.decide(), other} == {"stay", "step back"}
+
+
+def test_an_active_station_goes_on_when_the_other_is_gone() -> None:
+    site = Site(units=0)
+    site.become("active")
+    site.hear("standby")
+    assert site.decide(100 * LEASE_S) == "stay"
