@@ -22,6 +22,7 @@ from base_station.alarms.port import AlarmRule
 from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.rest_due import RestDue
 from base_station.alarms.tracker_degraded import TrackerDegraded
+from base_station.alarms.tracker_gone import TrackerGone
 from base_station.alarms.unit_fault import UnitFault
 from base_station.alarms.unknown_unit import UnknownUnit
 
@@ -34,6 +35,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     Battery(),
     LinkLost(),
     TrackerDegraded(),
+    TrackerGone(),
     PositionLost(),
     UnitFault(),
     UnknownUnit(),

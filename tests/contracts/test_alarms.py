@@ -11,6 +11,7 @@ from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
 from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, UnitState
+from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
     Activity,
@@ -93,7 +94,7 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
         for boot_id in (1, 2)
     ]
     unit.description = UnitDescription(
-        HEADER, "1", "", "sensor", 200.0, None, None, "eskf", "c1", False, False, False,
+        HEADER, "1", "", "sensor", 200.0, None, None, NO_TRACKER, "c1", False, False, False,
         calibrated_s=1, calibration_faults="accelerometer off by 0.2 m/s2",
     )  # fmt: skip
     return unit
