@@ -197,6 +197,7 @@ export interface HealthView {
   insecure: boolean;
   standby: StandbyView | null; // null: this is the only station
   recordings?: RecordingView[];
+  repeated: number; // messages since the station started that came again and were kept once
 }
 
 /** A unit's raw recording that somebody asked for, on its way over the bus. */
@@ -207,7 +208,6 @@ export interface RecordingView {
   problem: string; // a sentence for a person
   done_bytes: number;
   total_bytes: number; // 0: not known yet
-  repeated: number; // messages since the station started that came again and were kept once
 }
 
 export interface ReplayView {
