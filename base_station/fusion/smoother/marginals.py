@@ -1,11 +1,12 @@
 """Covariances of the knots of a chain out of its information matrix.
 
 Forward elimination and backward substitution of a block tridiagonal matrix (Golub and Van Loan,
-Matrix Computations, section 4.5); links between knots that are no neighbours are left out, so
-what they tell makes nobody surer.
+Matrix Computations, section 4.5).
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +15,16 @@ from scipy.sparse import csc_matrix
 Floats = NDArray[np.float64]
 
 
-def chain_covariances(information: csc_matrix, states: int) -> Floats:
-    """(k, states, states), of a chain's part of an information matrix."""
+def chain_covariances(
+    information: csc_matrix, states: int, told: Sequence[tuple[int, Floats]] = ()
+) -> Floats:
+    """(k, states, states), of a chain's part of an information matrix; ``told`` is what else is
+    known of the first unknowns of some knots, as information (2, 2).
+    """
     count = information.shape[0] // states
     diagonal, beside = _blocks(information, count, states)
+    for knot, known in told:
+        diagonal[knot, :2, :2] += known
     inverses = np.empty_like(diagonal)
     gains = np.empty_like(beside)
     reduced = diagonal[0]

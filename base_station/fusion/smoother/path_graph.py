@@ -26,6 +26,8 @@ from base_station.fusion.smoother.chain import (
     add_path,
     add_places,
     add_seen,
+    add_shown,
+    choose_shown,
     place_of,
 )
 from base_station.fusion.smoother.equations import Equations, NormalEquations
@@ -86,6 +88,7 @@ class _Graph:
             count += STATES * len(chain)
         self._unknowns = count
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
+        self._shown: dict[str, Ints] = {}
         self._crossings: list[Crossing] = []
         self._verdicts: dict[str, Verdict] = {}
         self._used: dict[str, list[PlaceSeen]] = {one: [] for one in units}
@@ -94,24 +97,25 @@ class _Graph:
             self._choose_places()
             self._normal = self._relax()
             self._drop_misfits()
+        self._heed_live_estimates()
 
     # ---- solving
 
     def _relax(self) -> NormalEquations:
         """Solve again and again about the last solution, until nothing moves."""
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
-        normal = self._equations(self._units)
+        normal = self._equations()
         self._take(normal.solve())
         self._align(normal)
         for _ in range(self._kind.turns):
-            normal = self._equations(self._units)
+            normal = self._equations()
             if self._take(normal.solve()) < self._kind.settled_m:
                 break
         return normal
 
-    def _equations(self, units: Mapping[str, UnitEvidence]) -> NormalEquations:
+    def _equations(self, with_links: bool = True) -> NormalEquations:
         equations = Equations(self._unknowns)
-        for unit_id in units:
+        for unit_id in self._units:
             base, chain, belief = (
                 self._bases[unit_id],
                 self._chains[unit_id],
@@ -120,9 +124,12 @@ class _Graph:
             add_path(equations, base, chain, belief, self._kind.noise)
             add_fixes(equations, base, chain, belief, self._kind.noise)
             add_seen(equations, base, chain, self._used[unit_id])
-        for tie in self._ties:
+            if unit_id in self._shown:
+                shown = self._shown[unit_id]
+                add_shown(equations, base, chain, belief, shown, self._kind.noise)
+        for tie in self._ties if with_links else ():
             self._add_tie(equations, tie)
-        for crossing in self._crossings:
+        for crossing in self._crossings if with_links else ():
             self._add_crossing(equations, crossing)
         return equations.normal()
 
@@ -198,6 +205,17 @@ class _Graph:
                 self._verdicts[place.name] = Verdict(False, float(apart_m[worst]), sigmas)
                 self._normal = self._relax()
 
+    def _heed_live_estimates(self) -> None:
+        """Walls are known to the live estimates only; after places, which may contradict them."""
+        spreads = self._spreads()
+        for unit_id, chain in self._chains.items():
+            belief = self._beliefs[unit_id]
+            rows = choose_shown(chain, belief, spreads[unit_id], self._kind.noise)
+            if len(rows):
+                self._shown[unit_id] = rows
+        if self._shown:
+            self._normal = self._relax()
+
     def _residuals_m(self, unit_id: str, places: Sequence[PlaceSeen]) -> Floats:
         knot, since = self._chains[unit_id].at(np.array([p.t_ns for p in places], dtype=np.int64))
         seen = np.array([(place.north_m, place.east_m) for place in places])
@@ -214,14 +232,15 @@ class _Graph:
         _add_link(equations, ends[0][:2], ends[1][:2], std)
 
     def _add_crossing(self, equations: Equations, crossing: Crossing) -> None:
-        ends = [
-            (self._bases[unit_id] + STATES * knot, np.zeros(2))
-            for unit_id, knot in (crossing.one, crossing.other)
-        ]
-        places = [self._beliefs[u].x[k, :2] for u, k in (crossing.one, crossing.other)]
-        apart_m = float(np.linalg.norm(places[0] - places[1]))
-        std = crossing.std_m * np.sqrt(1.0 + (apart_m / (2.0 * crossing.std_m)) ** 2)
-        _add_link(equations, ends[0], ends[1], std)
+        ends = [self._end(*end) for end in (crossing.one, crossing.other)]
+        std = crossing.std_m * self._tail(crossing)
+        _add_link(equations, ends[0][:2], ends[1][:2], std)
+
+    def _tail(self, crossing: Crossing) -> float:
+        """How much less a crossing counts that does not fit."""
+        apart = self._end(*crossing.one)[2] - self._end(*crossing.other)[2]
+        fit = float(np.linalg.norm(apart)) / (2.0 * crossing.std_m)
+        return float(np.sqrt(1.0 + fit**2))
 
     def _end(self, unit_id: str, t_ns: int) -> tuple[int, Floats, Floats]:
         """Column of the knot, own path since it, and the place now believed."""
@@ -254,13 +273,38 @@ class _Graph:
         return Solution(paths, self._verdicts)
 
     def _spreads(self) -> dict[str, Floats]:
-        """Covariances of all knots (k, 5, 5) by unit."""
-        information = self._normal.information
-        spreads = {}
+        """Covariances of all knots (k, 5, 5) by unit.
+
+        Of what links trails, each end is told by the other no better than that is known without
+        it.
+        """
+        information = self._equations(with_links=False).information
+        spreads, blocks = {}, {}
         for unit_id, base in self._bases.items():
             own = slice(base, base + STATES * len(self._chains[unit_id]))
-            spreads[unit_id] = chain_covariances(information[own, own].tocsc(), STATES)
-        return spreads
+            blocks[unit_id] = information[own, own].tocsc()
+            spreads[unit_id] = chain_covariances(blocks[unit_id], STATES)
+        if not self._crossings:
+            return spreads
+        told: dict[str, list[tuple[int, Floats]]] = {unit_id: [] for unit_id in self._units}
+        for crossing in self._crossings:
+            std = crossing.std_m * self._tail(crossing)
+            for one, other in (
+                (crossing.one, crossing.other),
+                (crossing.other, crossing.one),
+            ):
+                knot = self._knot(*other)
+                noise = spreads[other[0]][knot, :2, :2] + std**2 * np.eye(2)
+                told[one[0]].append(
+                    (self._knot(*one), np.asarray(np.linalg.inv(noise), np.float64))
+                )
+        return {
+            unit_id: chain_covariances(blocks[unit_id], STATES, told[unit_id])
+            for unit_id in self._units
+        }
+
+    def _knot(self, unit_id: str, t_ns: int) -> int:
+        return int(self._chains[unit_id].at(np.array([t_ns], dtype=np.int64))[0][0])
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         for place, apart_m in zip(used, self._residuals_m(unit_id, used), strict=True):

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.smoother.chain import Belief, Chain
+from base_station.fusion.smoother.chain import Belief, Chain, place_of
 
 Floats = NDArray[np.float64]
 
 STOREY_M = 2.0  # a climb of at least this
-LEVEL_M = 0.25  # per knot: less is level ground
+LEVEL_M = 0.08  # from one point to the next: less is level ground
+LANDING_POINTS = 5
 SAME_LEVEL_M = 1.2
 SURE_M = 6.0  # both ends are known at least this well, or it may be other stairs
 GATE2 = 9.2  # chi-square of two degrees, 99 %
@@ -28,7 +29,7 @@ STD_M = 1.0
 
 @dataclass(frozen=True)
 class Crossing:
-    """Two knots, each of a unit, that are the same place."""
+    """Two units (or one, twice) at these times were at the same place."""
 
     one: tuple[str, int]
     other: tuple[str, int]
@@ -38,7 +39,7 @@ class Crossing:
 @dataclass(frozen=True)
 class _End:
     unit_id: str
-    knot: int
+    t_ns: int
     place_m: Floats
     down_m: float
     is_top: bool
@@ -50,38 +51,47 @@ def find_crossings(
 ) -> list[Crossing]:
     ends: list[_End] = []
     for unit_id, chain in chains.items():
-        down = chain.path.down_m[chain.knots]
-        for bottom, top in _climbs(down):
-            for knot, is_top in ((bottom, False), (top, True)):
-                place, spread = beliefs[unit_id].x[knot, :2], spreads[unit_id][knot, :2, :2]
-                if float(np.trace(spread)) < SURE_M**2 and beliefs[unit_id].aligned[knot]:
-                    ends.append(_End(unit_id, knot, place, float(down[knot]), is_top, spread))
+        path, belief = chain.path, beliefs[unit_id]
+        for bottom, top in _climbs(path.down_m):
+            for row, is_top in ((bottom, False), (top, True)):
+                knot, since = chain.at(path.t_ns[row : row + 1])
+                spread = spreads[unit_id][knot[0], :2, :2]
+                if float(np.trace(spread)) < SURE_M**2 and belief.aligned[knot[0]]:
+                    place = place_of(belief.x[knot], since)[0]
+                    down_m = float(path.down_m[row])
+                    ends.append(_End(unit_id, int(path.t_ns[row]), place, down_m, is_top, spread))
     crossings: list[Crossing] = []
     for number, end in enumerate(ends):
         alike = [other for other in ends[:number] if _may_be_same(end, other)]
         alike.sort(key=lambda other: float(np.linalg.norm(other.place_m - end.place_m)))
         crossings += [
-            Crossing((end.unit_id, end.knot), (other.unit_id, other.knot), STD_M)
+            Crossing((end.unit_id, end.t_ns), (other.unit_id, other.t_ns), STD_M)
             for other in alike[:LINKS]
         ]
     return crossings
 
 
 def _climbs(down_m: Floats) -> list[tuple[int, int]]:
-    """Knots at the bottom and at the top of every climb, whichever way it was walked."""
+    """Rows at the bottom and at the top of every climb, whichever way it was walked; a landing is
+    part of it.
+    """
     rises = np.where(np.abs(np.diff(down_m)) > LEVEL_M, -np.sign(np.diff(down_m)), 0.0)
-    climbs, row = [], 0
-    while row < len(rises):
-        if rises[row] == 0.0:
-            row += 1
-            continue
-        end = row
-        while end < len(rises) and rises[end] == rises[row]:
-            end += 1
-        if abs(down_m[end] - down_m[row]) >= STOREY_M:
-            climbs.append((row, end) if rises[row] > 0.0 else (end, row))
-        row = end
-    return climbs
+    climbs: list[tuple[int, int]] = []
+    begin = end = -1
+    for row in np.flatnonzero(rises):
+        goes_on = begin >= 0 and row - end <= LANDING_POINTS and rises[row] == rises[begin]
+        if not goes_on:
+            if begin >= 0:
+                climbs.append((begin, end))
+            begin = int(row)
+        end = int(row) + 1
+    if begin >= 0:
+        climbs.append((begin, end))
+    return [
+        (first, last) if rises[first] > 0.0 else (last, first)
+        for first, last in climbs
+        if abs(down_m[last] - down_m[first]) >= STOREY_M
+    ]
 
 
 def _may_be_same(one: _End, other: _End) -> bool:
