@@ -22,6 +22,7 @@ import msgspec
 from shared.errors import UserError
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
+FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
 OUTLINE_HYSTERESIS_M = 1.5
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
@@ -50,6 +51,21 @@ class Plan(msgspec.Struct, frozen=True):
     outlines: tuple[Ring, ...]
     walls: tuple[Wall, ...] = ()
     stairs: tuple[Stairs, ...] = ()
+
+    @property
+    def storeys_down_m(self) -> tuple[float, ...]:
+        return tuple(storey.down_m for storey in self.storeys)
+
+    def sureness(self, floor: int, down_m: float, std_down_m: float) -> float:
+        """The probability of a floor, of all that the plan has."""
+        std_m = math.hypot(std_down_m, FLOOR_STD_M)
+        off_m = {storey.floor: abs(storey.down_m - down_m) for storey in self.storeys}
+        least_m = min(off_m.values())
+        weights = {
+            number: math.exp(0.5 * (least_m**2 - apart_m**2) / std_m**2)
+            for number, apart_m in off_m.items()
+        }
+        return weights.get(floor, 0.0) / sum(weights.values())
 
     def floor_at(self, down_m: float, floor: int | None) -> int | None:
         """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""

@@ -24,17 +24,23 @@ from rich.table import Table
 from base_station.bench.incident_bound import ENGINE_STD_M, bound_m2, draw_errors_m
 from base_station.bench.incident_building import SteelBuilding, draw_building
 from base_station.bench.incident_people import PEOPLE, Truth, live_through
-from base_station.bench.incident_scores import ERROR_STAGES, HELD_STAGES, Scores
+from base_station.bench.incident_scores import ERROR_STAGES, HELD_STAGES, FloorScores, Scores
 from base_station.bench.incident_sensors import (
     OwnPath,
+    draw_air,
     fixes_of,
+    mono_ns,
     position_of,
+    pressures_pa,
+    reference_pa,
     walk_it,
 )
 from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
-from base_station.fusion.port import FuserKind, PlaceFix, Start
+from base_station.fusion.port import AirHeight, FuserKind, PlaceFix, Start
+from base_station.fusion.weather import Weather
 from base_station.plan import read_plan
+from shared.geo import pressure_altitude_m
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +58,8 @@ class Person:
     truth: Truth
     own: OwnPath
     fixes: dict[int, PlaceFix]
+    pressures_pa: Floats
+    weather_m: Floats  # as the station's own barometer tells it, row by row
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +72,8 @@ class FusionReport:
     ce95_m: dict[str, dict[str, float]]
     seam_95_m: dict[str, float]  # jump on coming out, of 95 % of people at most
     held_95: dict[str, dict[str, float]]  # part of the time that the stated region held the truth
+    floor_right: float  # part of the time inside, not on stairs
+    floor_stated: float  # and the mean of the stated probability
     heading_walked_m: dict[str, float]  # walked with fixes until the heading is solved
     step_us: dict[str, float]  # of a position, and of one with a fix
 
@@ -89,7 +99,7 @@ def bench_fusion(
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
     names = (WITH_PLAN, WITHOUT, BOUND, "fixes alone", "path alone", "switching")
     ways = {name: Scores() for name in names}
-    timing = Timing()
+    timing, right = Timing(), FloorScores()
     walked_m: list[float] = []
     for number in progress_bar(
         range(incidents), description="Incidents", console=Console(stderr=True), transient=True
@@ -99,6 +109,8 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
             for name in (WITH_PLAN, WITHOUT):
                 run = fuse(kind, person, timing, with_plan=name == WITH_PLAN)
                 ways[name].note(person.truth, run.places_m, run.normalised2)
+                if name == WITH_PLAN:
+                    right.note(person.truth, person.building, run.floors, run.surenesses)
             walked_m.append(run.heading_walked_m)
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
@@ -112,6 +124,8 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
             name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES}
             for name in (WITH_PLAN, WITHOUT)
         },
+        floor_right=right.part_right(),
+        floor_stated=right.part_stated(),
         heading_walked_m={
             "median": float(np.median(walked_m)),
             "95 %": float(np.percentile(walked_m, 95.0)),
@@ -126,11 +140,29 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
 
 def draw_incident(rng: np.random.Generator) -> list[Person]:
     building = draw_building(rng)
-    people = []
-    for number in range(PEOPLE):
-        truth = live_through(rng, building, from_engine=number % 2 == 1)
-        people.append(Person(building, truth, walk_it(rng, truth), fixes_of(rng, truth, building)))
-    return people
+    truths = [live_through(rng, building, from_engine=n % 2 == 1) for n in range(PEOPLE)]
+    air = draw_air(rng, truths[0].t_s)
+    weather_m = _weather_m(truths[0].t_s, reference_pa(rng, air))
+    return [
+        Person(
+            building,
+            truth,
+            walk_it(rng, truth),
+            fixes_of(rng, truth, building),
+            pressures_pa(rng, air, truth),
+            weather_m,
+        )
+        for truth in truths
+    ]
+
+
+def _weather_m(t_s: Floats, reference: Floats) -> Floats:
+    weather = Weather()
+    rises_m = np.zeros(len(t_s))
+    for row, pressure_pa in enumerate(reference.tolist()):
+        weather.note("station", mono_ns(float(t_s[row])), pressure_altitude_m(pressure_pa), 0.0)
+        rises_m[row] = weather.rise_m
+    return rises_m
 
 
 @dataclass
@@ -146,29 +178,39 @@ class Run:
     places_m: Floats  # (n, 2)
     normalised2: Floats  # (n,) chi-square of 2 degrees of freedom
     heading_walked_m: float
+    floors: list[int | None]  # row by row
+    surenesses: Floats  # (n,) the stated probability of that floor
 
 
 def fuse(kind: FuserKind, person: Person, timing: Timing, *, with_plan: bool) -> Run:
     truth, fuser = person.truth, kind.new()
+    plan = read_plan(person.building.geojson())
     if with_plan:
-        fuser.consider(FloorGrid.of(read_plan(person.building.geojson())))
+        fuser.consider(FloorGrid.of(plan))
     if truth.from_engine:
         north_m, east_m = truth.place_m[0, :2]
         fuser.start(Start(north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
     count = len(truth.t_s)
-    places_m, normalised2 = np.zeros((count, 2)), np.zeros(count)
+    places_m, normalised2, sure = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
+    floors: list[int | None] = []
     solved_m = math.inf
     for row in range(count):
-        position = position_of(truth, person.own, None, row)
+        position = position_of(truth, person.own, person.pressures_pa, row)
+        altitude_m = pressure_altitude_m(float(person.pressures_pa[row]))
+        air_down_m = float(person.weather_m[row]) - altitude_m
         fix = person.fixes.get(row)
         began_ns = time.thread_time_ns()
         fuser.advance(position)
+        fuser.feel(AirHeight(position.header.t_mono_ns, air_down_m, referenced=True))
         if fix is not None:
             fuser.correct(fix)
         estimate = fuser.estimate()
         took_ns = time.thread_time_ns() - began_ns
         assert estimate is not None
         (timing.steps_ns if fix is None else timing.fixes_ns).append(took_ns)
+        floors.append(plan.floor_at(estimate.down_m, floors[-1] if floors else None))
+        if floors[-1] is not None:
+            sure[row] = plan.sureness(floors[-1], estimate.down_m, estimate.std_down_m)
         places_m[row] = estimate.north_m, estimate.east_m
         off_m = places_m[row] - truth.place_m[row, :2]
         product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
@@ -176,7 +218,7 @@ def fuse(kind: FuserKind, person: Person, timing: Timing, *, with_plan: bool) ->
         normalised2[row] = off_m @ np.linalg.solve(spread, off_m)
         if math.isinf(solved_m) and estimate.heading_std_rad < SOLVED_RAD:
             solved_m = float(person.own.distance_m[row])
-    return Run(places_m, normalised2, solved_m)
+    return Run(places_m, normalised2, solved_m, floors, sure)
 
 
 def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
@@ -239,6 +281,8 @@ def _figures_table(report: FusionReport) -> Table:
     table.add_column("")
     table.add_column("measured", justify="right")
     table.add_column("to reach", justify="right")
+    table.add_row("floor right", f"{report.floor_right:.2%}", "99 %")
+    table.add_row("floor right, as stated", f"{report.floor_stated:.2%}", "")
     for which, walked_m in report.heading_walked_m.items():
         table.add_row(f"heading solved after a walk of, {which}", f"{walked_m:.1f} m", "25 m")
     for what, step_us in report.step_us.items():

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.bench.incident_building import SteelBuilding
 from base_station.bench.incident_people import RATE_HZ, Truth
 
 Floats = NDArray[np.float64]
@@ -64,6 +65,31 @@ class Scores:
 
     def held_95(self, stage: str) -> float:
         return float(np.concatenate(self.held[stage]).mean())
+
+
+@dataclass
+class FloorScores:
+    """Of everybody inside who stands on a storey."""
+
+    right: list[Flags] = field(default_factory=list)
+    stated: list[Floats] = field(default_factory=list)
+
+    def note(
+        self, truth: Truth, building: SteelBuilding, floors: list[int | None], stated: Floats
+    ) -> None:
+        storeys = -truth.place_m[:, 2] / building.storey_m
+        on_storey = np.abs(storeys - np.rint(storeys)) * building.storey_m < ON_FLOOR_M
+        inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
+        said = np.array([-99 if floor is None else floor for floor in floors])
+        rows = on_storey & inside
+        self.right.append(said[rows] == np.rint(storeys[rows]))
+        self.stated.append(stated[rows])
+
+    def part_right(self) -> float:
+        return float(np.concatenate(self.right).mean())
+
+    def part_stated(self) -> float:
+        return float(np.concatenate(self.stated).mean())
 
 
 def _seam_m(truth: Truth, off_m: Floats) -> float:

@@ -51,6 +51,7 @@ WALL_M, WALL_REACH_M, WALL_SLOW_S = 6.0, 5.0, 15.0
 RUBBISH_M, RUBBISH_INSIDE_S, FOUND_AGAIN_S = 8.0, 8.0, 4.0
 ADMITTED = 1.0 / 3.0  # part of what walls do that the receiver's accuracy tells
 
+SITE_M = 120.0  # above the sea
 WEATHER_PA_PER_H = 350.0
 OFFSET_STD_PA, NOISE_PA = 60.0, 1.5
 STEPS_MOST, STEP_PA = 4, 30.0
@@ -166,16 +167,24 @@ def draw_air(rng: np.random.Generator, t_s: Floats) -> Air:
 
 def pressures_pa(rng: np.random.Generator, air: Air, truth: Truth) -> Floats:
     """What one person's barometer says (n,)."""
-    height_m = -truth.place_m[:, 2]
-    pa_per_m = pressure_pa_at(120.0) - pressure_pa_at(119.0)
     inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
-    true_pa = pressure_pa_at(120.0) + pa_per_m * height_m + air.weather_pa + air.inside_pa * inside
-    noise_pa = NOISE_PA * rng.normal(size=len(height_m))
-    return np.asarray(true_pa + rng.normal(0.0, OFFSET_STD_PA) + noise_pa, dtype=np.float64)
+    return _said_pa(rng, -truth.place_m[:, 2], air.weather_pa + air.inside_pa * inside)
+
+
+def reference_pa(rng: np.random.Generator, air: Air) -> Floats:
+    """What the station's own barometer says (n,)."""
+    return _said_pa(rng, np.zeros(len(air.weather_pa)), air.weather_pa)
+
+
+def _said_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> Floats:
+    pa_per_m = pressure_pa_at(SITE_M + 1.0) - pressure_pa_at(SITE_M)
+    true_pa = pressure_pa_at(SITE_M) + pa_per_m * height_m + added_pa
+    noise_pa = rng.normal(0.0, OFFSET_STD_PA) + NOISE_PA * rng.normal(size=len(height_m))
+    return np.asarray(true_pa + noise_pa, dtype=np.float64)
 
 
 def position_of(
-    truth: Truth, own: OwnPath, pressures: Floats | None, row: int, unit_id: str = "FF-01"
+    truth: Truth, own: OwnPath, pressures: Floats, row: int, unit_id: str = "FF-01"
 ) -> Position:
     north_m, east_m, down_m = own.place_m[row].tolist()
     heading_std_rad = float(own.heading_std_rad[row])
@@ -196,7 +205,7 @@ def position_of(
         heading_rad=0.0,
         heading_std_rad=heading_std_rad,
         distance_m=float(own.distance_m[row]),
-        pressure_pa=None if pressures is None else float(pressures[row]),
+        pressure_pa=float(pressures[row]),
         stationary=bool(np.linalg.norm(moved_m) * RATE_HZ < MOVING_MPS),
         quality=Quality.GOOD,
         reasons=Reason.NONE,

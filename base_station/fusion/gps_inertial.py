@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from base_station.floor_grid import FloorGrid
 from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
-from base_station.fusion.height import HeightFilter, SavedHeight
+from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
 from base_station.fusion.horizontal import HorizontalFilter
-from base_station.fusion.own_path import OwnPath, Stretch, climb_var_m2
+from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import PathMemory
-from base_station.fusion.port import Estimate, FixVerdict, PlaceFix, Present, Start
+from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
 from base_station.fusion.walled import SavedWalled, WalledFilter
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
@@ -68,7 +68,7 @@ class GpsInertialFuser:
             HorizontalFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
         )
         self._horizontal.expect_drift(kind.drift_radps)
-        self._height = HeightFilter(kind.wander_part)
+        self._height = HeightFilter(kind)
         if memory.horizontal is not None and memory.height is not None:
             self._horizontal.load(memory.horizontal)
             self._height.load(memory.height)
@@ -120,6 +120,9 @@ class GpsInertialFuser:
         memory.path.note(t_ns, position.north_m, position.east_m)
         return ""
 
+    def feel(self, air: AirHeight) -> None:
+        self._height.feel(air)
+
     def correct(self, fix: PlaceFix) -> FixVerdict:
         memory = self._memory
         walked_m = memory.last.distance_m if memory.last else 0.0
@@ -149,7 +152,7 @@ class GpsInertialFuser:
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         self._horizontal.reframe(turn_rad, north_m, east_m)
-        self._height.climb(down_m, 0.0)
+        self._height.shift(down_m)
         self._memory.trust.outliers.clear()
 
     def estimate(self) -> Estimate | None:
@@ -221,7 +224,9 @@ class GpsInertialFuser:
         kind = self._kind
         path = (stretch.north_m, stretch.east_m, stretch.moving_s, -stretch.down_m)
         noise = kind.walk_m_per_sqrt_m**2, kind.turn_rad_per_sqrt_m**2
-        self._height.climb(stretch.down_m, climb_var_m2(kind, stretch.down_m, stretch.length_m))
+        self._height.climb(stretch.down_m, stretch.length_m)
+        if self._height.walked_level and self._horizontal.outside_m() < 0.0:
+            self._height.rest_on(self._horizontal.storeys_down_m)
         self._horizontal.stand_at(self._height.down_m)
         self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
 

@@ -1,37 +1,64 @@
-"""The height of one unit: its own, a shift, and satellite heights that err slowly."""
+"""The height of one unit: its own path's, satellite heights that err slowly, and air pressure.
+
+A barometer says how high it is apart from a shift of its own, which wanders: slowly where a
+reference tells the weather, faster where none does.  When doors open or fans start, pressure
+steps; the path says that nobody climbed, so the step goes into the shift and not into the height.
+Whoever walks about on the level is on a storey, where a plan says how high these are.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import msgspec
 import numpy as np
 from filterpy.kalman import KalmanFilter
+from numpy.typing import NDArray
+
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.port import AirHeight
+from shared.clock import NS_PER_S
+
+Floats = NDArray[np.float64]
 
 _GATE_STD = 3.0
+_UNKNOWN_VAR_M2 = 1e4
+_OBSERVE_AIR = np.array([[1.0, 0.0, 1.0]])
+_OBSERVE_LEVEL = np.array([[1.0, 0.0, 0.0]])
 
 
 class SavedHeight(msgspec.Struct, frozen=True):
     x: list[float]
     covariance: list[list[float]]
+    air_t_mono_ns: int | None
+    level_m: float
+    climbed_m: float
 
 
 class HeightFilter:
-    """State: down in the incident frame, and the fixes' slow error in units of their std."""
+    """State: down in the incident frame, the fixes' slow error in units of their std, and the
+    barometer's shift.
+    """
 
-    def __init__(self, wander_part: float) -> None:
-        """``wander_part``: of a fix's variance that wanders slowly."""
-        self._wander_part = wander_part
-        self._filter = KalmanFilter(dim_x=2, dim_z=1)
-        self._filter.x = np.zeros((2, 1))
-        self._filter.P = np.diag([1.0, 1.0])
+    def __init__(self, kind: Parameters) -> None:
+        self._kind = kind
+        self._air_t_mono_ns: int | None = None  # None: the shift is not known yet
+        self._level_m = 0.0  # walked since the path last climbed
+        self._climbed_m = 0.0  # net, in the last metres
+        self._filter = KalmanFilter(dim_x=3, dim_z=1)
+        self._filter.x = np.zeros((3, 1))
+        self._filter.P = np.diag([1.0, 1.0, _UNKNOWN_VAR_M2])
 
     def save(self) -> SavedHeight:
-        return SavedHeight(self._filter.x.ravel().tolist(), self._filter.P.tolist())
+        state, covariance = self._filter.x.ravel().tolist(), self._filter.P.tolist()
+        return SavedHeight(state, covariance, self._air_t_mono_ns, self._level_m, self._climbed_m)
 
     def load(self, saved: SavedHeight) -> None:
-        self._filter.x = np.array(saved.x).reshape(2, 1)
+        self._filter.x = np.array(saved.x).reshape(3, 1)
         self._filter.P = np.array(saved.covariance)
+        self._air_t_mono_ns = saved.air_t_mono_ns
+        self._level_m, self._climbed_m = saved.level_m, saved.climbed_m
 
     @property
     def down_m(self) -> float:
@@ -41,14 +68,29 @@ class HeightFilter:
     def variance_m2(self) -> float:
         return float(self._filter.P[0, 0])
 
-    def begin(self, down_m: float, std_m: float) -> None:
-        self._filter.x[0, 0] = down_m
-        self._filter.P[:] = np.diag([std_m**2, 1.0])
+    @property
+    def walked_level(self) -> bool:
+        return self._level_m > self._kind.level_walk_m
 
-    def climb(self, down_m: float, variance_m2: float) -> None:
+    def begin(self, down_m: float, std_m: float) -> None:
+        """Known anew; the barometer's shift is to be found again."""
+        self._filter.x[0, 0] = down_m
+        self._filter.P[:] = np.diag([std_m**2, 1.0, _UNKNOWN_VAR_M2])
+        self._air_t_mono_ns = None
+
+    def shift(self, down_m: float) -> None:
+        """The incident frame was moved."""
+        self._filter.x[0, 0] += down_m
+        self._filter.x[2, 0] -= down_m
+
+    def climb(self, down_m: float, walked_m: float) -> None:
         """The own height went on by this much."""
         self._filter.x[0, 0] += down_m
-        self._filter.P[0, 0] += variance_m2
+        self._filter.P[0, 0] += climb_var_m2(self._kind, down_m, walked_m)
+        self._level_m += walked_m
+        self._climbed_m += down_m
+        if abs(self._climbed_m) > self._kind.level_m:
+            self._level_m = self._climbed_m = 0.0
 
     def fade(self, keep: float) -> None:
         """Time went by for the fixes' slow error."""
@@ -59,9 +101,52 @@ class HeightFilter:
 
     def correct(self, down_m: float, std_m: float) -> None:
         """Take a fix's height, unless it cannot be true."""
-        observe = np.array([[1.0, std_m * math.sqrt(self._wander_part)]])
-        noise = np.array([[std_m**2 * (1.0 - self._wander_part)]])
-        innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
-        spread_m2 = float((observe @ self._filter.P @ observe.T + noise)[0, 0])
+        part = self._kind.wander_part
+        observe = np.array([[1.0, std_m * math.sqrt(part), 0.0]])
+        innovation_m, spread_m2 = self._innovation(down_m, observe, std_m**2 * (1.0 - part))
         if innovation_m**2 <= _GATE_STD**2 * spread_m2:
-            self._filter.update(np.array([[down_m]]), R=noise, H=observe)
+            self._filter.update(
+                np.array([[down_m]]), R=np.array([[std_m**2 * (1.0 - part)]]), H=observe
+            )
+
+    def feel(self, air: AirHeight) -> None:
+        kind = self._kind
+        since_s = 0.0
+        if self._air_t_mono_ns is not None:
+            since_s = max(0.0, (air.t_mono_ns - self._air_t_mono_ns) / NS_PER_S)
+        self._air_t_mono_ns = air.t_mono_ns
+        wander_m = kind.air_m_per_sqrt_s if air.referenced else kind.weather_m_per_sqrt_s
+        self._filter.P[2, 2] += wander_m**2 * since_s
+        noise_m2 = kind.air_std_m**2
+        innovation_m, spread_m2 = self._innovation(air.down_m, _OBSERVE_AIR, noise_m2)
+        if innovation_m**2 > _GATE_STD**2 * spread_m2:
+            self._filter.P[2, 2] += innovation_m**2  # a step of pressure
+        self._filter.update(np.array([[air.down_m]]), R=np.array([[noise_m2]]), H=_OBSERVE_AIR)
+
+    def rest_on(self, storeys_down_m: Sequence[float]) -> None:
+        """Somebody in the building who walked on the level is on a storey."""
+        kind = self._kind
+        self._level_m = 0.0
+        if not storeys_down_m:
+            return
+        apart2 = np.square(np.array(storeys_down_m) - self.down_m)
+        spread_m2 = self.variance_m2 + kind.level_std_m**2
+        weights = np.exp(-0.5 * (apart2 - apart2.min()) / spread_m2)
+        best = int(apart2.argmin())
+        if weights[best] / weights.sum() > kind.level_sure and apart2[best] < 9.0 * spread_m2:
+            noise_m2 = np.array([[kind.level_std_m**2]])
+            level_m = np.array([[storeys_down_m[best]]])
+            self._filter.update(level_m, R=noise_m2, H=_OBSERVE_LEVEL)
+
+    def _innovation(
+        self,
+        down_m: float,
+        observe: np.ndarray[tuple[int, int], np.dtype[np.float64]],
+        noise: float,
+    ) -> tuple[float, float]:
+        innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
+        return innovation_m, float((observe @ self._filter.P @ observe.T)[0, 0]) + noise
+
+
+def climb_var_m2(kind: Parameters, climbed_m: float, walked_m: float) -> float:
+    return kind.climb_m_per_sqrt_climb_m**2 * abs(climbed_m) + kind.climb_m_per_sqrt_m**2 * walked_m

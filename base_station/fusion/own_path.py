@@ -92,10 +92,6 @@ class OwnPath(msgspec.Struct):
         return 0.0 if last_rad is None else abs(wrap_pi(step_rad - last_rad))
 
 
-def climb_var_m2(kind: Parameters, climbed_m: float, walked_m: float) -> float:
-    return kind.climb_part**2 * abs(climbed_m) + kind.climb_m_per_sqrt_m**2 * walked_m
-
-
 def _added_m2(last: Position, position: Position) -> float:
     """By how much the unit calls its place less sure."""
     before_m, now_m = (max(one.std_north_m, one.std_east_m) for one in (last, position))

@@ -16,8 +16,15 @@ class Parameters:
     drift_most_radps: float = 2e-3
     drift_doubt: float = 1.3  # units are too sure of their heading
     drift_wander_radps: float = 6e-5  # of that rate in a minute
-    climb_part: float = 0.03  # height error by height climbed
-    climb_m_per_sqrt_m: float = 0.02  # and by distance
+    climb_m_per_sqrt_climb_m: float = 0.12  # height error by height climbed
+    climb_m_per_sqrt_m: float = 0.01  # and by distance
+    level_m: float = 0.5  # nobody who climbs less than this changes floor
+    level_walk_m: float = 6.0  # walked like that: on a storey
+    level_std_m: float = 0.25  # how level storeys are
+    level_sure: float = 0.95
+    air_std_m: float = 0.3  # a barometer's noise, gusts included
+    air_m_per_sqrt_s: float = 0.02  # its shift's wander where the weather is known
+    weather_m_per_sqrt_s: float = 0.2  # and where it is not: 350 Pa an hour
     wander_part: float = 0.8  # of a fix's variance that wanders slowly
     wander_s: float = 30.0  # with this correlation time
     wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it

@@ -27,6 +27,14 @@ class PlaceFix(msgspec.Struct, frozen=True):
     vertical_std_m: float | None  # None: a fix without height
 
 
+class AirHeight(msgspec.Struct, frozen=True):
+    """What a barometer tells, apart from a shift of its own."""
+
+    t_mono_ns: int
+    down_m: float
+    referenced: bool  # the weather is taken out of it
+
+
 class Start(msgspec.Struct, frozen=True):
     """Where the origin of the unit's own frame lies, and the heading of its north."""
 
@@ -95,6 +103,10 @@ class Fuser(Protocol):
 
         A position of another boot than the last begins a new frame where the unit now is.
         """
+        ...
+
+    def feel(self, air: AirHeight) -> None:
+        """The air pressure that came with the last position."""
         ...
 
     def correct(self, fix: PlaceFix) -> FixVerdict: ...

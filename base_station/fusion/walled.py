@@ -57,6 +57,11 @@ class WalledFilter:
         self._clouds, self._to_walk_m = saved.clouds, saved.to_walk_m
         self._floor = saved.floor
 
+    @property
+    def storeys_down_m(self) -> tuple[float, ...]:
+        """Of the building, where a plan is known."""
+        return () if self._grid is None else self._grid.plan.storeys_down_m
+
     def consider(self, grid: FloorGrid | None) -> None:
         self._grid = grid
         if grid is None:
