@@ -201,6 +201,29 @@ def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card
     close(dialog)
 
 
+def test_a_pin_is_set_with_a_click_and_removed(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name="Pin on the plan").click()
+    form = page.get_by_role("form", name=f"Pin: {NAME}")
+    plan = page.locator(".map")
+    plan.click(position={"x": 200, "y": 150})
+    expect(form.get_by_label("North, m")).not_to_have_value("", timeout=SOON_MS)
+    form.get_by_label("Sure to within").select_option("4")
+    form.get_by_role("button", name="Set pin").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    (pin,) = page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())")
+    assert (pin["unit_id"], pin["std_m"], pin["by"]) == (UNIT, 2.0, "admin")
+    page.evaluate(f"fetch('/api/v1/pins/{pin['pin_id']}', {{method: 'DELETE'}})")
+    assert page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())") == []
+
+
+def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
+    page.get_by_role("button", name="All start here").click()
+    form = page.get_by_role("form", name="All start here")
+    expect(form).to_contain_text(NAME)
+    page.keyboard.press("Escape")
+    expect(form).to_have_count(0)
+
+
 def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
     account = menu(page, "Account")
     account.get_by_role("button", name="Users").click()

@@ -1,6 +1,6 @@
 /** The station's REST API, as far as the console uses it. */
 import type { Target } from "./live/commands";
-import type { AnchorView, CommandView } from "./wire";
+import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 export type Role = "viewer" | "commander" | "administrator";
 
@@ -157,6 +157,16 @@ export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
 export const units = () => call<UnitDetails[]>("GET", "/units");
+export interface Forgotten {
+  records: number; // of the log that changed or went
+  files: number;
+}
+
+export const forgetPerson = (personId: string, name: string) =>
+  call<Forgotten>("POST", `/people/${id(personId)}/forget`, { name });
+export const forgetIncident = (incidentId: string, name: string) =>
+  call<Forgotten>("POST", `/incidents/${id(incidentId)}/forget`, { name });
+
 export const registerUnit = (unitId: string, label: string) =>
   call<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>
@@ -223,6 +233,45 @@ export const audit = (beforeMs: number | undefined, limit: number) =>
     "GET",
     `/audit?limit=${limit}${beforeMs === undefined ? "" : `&until_ms=${beforeMs}`}`,
   );
+
+/** Where somebody was; `t_ms` left out: now, or with a start where each path begins. */
+export interface NewPin {
+  unit_id: string;
+  t_ms?: number;
+  north_m: number;
+  east_m: number;
+  std_m: number;
+  floor: number | null;
+  heading_rad: number | null;
+  note: string;
+}
+
+export const setPin = (pin: NewPin) => call<PinView>("POST", "/pins", pin);
+export const movePin = (pinId: string, pin: NewPin) =>
+  call<PinView>("PUT", `/pins/${id(pinId)}`, pin);
+export const removePin = (pinId: string) => call<void>("DELETE", `/pins/${id(pinId)}`);
+export const startTogether = (start: Omit<NewPin, "unit_id"> & { unit_ids: string[] }) =>
+  call<PinView[]>("POST", "/pins/start", start);
+export const setMeeting = (meeting: {
+  unit_id: string;
+  other_unit_id: string;
+  t_ms?: number;
+  std_m: number;
+  note: string;
+}) => call<PinView>("POST", "/pins/meeting", meeting);
+export const placeBeacon = (beacon: Omit<BeaconView, "seen_ms">) => {
+  const { beacon_id, ...place } = beacon;
+  return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, place);
+};
+export const removeBeacon = (beaconId: string) =>
+  call<void>("DELETE", `/beacons/${id(beaconId)}`);
+
+export interface TrailsAnswer {
+  trails: { unit_id: string; points: TrailPoint[] }[];
+}
+
+export const trails = (incidentId: string, kind: string) =>
+  call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
 
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
 export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);

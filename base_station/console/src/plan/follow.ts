@@ -2,10 +2,15 @@
 import { effect } from "@preact/signals";
 import { floor, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
+import { displayName } from "../live/urgency";
+import type { TrailPoint } from "../wire";
 import { firstFloor, floorsOf } from "./floors";
 import type { PlanMap } from "./map";
+import { followTrails, pastTrails, shownKinds } from "./pastTrails";
+import { clicked, tool } from "./tools";
 
 const REDRAW_MS = 200;
+const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 
 /** Begin to follow; the result ends it. */
 export function follow(map: PlanMap, picture: Picture): () => void {
@@ -13,17 +18,27 @@ export function follow(map: PlanMap, picture: Picture): () => void {
     map.showPeople({
       units: picture.allUnits(),
       alarms: picture.alarms.peek(),
-      trails: picture.trails.peek(),
+      trails: shownKinds.peek().has("fused") ? picture.trails.peek() : NO_TRAILS,
       nowMs: picture.nowMs.peek(),
       silentMs: picture.silentMs.peek(),
       floor: floor.peek(),
       chosen: selectedUnit.peek(),
     }),
   );
+  const drawPins = () =>
+    map.showPins({
+      pins: picture.pins.value,
+      beacons: picture.beacons.value,
+      names: new Map(picture.allUnits().map((unit) => [unit.unit_id, displayName(unit)])),
+      floor: floor.value,
+      chosen: chosenOnPlan(),
+      clicked: clicked.value,
+    });
   const theme = matchMedia("(prefers-color-scheme: dark)");
   const recolour = () => {
     map.recolour();
     redraw.ask();
+    drawPins();
   };
   theme.addEventListener("change", recolour);
   const ends = [
@@ -32,12 +47,22 @@ export function follow(map: PlanMap, picture: Picture): () => void {
     effect(() => map.showPlan(picture.plan.value)),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
-      void [picture.nowMs.value, floor.value, selectedUnit.value];
+      void [picture.nowMs.value, floor.value, selectedUnit.value, shownKinds.value];
       redraw.ask();
     }),
+    effect(drawPins),
+    effect(() => map.showPast(pastTrails.value, picture.nowMs.value, floor.value)),
+    followTrails(picture),
     beginOnAFloor(picture),
   ];
   return () => ends.forEach((end) => end());
+}
+
+/** The pin or beacon that is being looked at. */
+function chosenOnPlan(): string | null {
+  const now = tool.value;
+  if (now?.kind === "edit-pin") return now.pinId;
+  return now?.kind === "edit-beacon" ? now.beaconId : null;
 }
 
 /** Choose the first floor as soon as there are floors; after that the person chooses. */

@@ -1,14 +1,23 @@
 /** The plan as a map in site metres: paper, building, people; nothing else, and no WebGL. */
+import Feature from "ol/Feature";
 import OlMap from "ol/Map";
 import View from "ol/View";
 import ScaleLine from "ol/control/ScaleLine";
 import { buffer, createEmpty, extend } from "ol/extent";
+import Point from "ol/geom/Point";
+import { defaults } from "ol/interaction/defaults";
+import Translate from "ol/interaction/Translate";
+import type { FloorChoice } from "../view";
 import type { Plan } from "../wire";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { Crowd, type Scene } from "./crowd";
 import { Grid } from "./grid";
+import { PastLayer } from "./pastLayer";
+import type { PastTrails } from "./pastTrails";
+import { PinLayer, type PinScene, type Standing } from "./pins";
 import { SITE } from "./site";
+import type { Place } from "./tools";
 
 const TAP_PX = 26;
 const CLOSE_M_PER_PX = 0.06;
@@ -17,11 +26,22 @@ const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
 const AROUND_M = 2;
 
+/** What a person does on the plan. */
+export interface PlanEvents {
+  select(unitId: string): void;
+  /** A click anywhere; true where a tool took it. */
+  click(place: Place): boolean;
+  choose(standing: Standing): void;
+  moved(standing: Standing, place: Place): void;
+}
+
 export class PlanMap {
   private colours: Colours = readColours();
   private readonly grid = new Grid(this.colours);
   private readonly building = new Building(this.colours);
   private readonly crowd = new Crowd();
+  private readonly pins = new PinLayer();
+  private readonly past = new PastLayer();
   private readonly view = new View({
     projection: SITE,
     center: [0, 0],
@@ -34,23 +54,76 @@ export class PlanMap {
   private readonly map: OlMap;
   private fitted = false;
 
-  constructor(target: HTMLElement, onSelect: (unitId: string) => void) {
+  constructor(
+    target: HTMLElement,
+    private readonly events: PlanEvents,
+  ) {
     this.map = new OlMap({
       target,
       view: this.view,
-      layers: [this.grid, this.building.layer, ...this.crowd.layers],
+      layers: [
+        this.grid,
+        this.building.layer,
+        this.past.layer,
+        ...this.crowd.layers,
+        this.pins.layer,
+      ],
+      interactions: defaults().extend([this.dragging()]),
       controls: [new ScaleLine({ minWidth: 80 })],
     });
     this.map.on("singleclick", (event) => {
-      const hit = this.crowd.nearest(event.coordinate);
-      if (hit === null) return;
-      const pixel = this.map.getPixelFromCoordinate(hit.at);
-      const apart = Math.hypot(
-        (pixel[0] ?? 0) - (event.pixel[0] ?? 0),
-        (pixel[1] ?? 0) - (event.pixel[1] ?? 0),
-      );
-      if (apart <= TAP_PX) onSelect(hit.unitId);
+      if (this.events.click(placeOf(event.coordinate))) return;
+      const standing = this.standingAt(event.pixel);
+      if (standing !== null) this.events.choose(standing);
+      else this.selectNear(event.coordinate, event.pixel);
     });
+  }
+
+  showPins(scene: Omit<PinScene, "colours">): void {
+    this.pins.show({ ...scene, colours: this.colours });
+  }
+
+  showPast(all: readonly PastTrails[], nowMs: number, floor: FloorChoice): void {
+    this.past.show(all, nowMs, floor, this.colours);
+  }
+
+  private selectNear(coordinate: number[], clicked: number[]): void {
+    const hit = this.crowd.nearest(coordinate);
+    if (hit === null) return;
+    const pixel = this.map.getPixelFromCoordinate(hit.at);
+    const apart = Math.hypot(
+      (pixel[0] ?? 0) - (clicked[0] ?? 0),
+      (pixel[1] ?? 0) - (clicked[1] ?? 0),
+    );
+    if (apart <= TAP_PX) this.events.select(hit.unitId);
+  }
+
+  private standingAt(pixel: number[]): Standing | null {
+    const found = this.map.forEachFeatureAtPixel(
+      pixel,
+      (feature) => (feature instanceof Feature ? this.pins.standing(feature) : null) ?? undefined,
+      { layerFilter: (layer) => layer === this.pins.layer, hitTolerance: TAP_PX / 2 },
+    );
+    return found ?? null;
+  }
+
+  /** Pins and beacons can be drawn to another place. */
+  private dragging(): Translate {
+    const translate = new Translate({
+      layers: [this.pins.layer],
+      filter: (feature) => feature instanceof Feature && this.pins.standing(feature) !== null,
+      hitTolerance: TAP_PX / 2,
+    });
+    translate.on("translateend", (event) => {
+      for (const feature of event.features.getArray()) {
+        const standing = this.pins.standing(feature);
+        const at = feature.getGeometry();
+        if (standing !== null && at instanceof Point) {
+          this.events.moved(standing, placeOf(at.getCoordinates()));
+        }
+      }
+    });
+    return translate;
   }
 
   showPlan(plan: Plan | null): void {
@@ -96,6 +169,10 @@ export class PlanMap {
     this.map.setTarget(undefined);
     this.map.dispose();
   }
+}
+
+function placeOf([east_m = 0, north_m = 0]: number[]): Place {
+  return { north_m, east_m };
 }
 
 function moving(): { duration: number } {

@@ -11,12 +11,13 @@ export function trailLines(
   points: readonly TrailPoint[],
   nowMs: number,
   floor: FloorChoice,
+  spanMs = TRAIL_MS,
 ): [number, number][][] {
   const lines: [number, number][][] = [];
   let line: [number, number][] = [];
   let lastMs = -Infinity;
   for (const [tMs, northM, eastM, on] of points) {
-    const shown = tMs >= nowMs - TRAIL_MS && (floor === "all" || on === null || on === floor);
+    const shown = tMs >= nowMs - spanMs && (floor === "all" || on === null || on === floor);
     if (!shown) continue;
     if (tMs - lastMs > BREAK_MS) {
       line = [];

@@ -1,6 +1,7 @@
 import { attempt } from "../sessions";
 import { openDialog } from "../view";
 import * as api from "../api";
+import { take } from "../plan/tools";
 import { displayName } from "../live/urgency";
 import type { UnitView } from "../wire";
 
@@ -24,6 +25,12 @@ export function CardActions({ unit }: { unit: UnitView }) {
           </button>
         </>
       )}
+      <button type="button" onClick={() => take({ kind: "pin", unitId })}>
+        Pin on the plan
+      </button>
+      <button type="button" onClick={() => take({ kind: "meeting", unitId })}>
+        Met …
+      </button>
       <button
         type="button"
         title="The unit makes itself heard and seen"

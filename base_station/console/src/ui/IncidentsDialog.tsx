@@ -1,14 +1,16 @@
-import { attempt, live, mayAct, watchReplay } from "../sessions";
+import { attempt, live, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
+import { Forget } from "./Forget";
 import { fields, useLoaded } from "./useLoaded";
 
 export function IncidentsDialog() {
   const [incidents, again] = useLoaded(api.incidents);
   const open = live.value?.picture.incident.value ?? null;
+  const forgets = user.value?.role === "administrator";
   const running = open !== null && open.closed_ms === null ? open : null;
   return (
     <Dialog title="Incidents" wide>
@@ -35,6 +37,7 @@ export function IncidentsDialog() {
             <th scope="col">Lasted</th>
             <th scope="col">Replay</th>
             <th scope="col">Tracks</th>
+            {forgets && <th scope="col">Personal data</th>}
           </tr>
         </thead>
         <tbody>
@@ -59,6 +62,18 @@ export function IncidentsDialog() {
               <td>
                 <Downloads incident={incident} />
               </td>
+              {forgets && (
+                <td>
+                  {incident.closed_ms !== null && (
+                    <Forget
+                      name={incident.name}
+                      warning="Who was there and where is deleted."
+                      forget={(name) => api.forgetIncident(incident.incident_id, name)}
+                      done={again}
+                    />
+                  )}
+                </td>
+              )}
             </tr>
           ))}
         </tbody>

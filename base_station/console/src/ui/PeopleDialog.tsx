@@ -1,13 +1,15 @@
-import { attempt } from "../sessions";
+import { useSignal } from "@preact/signals";
+import { attempt, user } from "../sessions";
 import * as api from "../api";
 import { Dialog } from "./Dialog";
+import { Forget } from "./Forget";
 import { Photo } from "./Photo";
-import { useLoaded } from "./useLoaded";
+import { fields, useLoaded } from "./useLoaded";
 
 export function PeopleDialog() {
   const [people, again] = useLoaded(api.people);
   return (
-    <Dialog title="People">
+    <Dialog title="People" wide>
       <PersonForm done={again} />
       <table>
         <thead>
@@ -16,6 +18,9 @@ export function PeopleDialog() {
             <th scope="col">Crew</th>
             <th scope="col">Role</th>
             <th scope="col">Photo</th>
+            <th scope="col">
+              <span class="spoken">Change</span>
+            </th>
           </tr>
         </thead>
         <tbody>
@@ -28,7 +33,26 @@ export function PeopleDialog() {
   );
 }
 
-function PersonRow({ person, done }: { person: api.Person; done: () => void }) {
+interface RowProps {
+  person: api.Person;
+  done: () => void;
+}
+
+function PersonRow({ person, done }: RowProps) {
+  const changing = useSignal(false);
+  if (changing.value) {
+    const ended = () => {
+      changing.value = false;
+      done();
+    };
+    return (
+      <tr>
+        <td colSpan={5}>
+          <ChangeForm person={person} done={ended} />
+        </td>
+      </tr>
+    );
+  }
   return (
     <tr>
       <th scope="row">
@@ -50,7 +74,61 @@ function PersonRow({ person, done }: { person: api.Person; done: () => void }) {
           }}
         />
       </td>
+      <td class="row-actions">
+        <button
+          type="button"
+          aria-label={`Change ${person.name}`}
+          onClick={() => (changing.value = true)}
+        >
+          Change
+        </button>
+        {user.value?.role === "administrator" && (
+          <Forget
+            name={person.name}
+            warning="Name, photo and everywhere this person was are deleted."
+            forget={(name) => api.forgetPerson(person.person_id, name)}
+            done={done}
+          />
+        )}
+      </td>
     </tr>
+  );
+}
+
+function ChangeForm({ person, done }: RowProps) {
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        const { name = "", crew = "", role = "" } = fields(event);
+        void attempt(api.changePerson(person.person_id, { name, crew, role })).then(done);
+      }}
+    >
+      <PersonFields person={person} />
+      <button class="primary">Change {person.name}</button>
+      <button type="button" onClick={done}>
+        Leave as it is
+      </button>
+    </form>
+  );
+}
+
+function PersonFields({ person }: { person?: api.Person }) {
+  return (
+    <>
+      <label>
+        Name
+        <input name="name" required maxLength={80} defaultValue={person?.name ?? ""} />
+      </label>
+      <label>
+        Crew
+        <input name="crew" maxLength={60} defaultValue={person?.crew ?? ""} />
+      </label>
+      <label>
+        Role
+        <input name="role" maxLength={60} defaultValue={person?.role ?? ""} />
+      </label>
+    </>
   );
 }
 
@@ -76,18 +154,7 @@ function PersonForm({ done }: { done: () => void }) {
         void attempt(add(event.currentTarget)).then(done);
       }}
     >
-      <label>
-        Name
-        <input name="name" required maxLength={80} />
-      </label>
-      <label>
-        Crew
-        <input name="crew" maxLength={60} />
-      </label>
-      <label>
-        Role
-        <input name="role" maxLength={60} />
-      </label>
+      <PersonFields />
       <label>
         Photo
         <input name="photo" type="file" accept="image/*" />

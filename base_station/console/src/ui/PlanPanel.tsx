@@ -1,11 +1,16 @@
 import { useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { centring, select, selectedUnit } from "../view";
+import { attempt, mayAct } from "../sessions";
+import { centring, notice, select, selectedUnit } from "../view";
+import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { follow } from "../plan/follow";
-import { PlanMap } from "../plan/map";
+import { PlanMap, type PlanEvents } from "../plan/map";
+import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
+import { click, take, tool, wantsPlaces, type Place } from "../plan/tools";
 import { Floors } from "./Floors";
+import { PlanTools } from "./PlanTools";
 
 export function PlanPanel({ picture }: { picture: Picture }) {
   const target = useRef<HTMLDivElement>(null);
@@ -13,7 +18,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   useEffect(() => {
     if (target.current === null) return undefined;
-    const made = new PlanMap(target.current, (unitId) => select(unitId, null));
+    const made = new PlanMap(target.current, eventsOf(picture));
     map.current = made;
     const stop = follow(made, picture);
     return () => {
@@ -33,7 +38,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
     <section class="plan" aria-label="Plan">
       <Floors picture={picture} />
       <div
-        class="map"
+        class={`map ${tool.value === null ? "" : "placing"}`}
         ref={target}
         tabIndex={0}
         role="application"
@@ -53,6 +58,45 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       <div class="north" aria-hidden="true">
         N
       </div>
+      <PlanTools picture={picture} />
     </section>
   );
+}
+
+function eventsOf(picture: Picture): PlanEvents {
+  return {
+    select: (unitId) => select(unitId, null),
+    click(place) {
+      if (!wantsPlaces()) return false;
+      click(place);
+      return true;
+    },
+    choose(standing) {
+      if (!mayAct.peek()) return;
+      if (standing.kind === "pin") take({ kind: "edit-pin", pinId: standing.id });
+      else take({ kind: "edit-beacon", beaconId: standing.id });
+    },
+    moved: (standing, place) => void move(picture, standing, place),
+  };
+}
+
+/** A pin or beacon was drawn to another place; refused, it goes back to where it was. */
+async function move(picture: Picture, standing: Standing, place: Place): Promise<void> {
+  const done = mayAct.peek() ? await attempt(moved(picture, standing, place)) : null;
+  if (done === null) picture.pins.value = [...picture.pins.peek()];
+}
+
+function moved(picture: Picture, standing: Standing, place: Place): Promise<object | null> {
+  const beacon = picture.beacons.peek().find((one) => one.beacon_id === standing.id);
+  if (standing.kind === "beacon" && beacon !== undefined) {
+    const { beacon_id, label, floor, std_m, reach_m } = beacon;
+    return api.placeBeacon({ beacon_id, label, floor, std_m, reach_m, ...place });
+  }
+  const pin = picture.pins.peek().find((one) => one.pin_id === standing.id);
+  if (pin === undefined || pin.kind !== "place") {
+    notice.value = "This pin belongs to a start of several people: remove it and set another.";
+    return Promise.resolve(null);
+  }
+  const { unit_id, t_ms, std_m, floor, heading_rad, note } = pin;
+  return api.movePin(pin.pin_id, { unit_id, t_ms, std_m, floor, heading_rad, note, ...place });
 }

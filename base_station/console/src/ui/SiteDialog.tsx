@@ -1,6 +1,7 @@
 import { ApiError, setAnchor, setPlan } from "../api";
 import { attempt, live } from "../sessions";
 import { dialog } from "../view";
+import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { Dialog } from "./Dialog";
 import { fields } from "./useLoaded";
@@ -30,6 +31,18 @@ export function SiteDialog() {
         />
       </label>
       <h3>Place on the Earth</h3>
+      <p>
+        <button
+          type="button"
+          onClick={() => {
+            dialog.value = null;
+            take({ kind: "anchor" });
+          }}
+        >
+          By two points of the plan
+        </button>{" "}
+        Without a plan, the first good fix of a unit does it.
+      </p>
       <AnchorForm anchor={picture?.anchor.value ?? null} />
     </Dialog>
   );

@@ -1,0 +1,87 @@
+/** Where the plan lies on the Earth, from two of its points whose latitude and longitude are known.
+ * Pure. */
+import type { AnchorView } from "../wire";
+import type { Place } from "./tools";
+
+export interface Known {
+  place: Place;
+  lat_deg: number;
+  lon_deg: number;
+}
+
+export interface Fit {
+  anchor: AnchorView;
+  plan_m: number; // between the points on the plan
+  earth_m: number; // and on the Earth
+}
+
+const RAD = Math.PI / 180;
+const EQUATOR_M = 6_378_137.0; // WGS-84
+const ECCENTRICITY_2 = 6.694_379_990_14e-3;
+/** Farther off than this, one of the points is another than was meant. */
+const MOST_OFF = 0.05;
+
+/** The anchor that puts the middle between the two points where it is; scale is not changed. */
+export function anchorThrough(one: Known, other: Known, heightM: number): Fit {
+  const midLat = (one.lat_deg + other.lat_deg) / 2;
+  const midLon = (one.lon_deg + other.lon_deg) / 2;
+  const perDegree = metresPerDegree(midLat);
+  const earth = {
+    north_m: (other.lat_deg - one.lat_deg) * perDegree.lat,
+    east_m: (other.lon_deg - one.lon_deg) * perDegree.lon,
+  };
+  const plan = {
+    north_m: other.place.north_m - one.place.north_m,
+    east_m: other.place.east_m - one.place.east_m,
+  };
+  const turn = heading(earth) - heading(plan);
+  const middle = turned(
+    {
+      north_m: (one.place.north_m + other.place.north_m) / 2,
+      east_m: (one.place.east_m + other.place.east_m) / 2,
+    },
+    turn,
+  );
+  return {
+    anchor: {
+      lat_deg: midLat - middle.north_m / perDegree.lat,
+      lon_deg: midLon - middle.east_m / perDegree.lon,
+      height_m: heightM,
+      plan_rotation_rad: Math.atan2(Math.sin(turn), Math.cos(turn)),
+    },
+    plan_m: length(plan),
+    earth_m: length(earth),
+  };
+}
+
+/** What is wrong with the two points; empty: nothing. */
+export function doubtOf(fit: Fit): string {
+  const said = `The points are ${fit.plan_m.toFixed(1)} m apart on the plan and ${fit.earth_m.toFixed(1)} m on the Earth`;
+  if (fit.plan_m < 5) return `${said}: take two that are farther apart.`;
+  const off = Math.abs(fit.earth_m / fit.plan_m - 1);
+  return off > MOST_OFF ? `${said}: one of them is another point, or the plan's scale is wrong.` : "";
+}
+
+function metresPerDegree(latDeg: number): { lat: number; lon: number } {
+  const sin = Math.sin(latDeg * RAD);
+  const bulge = 1 - ECCENTRICITY_2 * sin * sin;
+  const meridian = (EQUATOR_M * (1 - ECCENTRICITY_2)) / bulge ** 1.5;
+  return {
+    lat: RAD * meridian,
+    lon: RAD * (EQUATOR_M / Math.sqrt(bulge)) * Math.cos(latDeg * RAD),
+  };
+}
+
+/** Clockwise from north. */
+function heading(way: Place): number {
+  return Math.atan2(way.east_m, way.north_m);
+}
+
+function turned({ north_m, east_m }: Place, turn: number): Place {
+  const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
+  return { north_m: north_m * cos - east_m * sin, east_m: north_m * sin + east_m * cos };
+}
+
+function length(way: Place): number {
+  return Math.hypot(way.north_m, way.east_m);
+}

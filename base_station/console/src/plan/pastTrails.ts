@@ -1,0 +1,59 @@
+/** Trails that the station works out when asked: the unit's own path, and the best known since. */
+import { effect, signal } from "@preact/signals";
+import * as api from "../api";
+import type { Picture } from "../live/picture";
+import { attempt } from "../sessions";
+import type { TrailPoint } from "../wire";
+
+/** `fused` is what the console draws anyway. */
+export type PastKind = "raw" | "smoothed";
+export type TrailKind = "fused" | PastKind;
+
+export interface PastTrails {
+  kind: PastKind;
+  trails: ReadonlyMap<string, readonly TrailPoint[]>;
+}
+
+export const shownKinds = signal<ReadonlySet<TrailKind>>(new Set<TrailKind>(["fused"]));
+export const pastTrails = signal<readonly PastTrails[]>([]);
+export const loadingKinds = signal<ReadonlySet<TrailKind>>(new Set());
+
+const AGAIN_MS = 20_000;
+
+export function toggle(kind: TrailKind): void {
+  const next = new Set(shownKinds.peek());
+  if (!next.delete(kind)) next.add(kind);
+  shownKinds.value = next;
+}
+
+/** Ask for what is shown, now and then again; the result ends it. */
+export function followTrails(picture: Picture): () => void {
+  let timer: number | null = null;
+  const stop = () => {
+    if (timer !== null) clearInterval(timer);
+    timer = null;
+  };
+  const end = effect(() => {
+    const incident = picture.incident.value;
+    const kinds = [...shownKinds.value].filter((kind) => kind !== "fused");
+    stop();
+    pastTrails.value = pastTrails.peek().filter((one) => kinds.includes(one.kind));
+    if (incident === null || kinds.length === 0) return;
+    const load = () => kinds.forEach((kind) => void ask(incident.incident_id, kind));
+    load();
+    if (incident.closed_ms === null) timer = window.setInterval(load, AGAIN_MS);
+  });
+  return () => {
+    stop();
+    end();
+  };
+}
+
+async function ask(incidentId: string, kind: PastKind): Promise<void> {
+  loadingKinds.value = new Set([...loadingKinds.peek(), kind]);
+  const answer = await attempt(api.trails(incidentId, kind));
+  loadingKinds.value = new Set([...loadingKinds.peek()].filter((one) => one !== kind));
+  if (answer === null || !shownKinds.peek().has(kind)) return;
+  const trails = new Map(answer.trails.map((trail) => [trail.unit_id, trail.points]));
+  pastTrails.value = [...pastTrails.peek().filter((one) => one.kind !== kind), { kind, trails }];
+}

@@ -1,0 +1,202 @@
+/** Pins and beacons on the plan, each with the region in which it may be wrong. */
+import Feature from "ol/Feature";
+import Circle from "ol/geom/Circle";
+import Point from "ol/geom/Point";
+import VectorLayer from "ol/layer/Vector";
+import VectorSource from "ol/source/Vector";
+import { Fill, Stroke, Style, Text } from "ol/style";
+import type { State as RenderState } from "ol/render";
+import type { FloorChoice } from "../view";
+import type { BeaconView, PinView } from "../wire";
+import { clockTime } from "../words";
+import { faint, type Colours } from "./colours";
+import { siteCoordinate } from "./site";
+import type { Place } from "./tools";
+
+export interface PinScene {
+  pins: readonly PinView[];
+  beacons: readonly BeaconView[];
+  names: ReadonlyMap<string, string>; // of who wears which unit
+  floor: FloorChoice;
+  chosen: string | null; // id of a pin or beacon
+  clicked: readonly Place[];
+  colours: Colours;
+}
+
+/** What stands at a place on the plan and can be moved. */
+export interface Standing {
+  kind: "pin" | "beacon";
+  id: string;
+}
+
+const RADIUS_95 = 2.447; // standard deviations that hold 95 % in a plane
+const STEM_PX = 20;
+const HEAD_PX = 7;
+
+export class PinLayer {
+  private readonly source = new VectorSource<Feature>();
+  readonly layer = new VectorLayer({ source: this.source });
+
+  show(scene: PinScene): void {
+    this.source.clear(true);
+    for (const beacon of scene.beacons) {
+      if (isOn(beacon.floor, scene.floor)) this.addBeacon(beacon, scene);
+    }
+    for (const pin of scene.pins) {
+      if (pin.north_m === null || pin.east_m === null || !isOn(pin.floor, scene.floor)) continue;
+      if (pin.kind === "beacon" || pin.kind === "tag") continue; // the beacon itself is drawn
+      this.addPin(pin, { north_m: pin.north_m, east_m: pin.east_m }, scene);
+    }
+    scene.clicked.forEach((place, i) => this.addClick(place, i, scene));
+  }
+
+  /** Whether a feature of the map is one that can be dragged. */
+  standing(feature: Feature): Standing | null {
+    return (feature.get("standing") as Standing | undefined) ?? null;
+  }
+
+  private addPin(pin: PinView, at: Place, scene: PinScene): void {
+    const chosen = scene.chosen === pin.pin_id;
+    const colour = pinColour(pin, scene.colours);
+    this.addRegion(at, RADIUS_95 * pin.std_m, colour, chosen);
+    const name = scene.names.get(pin.unit_id) ?? pin.unit_id;
+    const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
+    const label = chosen || pin.state === "conflict" ? `${name}, ${when}` : "";
+    const mark = new Feature({ geometry: new Point(siteCoordinate(at)) });
+    mark.set("standing", { kind: "pin", id: pin.pin_id } satisfies Standing);
+    mark.setStyle([
+      new Style({
+        zIndex: chosen ? 3 : 1,
+        renderer: (where, state) =>
+          drawPin(where as number[], state, pin.state, colour, scene.colours.halo),
+      }),
+      textStyle(label, -STEM_PX - 2 * HEAD_PX - 4, scene.colours),
+    ]);
+    this.source.addFeature(mark);
+  }
+
+  private addBeacon(beacon: BeaconView, scene: PinScene): void {
+    const chosen = scene.chosen === beacon.beacon_id;
+    const colour = scene.colours.watch;
+    if (chosen) this.addRegion(beacon, beacon.reach_m, colour, true);
+    const mark = new Feature({ geometry: new Point(siteCoordinate(beacon)) });
+    mark.set("standing", { kind: "beacon", id: beacon.beacon_id } satisfies Standing);
+    mark.setStyle([
+      new Style({
+        zIndex: chosen ? 3 : 1,
+        renderer: (where, state) => drawDiamond(where as number[], state, colour, scene.colours),
+      }),
+      textStyle(beacon.label || beacon.beacon_id, 17, scene.colours),
+    ]);
+    this.source.addFeature(mark);
+  }
+
+  /** Where the person has clicked with a tool. */
+  private addClick(place: Place, index: number, { colours }: PinScene): void {
+    const mark = new Feature({ geometry: new Point(siteCoordinate(place)) });
+    mark.setStyle([
+      new Style({
+        zIndex: 4,
+        renderer: (where, state) => drawCross(where as number[], state, colours.chosen),
+      }),
+      textStyle(String(index + 1), -18, colours),
+    ]);
+    this.source.addFeature(mark);
+  }
+
+  private addRegion(at: Place, radiusM: number, colour: string, chosen: boolean): void {
+    const region = new Feature({ geometry: new Circle(siteCoordinate(at), radiusM) });
+    region.setStyle(
+      new Style({
+        stroke: new Stroke({ color: faint(colour, 0.8), width: chosen ? 2 : 1, lineDash: [3, 4] }),
+        fill: new Fill({ color: faint(colour, chosen ? 0.12 : 0.05) }),
+      }),
+    );
+    this.source.addFeature(region);
+  }
+}
+
+function isOn(floor: number | null, chosen: FloorChoice): boolean {
+  return chosen === "all" || floor === null || floor === chosen;
+}
+
+function pinColour(pin: PinView, colours: Colours): string {
+  if (pin.state === "conflict") return colours.immediate;
+  return pin.state === "waiting" ? colours.quiet : colours.chosen;
+}
+
+function textStyle(text: string, offsetY: number, colours: Colours): Style {
+  return new Style({
+    zIndex: 4,
+    text: new Text({
+      text,
+      font: "600 13px system-ui, sans-serif",
+      offsetY,
+      fill: new Fill({ color: colours.text }),
+      stroke: new Stroke({ color: colours.halo, width: 4 }),
+    }),
+  });
+}
+
+type Context = RenderState["context"];
+
+function at(where: number[], { context, pixelRatio }: RenderState, draw: (c: Context) => void) {
+  context.save();
+  context.translate(where[0] ?? 0, where[1] ?? 0);
+  context.scale(pixelRatio, pixelRatio);
+  draw(context);
+  context.restore();
+}
+
+/** A pin with a head: full while it is used, hollow while it waits, with "!" where it conflicts. */
+function drawPin(
+  where: number[],
+  state: RenderState,
+  pinState: string,
+  colour: string,
+  halo: string,
+): void {
+  at(where, state, (context) => {
+    context.lineWidth = 2.5;
+    context.strokeStyle = colour;
+    context.beginPath();
+    context.moveTo(0, 0);
+    context.lineTo(0, -STEM_PX + HEAD_PX);
+    context.stroke();
+    context.beginPath();
+    context.arc(0, -STEM_PX, HEAD_PX, 0, 2 * Math.PI);
+    context.fillStyle = pinState === "waiting" ? halo : colour;
+    context.fill();
+    context.stroke();
+    if (pinState !== "conflict") return;
+    context.fillStyle = halo;
+    context.font = "800 11px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.fillText("!", 0, -STEM_PX + 0.5);
+  });
+}
+
+function drawDiamond(where: number[], state: RenderState, colour: string, colours: Colours): void {
+  at(where, state, (context) => {
+    context.rotate(Math.PI / 4);
+    context.fillStyle = colour;
+    context.strokeStyle = colours.halo;
+    context.lineWidth = 2;
+    context.fillRect(-6, -6, 12, 12);
+    context.strokeRect(-6, -6, 12, 12);
+  });
+}
+
+function drawCross(where: number[], state: RenderState, colour: string): void {
+  at(where, state, (context) => {
+    context.strokeStyle = colour;
+    context.lineWidth = 2.5;
+    context.beginPath();
+    context.moveTo(-10, 0);
+    context.lineTo(10, 0);
+    context.moveTo(0, -10);
+    context.lineTo(0, 10);
+    context.stroke();
+  });
+}

@@ -1,0 +1,223 @@
+import { attempt } from "../sessions";
+import * as api from "../api";
+import type { Picture } from "../live/picture";
+import { displayName } from "../live/urgency";
+import { putDown } from "../plan/tools";
+import type { PinView, UnitView } from "../wire";
+import { clockTime } from "../words";
+import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
+import { fields } from "./useLoaded";
+
+interface Props {
+  picture: Picture;
+  unitId: string;
+  pin: PinView | null; // null: a new one
+}
+
+/** "This person was here then": it corrects the whole trail, not only the place now. */
+export function PinPanel({ picture, unitId, pin }: Props) {
+  const name = nameOf(picture, unitId);
+  const fixed = pin !== null && pin.kind !== "place"; // it can only be removed
+  const at =
+    pin === null || pin.north_m === null || pin.east_m === null
+      ? undefined
+      : { north_m: pin.north_m, east_m: pin.east_m };
+  const send = (event: SubmitEvent) => {
+    const given = fields(event);
+    const t_ms = pin !== null && given["when"] === "" ? pin.t_ms : timeOf(given, picture);
+    const wanted = {
+      unit_id: unitId,
+      ...placeOf(given),
+      ...(t_ms === undefined ? {} : { t_ms }),
+      heading_rad: pin?.heading_rad ?? null,
+      note: given["note"] ?? "",
+    };
+    const sent = pin === null ? api.setPin(wanted) : api.movePin(pin.pin_id, wanted);
+    void attempt(sent).then((done) => done && putDown());
+  };
+  return (
+    <form class="tool-panel" aria-label={`Pin: ${name}`} onSubmit={send}>
+      <h3>{name} was here</h3>
+      {pin !== null && <Verdict pin={pin} />}
+      {!fixed && (
+        <>
+          <PlaceFields {...(at === undefined ? {} : { start: at })} />
+          <WithinField startM={2 * (pin?.std_m ?? 1)} />
+          <WhenField set={pin === null ? null : pin.t_ms} />
+          <FloorField picture={picture} start={pin?.floor ?? null} />
+          <label>
+            Note
+            <input name="note" maxLength={200} defaultValue={pin?.note ?? ""} />
+          </label>
+        </>
+      )}
+      <Ends label={fixed ? null : pin === null ? "Set pin" : "Move pin"}>
+        {pin !== null && (
+          <button
+            type="button"
+            onClick={() => void attempt(api.removePin(pin.pin_id)).then(putDown)}
+          >
+            Remove pin
+          </button>
+        )}
+      </Ends>
+    </form>
+  );
+}
+
+const STATES: Record<string, string> = {
+  used: "Used",
+  waiting: "Waits",
+  conflict: "Contradicts what else is known; it is not used",
+};
+
+/** What became of a pin. */
+function Verdict({ pin }: { pin: PinView }) {
+  const off = pin.residual_m === null ? "" : `, ${pin.residual_m.toFixed(1)} m from the trail`;
+  return (
+    <p class={`verdict ${pin.state}`}>
+      <strong>
+        {STATES[pin.state] ?? pin.state}
+        {off}.
+      </strong>{" "}
+      {pin.text} <span class="quiet">Set by {pin.by} at {clockTime(pin.set_ms)}.</span>
+    </p>
+  );
+}
+
+/** Where everybody who is on duty began, for instance at the engine. */
+export function StartPanel({ picture }: { picture: Picture }) {
+  const units = onDuty(picture);
+  const send = (event: SubmitEvent) => {
+    const given = fields(event);
+    const facing = given["facing"] ?? "";
+    const start = {
+      unit_ids: units.map((unit) => unit.unit_id),
+      ...placeOf(given),
+      heading_rad: facing === "" ? null : (Number(facing) * Math.PI) / 180,
+      note: "",
+    };
+    void attempt(api.startTogether(start)).then((done) => done && putDown());
+  };
+  return (
+    <form class="tool-panel" aria-label="All start here" onSubmit={send}>
+      <h3>All began here</h3>
+      <p>{units.map(displayName).join(", ") || "Nobody wears a unit yet."}</p>
+      <PlaceFields />
+      <WithinField startM={4} />
+      <label>
+        They looked towards
+        <select name="facing">
+          <option value="">not known</option>
+          {COMPASS.map(([word, degrees]) => (
+            <option key={word} value={degrees}>
+              {word} of the plan
+            </option>
+          ))}
+        </select>
+      </label>
+      <FloorField picture={picture} start={null} />
+      <Ends label="Set start" />
+    </form>
+  );
+}
+
+const COMPASS: readonly [string, number][] = [
+  ["north", 0],
+  ["north-east", 45],
+  ["east", 90],
+  ["south-east", 135],
+  ["south", 180],
+  ["south-west", 225],
+  ["west", 270],
+  ["north-west", 315],
+];
+
+/** Two people were at the same place; nobody has to say where. */
+export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: string }) {
+  const others = onDuty(picture).filter((unit) => unit.unit_id !== unitId);
+  const send = (event: SubmitEvent) => {
+    const given = fields(event);
+    const t_ms = timeOf(given, picture);
+    const meeting = {
+      unit_id: unitId,
+      other_unit_id: given["other"] ?? "",
+      std_m: Number(given["within"]) / 2,
+      ...(t_ms === undefined ? {} : { t_ms }),
+      note: "",
+    };
+    void attempt(api.setMeeting(meeting)).then((done) => done && putDown());
+  };
+  return (
+    <form class="tool-panel" aria-label="They met" onSubmit={send}>
+      <h3>{nameOf(picture, unitId)} met</h3>
+      <label>
+        Whom
+        <select name="other" required>
+          {others.map((unit) => (
+            <option key={unit.unit_id} value={unit.unit_id}>
+              {displayName(unit)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <WhenField set={null} />
+      <WithinField startM={2} />
+      <Ends label="They met" />
+    </form>
+  );
+}
+
+const MINUTES_AGO = [0, 1, 2, 3, 5, 10, 15, 20, 30];
+
+/** When that was; `set` is the time of a pin that is changed. */
+function WhenField({ set }: { set: number | null }) {
+  return (
+    <label>
+      When
+      <select name="when">
+        {set !== null && (
+          <option value="">{set === 0 ? "where the path begins" : clockTime(set)}</option>
+        )}
+        {MINUTES_AGO.map((ago) => (
+          <option key={ago} value={ago}>
+            {ago === 0 ? "now" : `${ago} min ago`}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** Left out for now: the station knows better when that is. */
+function timeOf(given: Record<string, string>, picture: Picture): number | undefined {
+  const ago = Number(given["when"] ?? "0");
+  return ago === 0 ? undefined : Math.round(picture.nowMs.peek() - ago * 60_000);
+}
+
+interface EndsProps {
+  label: string | null;
+  children?: preact.ComponentChildren;
+}
+
+export function Ends({ label, children }: EndsProps) {
+  return (
+    <p class="ends">
+      {label !== null && <button class="primary">{label}</button>}
+      {children}
+      <button type="button" onClick={putDown}>
+        Cancel
+      </button>
+    </p>
+  );
+}
+
+function onDuty(picture: Picture): UnitView[] {
+  void picture.unitsChanged.value;
+  return picture.allUnits().filter((unit) => unit.registered && unit.person !== null);
+}
+
+function nameOf(picture: Picture, unitId: string): string {
+  const unit = picture.unit(unitId)?.value;
+  return unit === undefined ? unitId : displayName(unit);
+}

@@ -1,0 +1,83 @@
+import { clicked } from "../plan/tools";
+import { floor } from "../view";
+import type { Picture } from "../live/picture";
+import { floorsOf } from "../plan/floors";
+import { floorName } from "../words";
+
+/** Where on the plan: clicked, or typed by who has no pointer. */
+export function PlaceFields({ start }: { start?: { north_m: number; east_m: number } }) {
+  const at = clicked.value.at(-1) ?? start;
+  return (
+    <fieldset class="place">
+      <legend>
+        {at === undefined ? "Click on the plan, or give the place:" : "Place (click to change it)"}
+      </legend>
+      <Metres name="north" label="North, m" value={at?.north_m} />
+      <Metres name="east" label="East, m" value={at?.east_m} />
+    </fieldset>
+  );
+}
+
+function Metres({ name, label, value }: { name: string; label: string; value?: number }) {
+  const shown = value === undefined ? "" : value.toFixed(1);
+  return (
+    <label>
+      {label}
+      <input key={shown} name={name} type="number" step="0.1" required defaultValue={shown} />
+    </label>
+  );
+}
+
+interface FloorFieldProps {
+  picture: Picture;
+  start: number | null;
+}
+
+/** On which floor; to begin with the one that is shown. */
+export function FloorField({ picture, start }: FloorFieldProps) {
+  const floors = floorsOf(picture.plan.value, picture.allUnits(), new Map());
+  if (floors.length === 0) return null;
+  const first = start ?? (floor.value === "all" ? "" : floor.value);
+  return (
+    <label>
+      Floor
+      <select name="floor" defaultValue={String(first)}>
+        <option value="">not known</option>
+        {floors.map((one) => (
+          <option key={one.floor} value={one.floor}>
+            {floorName(one.floor)}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+const WITHIN_M = [0.5, 1, 2, 4, 10, 20];
+
+/** How sure that place is; the station wants the standard deviation, people say "within". */
+export function WithinField({ startM }: { startM: number }) {
+  const choices = [...new Set([...WITHIN_M, startM])].sort((a, b) => a - b);
+  return (
+    <label>
+      Sure to within
+      <select name="within" defaultValue={String(startM)}>
+        {choices.map((metres) => (
+          <option key={metres} value={metres}>
+            {metres} m
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** The fields of a submitted form as numbers and places. */
+export function placeOf(given: Record<string, string>) {
+  return {
+    north_m: Number(given["north"]),
+    east_m: Number(given["east"]),
+    std_m: Number(given["within"]) / 2,
+    floor: (given["floor"] ?? "") === "" ? null : Number(given["floor"]),
+  };
+}
