@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import pymap3d
 
@@ -47,9 +48,32 @@ class Anchor:
     ) -> tuple[float, float, float]:
         """Latitude and longitude in degrees, height above the ellipsoid in metres."""
         north_m, east_m = rotate(north_m, east_m, self.rotation_rad)
-        return _geodetic_of(
-            *pymap3d.ned2ecef(north_m, east_m, down_m, self.lat_deg, self.lon_deg, self.height_m)
+        origin_m, axes = _frame_at(self.lat_deg, self.lon_deg, self.height_m)
+        x_m, y_m, z_m = (
+            at_m + to_north * north_m + to_east * east_m + to_down * down_m
+            for at_m, (to_north, to_east, to_down) in zip(origin_m, axes, strict=True)
         )
+        return _geodetic_of(x_m, y_m, z_m)
+
+
+_Triple = tuple[float, float, float]
+
+
+@lru_cache(maxsize=64)  # every position asks for that of the one anchor
+def _frame_at(
+    lat_deg: float, lon_deg: float, height_m: float
+) -> tuple[_Triple, tuple[_Triple, ...]]:
+    """Where a place lies from the Earth's centre, and by row x, y, z its north, east and down."""
+    lat_rad, lon_rad = math.radians(lat_deg), math.radians(lon_deg)
+    sin_lat, cos_lat = math.sin(lat_rad), math.cos(lat_rad)
+    sin_lon, cos_lon = math.sin(lon_rad), math.cos(lon_rad)
+    axes = (
+        (-sin_lat * cos_lon, -sin_lon, -cos_lat * cos_lon),
+        (-sin_lat * sin_lon, cos_lon, -cos_lat * sin_lon),
+        (cos_lat, 0.0, -sin_lat),
+    )
+    x_m, y_m, z_m = pymap3d.geodetic2ecef(lat_deg, lon_deg, height_m)
+    return (float(x_m), float(y_m), float(z_m)), axes
 
 
 def _geodetic_of(x_m: float, y_m: float, z_m: float) -> tuple[float, float, float]:

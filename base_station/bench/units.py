@@ -10,13 +10,23 @@ from dataclasses import dataclass, field
 
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.messages import Activity, Message, Position, Status, Temperature, UnitDescription
+from shared.messages import (
+    Activity,
+    Header,
+    Message,
+    Position,
+    Status,
+    Temperature,
+    UnitDescription,
+)
 from shared.quality import Quality, Reason
 
-_SLOW_EVERY = 10  # of so many messages one is a status and one a temperature
+_MESSAGES_A_TURN = 7  # one is a status and one a temperature: 1 Hz each beside positions at 5 Hz
+_STATUS_AT, _TEMPERATURE_AT = 2, 5
+_CORRIDOR_M = 60.0
 
 
 @dataclass(slots=True)
@@ -27,77 +37,57 @@ class Sent:
     position_times_ns: list[int] = field(default_factory=list)  # sensor times, UTC
 
 
-class BenchUnit:
-    """One unit: walks north at 1 m/s and says so."""
+class Wearer:
+    """Walks up and down a corridor at 1 m/s, and says so: of seven messages five are positions."""
 
-    def __init__(self, unit_id: str, endpoint: UnitEndpoint, closing: ExitStack) -> None:
+    def __init__(self, unit_id: str, clock: Clock) -> None:
         self.unit_id = unit_id
-        self.sent = Sent()
-        self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
-        self._bus = ZenohBus(endpoint)
-        closing.callback(self._bus.close)
-        self._token = self._bus.declare_alive(alive_key(unit_id))
+        self._stamper = Stamper(unit_id, secrets.randbits(63), clock)
+        self._first_ns = clock.monotonic_ns()
 
-    @property
-    def is_heard(self) -> bool:
-        """The station listens."""
-        return self._bus.is_heard(POSITION.key(self.unit_id))
-
-    def introduce(self) -> None:
-        header = self._stamper.header()
-        self._publish(
-            UnitDescription(
-                header=header,
-                software_version="bench",
-                source="simulated",
-                sensor_name="none",
-                rate_hz=100.0,
-                accel_full_scale_mps2=None,
-                gyro_full_scale_radps=None,
-                tracker="none",
-                calibration="",
-                has_magnetometer=False,
-                has_barometer=False,
-                has_gps=False,
-            )
+    def introduction(self) -> Message:
+        return UnitDescription(
+            header=self._stamper.header(),
+            software_version="bench",
+            source="simulated",
+            sensor_name="none",
+            rate_hz=100.0,
+            accel_full_scale_mps2=None,
+            gyro_full_scale_radps=None,
+            tracker="none",
+            calibration="",
+            has_magnetometer=False,
+            has_barometer=False,
+            has_gps=False,
         )
 
-    def speak(self) -> None:
-        """The next message of its turn, captured now."""
-        turn = self.sent.messages % _SLOW_EVERY
-        if turn == 1:
-            self._publish(self._status())
-        elif turn == _SLOW_EVERY // 2 + 1:
-            self._publish(Temperature(self._stamper.header(), 21.5))
-        else:
-            position = self._position()
-            self._publish(position)
-            self.sent.position_times_ns.append(position.header.t_utc_ns)
+    def next_message(self) -> Message:
+        """The next of its turn, captured now."""
+        header = self._stamper.header()
+        turn = header.seq % _MESSAGES_A_TURN
+        if turn == _STATUS_AT:
+            return self._status(header)
+        return Temperature(header, 21.5) if turn == _TEMPERATURE_AT else self._position(header)
 
-    def _publish(self, message: Message) -> None:
-        channel = channel_of(message)
-        self._bus.publish(channel.key(self.unit_id), encode(message), channel.qos)
-        self.sent.messages += 1
-
-    def _status(self) -> Status:
+    def _status(self, header: Header) -> Status:
         return Status(
-            header=self._stamper.header(),
+            header=header,
             activity=Activity.WALKING,
             motionless_s=0.0,
             battery=0.9,
             mayday=False,
-            steps=self.sent.messages,
+            steps=2 * self._walked_m(header),
             cadence_hz=1.8,
             floors_climbed=0,
             tracker_rows_dropped=0,
             journal_pending=0,
         )
 
-    def _position(self) -> Position:
-        header = self._stamper.header()
+    def _position(self, header: Header) -> Position:
+        walked_m = (header.t_mono_ns - self._first_ns) / NS_PER_S
         return Position(
             header=header,
-            north_m=header.t_mono_ns % (1000 * NS_PER_S) * 1e-9,
+            north_m=abs((walked_m + _CORRIDOR_M) % (2.0 * _CORRIDOR_M) - _CORRIDOR_M),
             east_m=0.0,
             down_m=0.0,
             velocity_north_mps=1.0,
@@ -109,12 +99,47 @@ class BenchUnit:
             correlation_ne=0.0,
             heading_rad=0.0,
             heading_std_rad=0.1,
-            distance_m=self.sent.messages * 0.1,
+            distance_m=walked_m,
             pressure_pa=101_325.0,
             stationary=False,
             quality=Quality.GOOD,
             reasons=Reason.NONE,
         )
+
+    def _walked_m(self, header: Header) -> int:
+        return (header.t_mono_ns - self._first_ns) // NS_PER_S
+
+
+class BenchUnit:
+    """A wearer with a session of its own on the bus."""
+
+    def __init__(self, unit_id: str, endpoint: UnitEndpoint, closing: ExitStack) -> None:
+        self.unit_id = unit_id
+        self.sent = Sent()
+        self._wearer = Wearer(unit_id, SystemClock())
+        self._bus = ZenohBus(endpoint)
+        closing.callback(self._bus.close)
+        self._token = self._bus.declare_alive(alive_key(unit_id))
+
+    @property
+    def is_heard(self) -> bool:
+        """The station listens."""
+        return self._bus.is_heard(POSITION.key(self.unit_id))
+
+    def introduce(self) -> None:
+        self._publish(self._wearer.introduction())
+
+    def speak(self) -> None:
+        """The next message of its turn, captured now."""
+        message = self._wearer.next_message()
+        self._publish(message)
+        if isinstance(message, Position):
+            self.sent.position_times_ns.append(message.header.t_utc_ns)
+
+    def _publish(self, message: Message) -> None:
+        channel = channel_of(message)
+        self._bus.publish(channel.key(self.unit_id), encode(message), channel.qos)
+        self.sent.messages += 1
 
 
 def unit_names(count: int) -> list[str]:

@@ -17,7 +17,7 @@ def test_a_small_run_accounts_for_every_message() -> None:
     assert (report.lost, report.repeated) == (0, 0)
     assert report.recorded == report.stepped == report.sent
     assert report.track_points == report.track_points_due > 0
-    assert report.positions_sent == 3 * 16
+    assert report.positions_sent == 3 * 14
     assert 0 < report.positions_shown == report.latency.count <= report.positions_sent
     assert 0.0 < report.latency.p50_ms <= report.latency.p99_ms <= report.latency.max_ms
     assert report.cpu_share > 0.0

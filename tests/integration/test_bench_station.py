@@ -1,0 +1,35 @@
+"""The measurement of the station measures: every message is stepped, and all parts are counted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.progress import Progress
+
+from base_station.bench.compressed import compressed_station
+from base_station.bench.throughput import measure
+from base_station.bench.units import unit_names
+from shared.channels import FUSED, POSITION, parse_key
+from shared.mcap_log import read_log
+from shared.messages import STATION_ID
+
+
+def test_what_wearers_say_in_compressed_time_is_in_the_log(tmp_path: Path) -> None:
+    with compressed_station(tmp_path, unit_names(5), 7.0, consoles=1) as station:
+        station.run(3.0)
+        assert station.messages == 5 * 7 * 3
+        assert station.console_messages > 0
+    keys = [key for _, key, _ in read_log(tmp_path / "log")]
+    said = [key for key in keys if parse_key(key)[0] != STATION_ID]
+    assert len(said) == 5 * 7 * 3
+    positions = sum(parse_key(key)[1] is POSITION for key in said)
+    assert keys.count(FUSED.key(STATION_ID)) == positions > 0
+
+
+def test_a_short_run_tells_each_parts_share() -> None:
+    with Progress(disable=True) as progress:
+        report = measure(units=5, rate_hz=7.0, minutes=0.05, consoles=1, progress=progress)
+    assert report.messages == 5 * 7 * 3
+    assert set(report.cpu_us) == {"decode, step, tell", "log", "database", "consoles"}
+    assert report.cpu_us["decode, step, tell"] > 0.0
+    assert report.per_core_hz > 0.0
