@@ -143,7 +143,7 @@ def _hand_over(ring: Ring, progress: Progress, state: FilterState, slot: int, pr
     end_updates(state)
     moved_m = state.position_n_m[2] - before_m
     progress.level_m += moved_m
-    progress.footfall_m += moved_m
+    progress.footfall_n_m[2] += moved_m
     progress.level_variance_m2 = min(progress.level_variance_m2, state.covariance[DOWN, DOWN])
 
 

@@ -48,9 +48,12 @@ class EskfConfig(NamedTuple):
 
     # The floor (floor.py).
     floor_gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp
+    floor_gate_slope: float = 0.075  # the same by the stride's length, where that is more
     floor_std_m: float = 0.01
     floor_ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
     floor_ramp_strides: float = 6.0
+    floor_habit_strides: float = 30.0  # over which the habit on the flat is learned
+    floor_habit_std_m: float = 0.004  # by which stairs may differ from it
     floor_pause_s: float = 0.4  # between two looks at the floor
 
     # Aids that are looked at once a stance (side_filter.py).

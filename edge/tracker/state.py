@@ -178,10 +178,13 @@ PROGRESS = np.dtype(
         ("on_floor", np.bool_),  # the fields below are known
         ("level_m", np.float64),  # height (down) of the floor walked on
         ("level_variance_m2", np.float64),
-        ("footfall_m", np.float64),  # height of the last footfall
+        ("footfall_n_m", np.float64, 3),  # of the last footfall
         ("footfall_s", np.float64),
         ("mean_sink_m", np.float64),  # of the last strides, before the floor's correction
         ("floor_doubted", np.bool_),  # by the barometer
+        ("habit_m", np.float64),  # by which a stride on the flat seems to sink
+        ("flat_strides", np.float64),  # from which that is known
+        ("climbed", np.float64),  # strides that left a level
         ("withheld_m", np.float64),  # what the floor has taken out in one direction
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ],
