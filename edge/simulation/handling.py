@@ -13,7 +13,7 @@ import numpy as np
 from edge.samples import Floats, ImuBatch, SensorBatch, SensorDescription
 from edge.simulation.imu import Imu
 from edge.simulation.kinematics import Motion
-from edge.simulation.simulation import CONSUMER_SENSORS, SensorErrors
+from edge.simulation.simulation import CONSUMER_SENSORS, SensorErrors, Simulation
 from edge.simulation.surroundings import MagneticField, Magnetometer
 
 SIDES = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
@@ -29,13 +29,21 @@ class HandledUnit:
     """One unit with its sensors' errors drawn from the seed; its time goes on from call to call."""
 
     def __init__(
-        self, seed: int = 0, sensors: SensorErrors = CONSUMER_SENSORS, rate_hz: float = 200.0
+        self,
+        seed: int = 0,
+        sensors: SensorErrors = CONSUMER_SENSORS,
+        rate_hz: float = 200.0,
+        worn_in: Simulation | None = None,
     ) -> None:
-        imu_seed, mag_seed, hand_seed = np.random.SeedSequence(seed).spawn(3)
-        mag_rng = np.random.default_rng(mag_seed)
-        self.imu = Imu(sensors.imu, np.eye(3), rate_hz, np.random.default_rng(imu_seed))
+        """``worn_in``: it is the unit of that walk, with the sensors and errors it has there."""
+        imu_rng, mag_rng, self._hand = (
+            np.random.default_rng(part) for part in np.random.SeedSequence(seed).spawn(3)
+        )
+        if worn_in is not None:
+            sensors = worn_in.sensors
+            imu_rng, mag_rng, *_ = worn_in.sensor_rngs()
+        self.imu = Imu(sensors.imu, np.eye(3), rate_hz, imu_rng)
         self.mag = Magnetometer(sensors.mag, MagneticField(None, mag_rng), mag_rng)
-        self._hand = np.random.default_rng(hand_seed)
         self._rotation_ns = np.eye(3)
         self._row = 0
         self._rate_hz = rate_hz

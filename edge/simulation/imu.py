@@ -8,7 +8,7 @@ gyroscope to specific force, white noise, clipping and quantisation.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -66,6 +66,26 @@ CONSUMER_IMU = ImuErrors(
         g_sensitivity_std=radians(0.005),
         full_scale=radians(2000),
         resolution=radians(4000) / 2**16,
+    ),
+)
+
+# The same class as it leaves the factory and is soldered: data-sheet tolerances of zero offset,
+# sensitivity, cross-axis and temperature.
+UNCALIBRATED_IMU = ImuErrors(
+    accel=replace(
+        CONSUMER_IMU.accel,
+        bias_std=0.3,
+        bias_per_degc_std=5e-3,
+        scale_std=0.01,
+        misalignment_std_rad=radians(0.5),
+    ),
+    gyro=replace(
+        CONSUMER_IMU.gyro,
+        bias_std=radians(1.0),
+        bias_per_degc_std=radians(0.02),
+        scale_std=0.005,
+        misalignment_std_rad=radians(0.5),
+        g_sensitivity_std=radians(0.02),
     ),
 )
 

@@ -29,6 +29,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     heading_deg: float = 0.0
     down_m: float = 0.0
     building: bool = False  # in the training house, or on open ground
+    steel_ut: Annotated[float, Meta(ge=0.0)] = 3.0  # how far each of its waves bends the field
     anchor: Anchor | None = None  # of the site frame; the training house's when left out
     ambient_degc: tuple[tuple[float, float], ...] = ((0.0, 18.0),)  # (time, value), linear between
     radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)

@@ -23,7 +23,7 @@ from edge.samples import (
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.building import load_building
 from edge.simulation.gps import Gps
-from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, Imu, ImuErrors
+from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, UNCALIBRATED_IMU, Imu, ImuErrors
 from edge.simulation.kinematics import Motion
 from edge.simulation.planner import Planner
 from edge.simulation.scenario import Scenario
@@ -33,6 +33,7 @@ from edge.simulation.surroundings import (
     CONSUMER_MAG,
     IDEAL_BARO,
     IDEAL_MAG,
+    UNCALIBRATED_MAG,
     BaroErrors,
     Barometer,
     MagErrors,
@@ -55,6 +56,7 @@ class SensorErrors:
 
 IDEAL_SENSORS = SensorErrors(IDEAL_IMU, IDEAL_MAG, IDEAL_BARO)
 CONSUMER_SENSORS = SensorErrors(CONSUMER_IMU, CONSUMER_MAG, CONSUMER_BARO)
+UNCALIBRATED_SENSORS = SensorErrors(UNCALIBRATED_IMU, UNCALIBRATED_MAG, CONSUMER_BARO)
 
 
 class Simulation:
@@ -68,7 +70,7 @@ class Simulation:
         self, scenario: Scenario, seed: int = 0, sensors: SensorErrors = CONSUMER_SENSORS
     ) -> None:
         self.scenario = scenario
-        self._sensors = sensors
+        self.sensors = sensors
         house = load_building()
         self._building = house if scenario.building else None
         self._anchor = scenario.anchor or house.anchor
@@ -84,7 +86,7 @@ class Simulation:
 
     @property
     def description(self) -> SensorDescription:
-        imu = self._sensors.imu
+        imu = self.sensors.imu
         accel, gyro = imu.accel.full_scale, imu.gyro.full_scale
         return SensorDescription(
             name=f"simulated {self.scenario.name}",
@@ -107,6 +109,12 @@ class Simulation:
             rate_b_radps=body.rate_b_radps @ self._rotation_bs,
         )
 
+    def sensor_rngs(self) -> list[np.random.Generator]:
+        """What the errors are drawn from, anew at each call: of the inertial sensors, the
+        magnetometer, the barometer, GPS and the slow ones.
+        """
+        return [np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)]
+
     def _body(self, t_s: Floats) -> Motion:
         return segment_motion(self.scenario.worn_on, self.plan, self._tremor, t_s)
 
@@ -119,14 +127,12 @@ class Simulation:
 
     def _blocks(self, rows: int) -> Iterator[SensorBatch]:
         rate_hz = self.scenario.rate_hz
-        imu_rng, mag_rng, baro_rng, gps_rng, other_rng = (
-            np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)
-        )
-        imu = Imu(self._sensors.imu, self._rotation_bs, rate_hz, imu_rng)
-        field = MagneticField(self._building, mag_rng)
-        mag = Magnetometer(self._sensors.mag, field, mag_rng)
+        imu_rng, mag_rng, baro_rng, gps_rng, other_rng = self.sensor_rngs()
+        imu = Imu(self.sensors.imu, self._rotation_bs, rate_hz, imu_rng)
+        field = MagneticField(self._building, mag_rng, self.scenario.steel_ut)
+        mag = Magnetometer(self.sensors.mag, field, mag_rng)
         baro = Barometer(
-            self._sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
+            self.sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
         )
         others = _Others(self, Gps(self._anchor, self._building, gps_rng), other_rng)
         total = int(self.duration_s * rate_hz)

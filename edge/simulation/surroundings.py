@@ -36,6 +36,7 @@ class BaroErrors:
 
 IDEAL_MAG = MagErrors()
 CONSUMER_MAG = MagErrors(0.4, 8.0, 0.04, 0.15, every=2)
+UNCALIBRATED_MAG = MagErrors(0.4, 25.0, 0.10, 0.15, every=2)  # beside a battery
 IDEAL_BARO = BaroErrors()
 CONSUMER_BARO = BaroErrors(1.5, 60.0, 0.15, 25.0, every=8)
 
@@ -43,14 +44,16 @@ CONSUMER_BARO = BaroErrors(1.5, 60.0, 0.15, 25.0, every=8)
 class MagneticField:
     """The earth's field, bent by steel inside a building."""
 
-    def __init__(self, building: Building | None, rng: np.random.Generator) -> None:
+    def __init__(
+        self, building: Building | None, rng: np.random.Generator, steel_ut: float = 3.0
+    ) -> None:
         self._building = building
         wave_m = rng.uniform(1.5, 5.0, 6)
         direction = rng.normal(0.0, 1.0, (6, 3))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         self._wave_per_m = 2.0 * np.pi / wave_m[:, None] * direction
         self._phase = rng.uniform(0.0, 2.0 * np.pi, 6)
-        self._amplitude_ut = rng.normal(0.0, 3.0, (6, 3))
+        self._amplitude_ut = rng.normal(0.0, steel_ut, (6, 3))
 
     def at(self, position_n_m: Floats) -> Floats:
         """Flux density (n, 3) in navigation axes."""
