@@ -7,6 +7,7 @@ import logging
 import secrets
 from collections.abc import Callable
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -30,6 +31,7 @@ from base_station.db.projecting import project_into
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store, copy_database
 from base_station.downlink import Downlink
 from base_station.drive import StationDrive
@@ -37,6 +39,8 @@ from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.first_login import USERNAME, ensure_administrator
 from base_station.forgetting import ClosedLog, Forgetter, Forgotten
 from base_station.fusion import FUSERS
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.hindsight import Hindsight
 from base_station.live_state import StationState
 from base_station.pipeline import Checkpoint, StationPipeline
 from base_station.pki.expiry import ExpiryWatch
@@ -70,6 +74,15 @@ from shared.messages import STATION_ID
 Announce = Callable[[str], None]
 _BY_COMMAND = "muster base forget"  # in the audit
 _log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class LookBack:
+    """What commands about a past incident work with."""
+
+    hindsight: Hindsight
+    records: Records
+    incident: Incident
 
 
 class _Again(NamedTuple):
@@ -184,6 +197,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             secure=config.http.certificate is not None,
             standing=side.standing,
             recordings=recordings,
+            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), steady),
             accountability=config.accountability,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
@@ -232,6 +246,7 @@ def run_replay_station(
             forgetter=None,
             clock=clock,
             secure=config.http.certificate is not None,
+            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, hub))
@@ -286,6 +301,19 @@ def forget(
             return forgetter.person(_BY_COMMAND, person_id, on_progress)
     finally:
         lock.close()
+
+
+def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
+    """A past incident, beside a running station or without one."""
+    folder = DataFolder(data)
+    folder.require()
+    store = closing.enter_context(Store(folder.database))
+    clock = SystemClock()
+    records = Records(store, clock)
+    incident = _incident_or_refuse(records, incident_id)
+    archive = Archive(LogFeed(folder.log).records, Checkpoints(folder.checkpoints), _pipeline)
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
+    return LookBack(hindsight, records, incident)
 
 
 def open_accounts(data: Path, closing: ExitStack) -> Accounts:

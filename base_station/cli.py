@@ -116,6 +116,50 @@ def forget(
     typer.echo(f"forgotten: {done}")
 
 
+@app.command()
+def smooth(
+    incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
+    data: Path = Path("muster-data"),
+) -> None:
+    """Work out an incident's trails again, from everything that is known afterwards."""
+    from rich.progress import Progress  # noqa: PLC0415
+
+    from base_station import app as station  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        past = station.look_back(data, incident, closing)
+        with Progress(transient=True) as progress:
+            task = progress.add_task("smoothing", total=1.0)
+            made = past.hindsight.smooth(
+                past.incident, lambda done: progress.update(task, completed=done)
+            )
+    for unit_id, track in made.tracks.items():
+        typer.echo(f"{unit_id}\t{len(track)} points")
+    kept = "kept" if past.incident.closed_ns is not None else "not kept: the incident is open"
+    typer.echo(f"{len(made.tracks)} trails by {made.smoother}; {kept}")
+
+
+@app.command()
+def assess(
+    incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
+    data: Path = Path("muster-data"),
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="Also write all of it to this file.")
+    ] = None,
+) -> None:
+    """How good an incident's positions were, in the terms of ISO/IEC 18305."""
+    from base_station import app as station  # noqa: PLC0415
+    from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
+
+    with ExitStack() as closing:
+        past = station.look_back(data, incident, closing)
+        live = past.records.tracks_of(past.incident)
+        report = past.hindsight.assess(past.incident, live)
+    print_report(report)
+    if json_file is not None:
+        write_report(report, json_file)
+
+
 @users.command("list")
 def list_users(data: Path = Path("muster-data")) -> None:
     """Names and roles."""

@@ -19,6 +19,7 @@ from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.forgetting import Forgetter
+from base_station.hindsight import Hindsight
 from base_station.recordings.desk import RecordingDesk
 from base_station.sinks import ActionDone, OperatorGate
 from shared.clock import Clock
@@ -42,6 +43,7 @@ class Services:
     secure: bool  # the console is served over TLS
     standing: Standing | None = None  # None: this is the only station
     recordings: RecordingDesk | None = None  # None: a station that only replays
+    hindsight: Hindsight | None = None  # None: a station without a log
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
 
     def act(self, by: str, action: Action) -> ActionDone:

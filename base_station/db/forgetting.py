@@ -13,6 +13,7 @@ from base_station.db.models import (
     Assignment,
     AuditEntry,
     Person,
+    SmoothedPoint,
     TrackPoint,
     UnitStart,
 )
@@ -28,6 +29,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     """Every statement may run again."""
     for one in erasure.wearings:
         session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
+        session.execute(delete(SmoothedPoint).where(_within(SmoothedPoint, one)))
         session.execute(delete(UnitStart).where(_within(UnitStart, one)))
     _alarms(session, erasure)
     _audit(session, erasure)
@@ -53,7 +55,9 @@ def known_names(session: Session, person_id: str) -> set[str]:
     return names - {FORGOTTEN, ""}
 
 
-def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[bool]:
+def _within(
+    table: type[TrackPoint | SmoothedPoint | UnitStart], one: Wearing
+) -> ColumnElement[bool]:
     return and_(table.unit_id == one.unit_id, table.t_ns >= one.from_ns, table.t_ns < one.until_ns)
 
 

@@ -213,6 +213,35 @@ class UnitStart(Base):
     heading_rad: Mapped[float]
 
 
+class SmoothedIncident(Base):
+    """That trails were smoothed, and when."""
+
+    __tablename__ = "smoothed_incidents"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    smoother: Mapped[str]
+    made_ns: Mapped[int]
+
+
+class SmoothedPoint(Base):
+    """Where a unit was, as it is known afterwards; NED metres about the site anchor."""
+
+    __tablename__ = "smoothed_tracks"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    unit_id: Mapped[str] = mapped_column(primary_key=True)
+    t_ns: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    north_m: Mapped[float]
+    east_m: Mapped[float]
+    down_m: Mapped[float]
+    std_north_m: Mapped[float]
+    std_east_m: Mapped[float]
+    std_down_m: Mapped[float]
+    heading_rad: Mapped[float]
+    floor: Mapped[int | None]
+    quality: Mapped[str]
+
+
 class LogSegment(Base):
     """One file of the log."""
 
@@ -236,5 +265,7 @@ PROJECTIONS: tuple[type[Base], ...] = (
     Anchor,
     Plan,
     UnitStart,
+    SmoothedIncident,
+    SmoothedPoint,
     LogSegment,
 )

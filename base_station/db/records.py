@@ -95,6 +95,11 @@ class Records:
         with self._store.read() as session:
             return [TrackSample(*row) for row in session.execute(wanted)]
 
+    def tracks_of(self, incident: Incident) -> dict[str, list[TrackSample]]:
+        """What was shown of every unit while the incident was open."""
+        window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
+        return {unit_id: self.track(unit_id, window) for unit_id in self.track_units(window)}
+
     def alarms(self, window: Window) -> Sequence[Alarm]:
         """Those raised in the window, oldest first."""
         with self._store.read() as session:

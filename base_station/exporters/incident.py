@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from base_station.db.models import Assignment, Incident
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
@@ -11,16 +11,24 @@ from base_station.exporters.port import ExportPoint, IncidentTracks, WornTrack
 from shared.geo import Anchor
 
 
-def incident_tracks(records: Records, roster: Roster, incident: Incident) -> IncidentTracks:
-    """All of an incident's tracks, split where a unit changed hands."""
+def incident_tracks(
+    records: Records,
+    roster: Roster,
+    incident: Incident,
+    trails: Mapping[str, Sequence[TrackSample]] | None = None,
+) -> IncidentTracks:
+    """All of an incident's tracks, split where a unit changed hands; ``trails`` (by unit) in the
+    place of what was shown at the time.
+    """
     window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
     assignments = roster.assignments(window.from_ns, window.until_ns)
+    by_unit = records.tracks_of(incident) if trails is None else trails
     tracks = tuple(
         worn
-        for unit_id in records.track_units(window)
+        for unit_id, points in by_unit.items()
         for worn in _split(
             unit_id,
-            records.track(unit_id, window),
+            points,
             [one for one in assignments if one.unit_id == unit_id],
         )
     )

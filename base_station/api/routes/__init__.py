@@ -7,6 +7,7 @@ from fastapi import APIRouter
 from base_station.api.routes import (
     accountability,
     alarms,
+    assessment,
     assignments,
     audit,
     commands,
@@ -24,6 +25,7 @@ from base_station.api.routes import (
     standby,
     tokens,
     tracks,
+    trails,
     units,
     users,
 )
@@ -37,6 +39,8 @@ ROUTERS: tuple[APIRouter, ...] = (
     assignments.router,
     incidents.router,
     tracks.router,
+    trails.router,
+    assessment.router,
     alarms.router,
     commands.router,
     accountability.router,

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
+from base_station.api.routes.trails import TrailKind, trails_of
 from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.exporters import EXPORTERS
@@ -30,14 +31,24 @@ def list_formats(_: Viewer) -> list[Format]:
 
 
 @router.get("/incidents/{incident_id}/export/{format_name}", response_class=Response)
-def export_incident(incident_id: Id, format_name: Id, station: Station, who: Viewer) -> Response:
+def export_incident(
+    incident_id: Id,
+    format_name: Id,
+    station: Station,
+    who: Viewer,
+    kind: TrailKind = TrailKind.FUSED,
+) -> Response:
+    """``kind``: what was shown at the time, or the trails as they are known afterwards."""
     exporter = next((one for one in EXPORTERS if one.name == format_name), None)
     if exporter is None:
         known = ", ".join(one.name for one in EXPORTERS)
         raise Problem(404, f"There is no format {format_name}; formats are {known}.")
     incident = incident_or_404(station, incident_id)
-    body = exporter.export(incident_tracks(station.records, station.roster, incident))
-    station.records.audit(who.username, "Exported", f"{incident_id} as {format_name}")
+    _, trails = trails_of(station, incident, kind)
+    body = exporter.export(incident_tracks(station.records, station.roster, incident, trails))
+    station.records.audit(
+        who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
+    )
     file_name = f"{incident_id}.{exporter.suffix}"
     headers = {"Content-Disposition": f'attachment; filename="{file_name}"'}
     return Response(body, media_type=exporter.media_type, headers=headers)

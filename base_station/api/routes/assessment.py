@@ -1,0 +1,67 @@
+"""How good an incident's positions were, said by the station itself."""
+
+from __future__ import annotations
+
+import msgspec
+from fastapi import APIRouter, Response
+from pydantic import BaseModel
+
+from base_station.api.forms import Id
+from base_station.api.routes.incidents import incident_or_404
+from base_station.api.routes.trails import hindsight_of
+from base_station.api.security import Viewer
+from base_station.api.services import Station
+
+router = APIRouter(tags=["incidents"])
+
+
+class Figures(BaseModel):
+    """ISO/IEC 18305: circular, vertical and spherical error in metres."""
+
+    ce50_m: float
+    ce95_m: float
+    ve50_m: float
+    ve95_m: float
+    se50_m: float
+    se95_m: float
+
+
+class PinResidual(BaseModel):
+    pin_id: str
+    note: str
+    used: bool
+    shown_m: float | None
+    trail_m: float
+    sigmas: float
+    floor_right: bool | None
+
+
+class UnitAssessment(BaseModel):
+    unit_id: str
+    seconds: float
+    walked_m: float
+    stated: Figures | None
+    against_smoothed: Figures | None
+    floor_probability: float | None
+    pin_residuals: list[PinResidual]
+    loop_closure_m: float | None
+    loop_closure_percent: float | None
+    reentry_jumps_m: list[float]
+
+
+class Assessment(BaseModel):
+    incident_id: str
+    smoother: str
+    made_ms: int
+    units: list[UnitAssessment]
+    stated: Figures | None
+    against_smoothed: Figures | None
+
+
+@router.get("/incidents/{incident_id}/assessment", response_model=Assessment)
+def assess_incident(incident_id: Id, station: Station, _: Viewer) -> Response:
+    """What was promised at the time, and how it stands up to what is known afterwards."""
+    incident = incident_or_404(station, incident_id)
+    live = station.records.tracks_of(incident)
+    report = hindsight_of(station).assess(incident, live)
+    return Response(msgspec.json.encode(report), media_type="application/json")

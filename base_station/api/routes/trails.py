@@ -1,0 +1,95 @@
+"""Where units were: by their own path alone, as it was shown, and as it is known afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from typing import Annotated
+
+import msgspec
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel
+
+from base_station.api.forms import Id, to_ms
+from base_station.api.problems import Problem
+from base_station.api.routes.incidents import incident_or_404
+from base_station.api.security import Viewer
+from base_station.api.services import Services, Station
+from base_station.db import models
+from base_station.db.records import TrackSample
+from base_station.hindsight import Hindsight, Tracks
+from shared.clock import NS_PER_S
+
+router = APIRouter(tags=["tracks"])
+
+EverySeconds = Annotated[int, Query(ge=1, le=3600)]
+
+
+class TrailKind(StrEnum):
+    RAW = "raw"  # the unit's own path, placed by its start
+    FUSED = "fused"  # what was shown at the time
+    SMOOTHED = "smoothed"  # the best that is known afterwards
+
+
+class Trail(BaseModel):
+    unit_id: str
+    points: list[tuple[int, float, float, int | None]]  # t_ms, north_m, east_m, floor
+
+
+class Trails(BaseModel):
+    incident_id: str
+    kind: TrailKind
+    made_ms: int  # when it was worked out
+    trails: list[Trail]
+
+
+@router.get("/incidents/{incident_id}/trails", response_model=Trails)
+def incident_trails(
+    incident_id: Id,
+    station: Station,
+    _: Viewer,
+    kind: TrailKind = TrailKind.FUSED,
+    every_s: EverySeconds = 1,
+) -> Response:
+    """Of every unit that moved.  The smoothed ones of an open incident are as of now."""
+    incident = incident_or_404(station, incident_id)
+    made_ns, tracks = trails_of(station, incident, kind)
+    body = {
+        "incident_id": incident_id,
+        "kind": kind.value,
+        "made_ms": to_ms(made_ns),
+        "trails": [
+            {"unit_id": unit_id, "points": _points(track, every_s)}
+            for unit_id, track in tracks.items()
+        ],
+    }
+    return Response(msgspec.json.encode(body), media_type="application/json")
+
+
+def hindsight_of(station: Services) -> Hindsight:
+    if station.hindsight is None:
+        raise Problem(503, "This station has no log to work it out from.")
+    return station.hindsight
+
+
+def trails_of(station: Services, incident: models.Incident, kind: TrailKind) -> tuple[int, Tracks]:
+    """When they were worked out, and the trails by unit."""
+    if kind is TrailKind.SMOOTHED:
+        smoothed = hindsight_of(station).smoothed(incident)
+        return smoothed.made_ns, smoothed.tracks
+    if kind is TrailKind.RAW:
+        return station.clock.utc_ns(), hindsight_of(station).raw(incident)
+    return station.clock.utc_ns(), station.records.tracks_of(incident)
+
+
+def _points(
+    track: Sequence[TrackSample], every_s: int
+) -> list[tuple[int, float, float, int | None]]:
+    points, last_s = [], -1
+    for sample in track:
+        bucket = sample.t_ns // (every_s * NS_PER_S)
+        if bucket != last_s:
+            last_s = bucket
+            place = round(sample.north_m, 2), round(sample.east_m, 2)
+            points.append((to_ms(sample.t_ns), *place, sample.floor))
+    return points

@@ -1,0 +1,213 @@
+"""How good an incident's positions were: what was promised at the time, and what is known since."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import msgspec
+import numpy as np
+
+from base_station.assessment.figures import (
+    Figures,
+    errors_against,
+    figures_of,
+    floor_probability,
+    stated_figures,
+)
+from base_station.db.records import TrackSample
+from base_station.fusion.smoother.port import Verdict
+from base_station.live_state import StationState
+from shared.clock import NS_PER_S
+
+AWAY_M = 15.0  # somebody who was so far from the beginning
+BACK_M = 3.0  # and came so near to it again has closed a loop
+GAP_NS = 60 * NS_PER_S  # without a fix, after which the next one is a re-entry
+SETTLING_NS = 20 * NS_PER_S  # about a re-entry
+
+Tracks = Mapping[str, Sequence[TrackSample]]
+
+
+class PinResidual(msgspec.Struct, frozen=True):
+    """How far a pin lay from what was shown at its time, and lies from the smoothed trail."""
+
+    pin_id: str
+    note: str
+    used: bool
+    shown_m: float | None
+    trail_m: float
+    sigmas: float
+    floor_right: bool | None  # was the floor shown the pin's?
+
+
+class UnitReport(msgspec.Struct, frozen=True):
+    unit_id: str
+    seconds: float
+    walked_m: float
+    stated: Figures | None  # as the standard deviations promised
+    against_smoothed: Figures | None  # what was shown, held against the smoothed trail
+    floor_probability: float | None
+    pin_residuals: tuple[PinResidual, ...]
+    loop_closure_m: float | None  # by the unit's own path alone
+    loop_closure_percent: float | None  # of the way walked until then
+    reentry_jumps_m: tuple[float, ...]  # of what was shown, when fixes came back
+
+
+class IncidentReport(msgspec.Struct, frozen=True):
+    incident_id: str
+    smoother: str
+    made_ms: int
+    units: tuple[UnitReport, ...]
+    stated: Figures | None  # over all units
+    against_smoothed: Figures | None
+
+
+def assess(
+    incident_id: str,
+    smoother: str,
+    made_ms: int,
+    state: StationState,
+    verdicts: Mapping[str, Verdict],
+    live: Tracks,
+    smoothed: Tracks,
+    raw: Tracks,
+) -> IncidentReport:
+    """``state`` is that of the incident's end; ``live`` is what was shown."""
+    units = tuple(
+        _unit(
+            state, verdicts, unit_id, live[unit_id], smoothed.get(unit_id, ()), raw.get(unit_id, ())
+        )
+        for unit_id in sorted(live)
+    )
+    errors = [errors_against(live[unit_id], smoothed.get(unit_id, ())) for unit_id in sorted(live)]
+    together = [sample for unit_id in sorted(live) for sample in live[unit_id]]
+    return IncidentReport(
+        incident_id=incident_id,
+        smoother=smoother,
+        made_ms=made_ms,
+        units=units,
+        stated=stated_figures(together),
+        against_smoothed=figures_of(np.concatenate(errors)) if errors else None,
+    )
+
+
+def _unit(
+    state: StationState,
+    verdicts: Mapping[str, Verdict],
+    unit_id: str,
+    live: Sequence[TrackSample],
+    smoothed: Sequence[TrackSample],
+    raw: Sequence[TrackSample],
+) -> UnitReport:
+    closure = _loop_closure(smoothed, raw)
+    return UnitReport(
+        unit_id=unit_id,
+        seconds=(live[-1].t_ns - live[0].t_ns) / NS_PER_S if live else 0.0,
+        walked_m=round(_length_m(raw), 1),
+        stated=stated_figures(live),
+        against_smoothed=figures_of(errors_against(live, smoothed)),
+        floor_probability=_floor_probability(state, live),
+        pin_residuals=_pin_residuals(state, verdicts, unit_id, live),
+        loop_closure_m=None if closure is None else round(closure[0], 2),
+        loop_closure_percent=None if closure is None else round(closure[1], 2),
+        reentry_jumps_m=_reentry_jumps(state, unit_id, live, smoothed),
+    )
+
+
+def _floor_probability(state: StationState, live: Sequence[TrackSample]) -> float | None:
+    downs = sorted(storey.down_m for storey in state.plan.storeys) if state.plan else []
+    heights = [b - a for a, b in pairwise(downs)]
+    return floor_probability(live, min(heights)) if heights and min(heights) > 0.0 else None
+
+
+def _pin_residuals(
+    state: StationState,
+    verdicts: Mapping[str, Verdict],
+    unit_id: str,
+    live: Sequence[TrackSample],
+) -> tuple[PinResidual, ...]:
+    found = []
+    for pin in state.pins.values():
+        verdict = verdicts.get(pin.pin_id)
+        if pin.unit_id != unit_id or verdict is None:
+            continue
+        place = state.beacons.get(pin.other_id, pin)
+        shown = _at(live, pin.t_ns)
+        shown_m = None
+        if shown is not None and place.north_m is not None and place.east_m is not None:
+            apart = math.hypot(shown.north_m - place.north_m, shown.east_m - place.east_m)
+            shown_m = round(apart, 2)
+        floor_right = None
+        if shown is not None and place.floor is not None:
+            floor_right = shown.floor == place.floor
+        found.append(
+            PinResidual(
+                pin.pin_id,
+                pin.note,
+                verdict.used,
+                shown_m,
+                round(verdict.residual_m, 2),
+                round(verdict.sigmas, 2),
+                floor_right,
+            )
+        )
+    return tuple(found)
+
+
+def _loop_closure(
+    smoothed: Sequence[TrackSample], raw: Sequence[TrackSample]
+) -> tuple[float, float] | None:
+    """By how much the own path misses, where the wearer was last near the beginning again."""
+    if not smoothed or len(raw) != len(smoothed):
+        return None
+    first = smoothed[0]
+    apart = [math.hypot(one.north_m - first.north_m, one.east_m - first.east_m) for one in smoothed]
+    away = next((row for row, one in enumerate(apart) if one > AWAY_M), None)
+    back = [row for row, one in enumerate(apart) if one < BACK_M]
+    if away is None or not back or back[-1] < away:
+        return None
+    row = back[-1]
+    own = raw[row].north_m - raw[0].north_m, raw[row].east_m - raw[0].east_m
+    true = smoothed[row].north_m - first.north_m, smoothed[row].east_m - first.east_m
+    missed_m = math.dist(own, true)
+    return missed_m, 100.0 * missed_m / max(_length_m(raw[: row + 1]), 1.0)
+
+
+def _reentry_jumps(
+    state: StationState,
+    unit_id: str,
+    live: Sequence[TrackSample],
+    smoothed: Sequence[TrackSample],
+) -> tuple[float, ...]:
+    """The furthest that the place shown moved against the smoothed trail from one second to the
+    next, each time when fixes came back.
+    """
+    history = state.paths.get(unit_id)
+    if history is None or history.begin_ns is None or not live or not smoothed:
+        return ()
+    fixes = history.arrays().fix_t_ns
+    jumps = []
+    for row in np.flatnonzero(np.diff(fixes) > GAP_NS):
+        t_ns = int(fixes[row + 1])
+        near = [one for one in live if abs(one.t_ns - t_ns) <= SETTLING_NS]
+        errors = errors_against(near, smoothed)[:, :2]
+        if len(errors) > 1:
+            moved = np.linalg.norm(np.diff(errors, axis=0), axis=1)
+            jumps.append(round(float(moved.max()), 2))
+    return tuple(jumps)
+
+
+def _at(samples: Sequence[TrackSample], t_ns: int) -> TrackSample | None:
+    """What was shown then, within a few seconds; of time 0 the first."""
+    if not samples:
+        return None
+    row = min(bisect_left(samples, t_ns, key=lambda one: one.t_ns), len(samples) - 1)
+    near = t_ns == 0 or abs(samples[row].t_ns - t_ns) < 5 * NS_PER_S
+    return samples[row] if near else None
+
+
+def _length_m(samples: Sequence[TrackSample]) -> float:
+    places = np.array([(one.north_m, one.east_m) for one in samples]).reshape(-1, 2)
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum()) if len(places) > 1 else 0.0

@@ -1,0 +1,75 @@
+"""An assessment as tables for a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from rich.console import Console
+from rich.table import Table
+
+from base_station.assessment.figures import Figures
+from base_station.assessment.report import IncidentReport, UnitReport
+
+
+def print_report(report: IncidentReport) -> None:
+    Console().print(_errors_table(report))
+    Console().print(_checks_table(report))
+
+
+def write_report(report: IncidentReport, path: Path) -> None:
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(report)) + b"\n")
+
+
+def _errors_table(report: IncidentReport) -> Table:
+    table = Table(title=f"{report.incident_id}: 50 % / 95 % errors in metres (ISO/IEC 18305)")
+    for heading in ("unit", "", "circular", "vertical", "spherical", "floor right"):
+        table.add_column(heading, justify="left" if heading in {"unit", ""} else "right")
+    for unit in report.units:
+        floor = "" if unit.floor_probability is None else f"{unit.floor_probability:.1%}"
+        table.add_row(unit.unit_id, "as stated", *_cells(unit.stated), floor)
+        table.add_row("", "against the smoothed trail", *_cells(unit.against_smoothed), "")
+    table.add_row("all", "as stated", *_cells(report.stated), "")
+    table.add_row("", "against the smoothed trail", *_cells(report.against_smoothed), "")
+    return table
+
+
+def _checks_table(report: IncidentReport) -> Table:
+    table = Table(title="Checks")
+    for heading in (
+        "unit",
+        "walked",
+        "loop closure",
+        "jumps as fixes came back",
+        "pins: shown off",
+    ):
+        table.add_column(heading)
+    for unit in report.units:
+        table.add_row(
+            unit.unit_id,
+            f"{unit.walked_m:.0f} m",
+            _closure(unit),
+            ", ".join(f"{one:.1f} m" for one in unit.reentry_jumps_m),
+            ", ".join(
+                f"{one.note or one.pin_id}: {one.shown_m:.1f} m"
+                for one in unit.pin_residuals
+                if one.shown_m is not None
+            ),
+        )
+    return table
+
+
+def _closure(unit: UnitReport) -> str:
+    if unit.loop_closure_m is None:
+        return ""
+    return f"{unit.loop_closure_m:.1f} m, {unit.loop_closure_percent:.1f} %"
+
+
+def _cells(figures: Figures | None) -> tuple[str, str, str]:
+    if figures is None:
+        return "", "", ""
+    return (
+        f"{figures.ce50_m:.1f} / {figures.ce95_m:.1f}",
+        f"{figures.ve50_m:.1f} / {figures.ve95_m:.1f}",
+        f"{figures.se50_m:.1f} / {figures.se95_m:.1f}",
+    )

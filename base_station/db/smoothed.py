@@ -1,0 +1,62 @@
+"""Smoothed trails of closed incidents, beside the tracks that were shown at the time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sqlalchemy import delete, select
+from sqlalchemy.dialects.sqlite import insert
+
+from base_station.db.models import SmoothedIncident, SmoothedPoint
+from base_station.db.records import TrackSample
+from base_station.db.store import Store
+
+_COLUMNS = tuple(getattr(SmoothedPoint, name) for name in TrackSample.__struct_fields__)
+
+
+class SmoothedTracks:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def put(
+        self,
+        incident_id: str,
+        smoother: str,
+        made_ns: int,
+        tracks: Mapping[str, Sequence[TrackSample]],
+    ) -> None:
+        """In the place of what was made before."""
+        rows = [
+            {"incident_id": incident_id, "unit_id": unit_id}
+            | {name: getattr(sample, name) for name in TrackSample.__struct_fields__}
+            for unit_id, track in tracks.items()
+            for sample in track
+        ]
+        with self._store.write() as session:
+            for table in (SmoothedPoint, SmoothedIncident):
+                session.execute(delete(table).where(table.incident_id == incident_id))
+            session.execute(
+                insert(SmoothedIncident).values(
+                    incident_id=incident_id, smoother=smoother, made_ns=made_ns
+                )
+            )
+            if rows:
+                session.execute(insert(SmoothedPoint), rows)
+
+    def of(self, incident_id: str) -> tuple[str, int, dict[str, list[TrackSample]]] | None:
+        """Smoother, when it was made, and the trails by unit; None: not made yet."""
+        with self._store.read() as session:
+            made = session.get(SmoothedIncident, incident_id)
+            if made is None:
+                return None
+            wanted = (
+                select(SmoothedPoint.unit_id, *_COLUMNS)
+                .where(SmoothedPoint.incident_id == incident_id)
+                .order_by(SmoothedPoint.unit_id, SmoothedPoint.t_ns)
+            )
+            tracks: dict[str, list[TrackSample]] = {}
+            for unit_id, *values in session.execute(wanted):
+                tracks.setdefault(unit_id, []).append(TrackSample(*values))
+            return made.smoother, made.made_ns, tracks

@@ -1,0 +1,124 @@
+"""Figures in the terms of ISO/IEC 18305, and the trust light."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.assessment.figures import (
+    errors_against,
+    figures_of,
+    floor_probability,
+    stated_figures,
+)
+from base_station.assessment.trust import trust_of
+from base_station.db.records import TrackSample
+from base_station.live_state import StationState, UnitState
+from base_station.pins import Pin, PinVerdict
+from shared.messages import FusedPosition, Header
+from shared.quality import Quality
+
+
+def sample(
+    t_s: float, north_m: float = 0.0, std_m: float = 1.0, down_m: float = 0.0
+) -> TrackSample:
+    return TrackSample(round(t_s * 1e9), north_m, 0.0, down_m, std_m, std_m, std_m, 0.0, 0, "good")
+
+
+def test_figures_of_a_normal_distribution_are_its_own() -> None:
+    """CE50 is 1.177 and CE95 2.448 standard deviations, VE50 0.674, SE50 1.538."""
+    figures = stated_figures([sample(float(second), std_m=2.0) for second in range(200)])
+    assert figures is not None
+    assert figures.ce50_m == pytest.approx(2.0 * 1.177, rel=0.15)
+    assert figures.ce95_m == pytest.approx(2.0 * 2.448, rel=0.15)
+    assert figures.ve50_m == pytest.approx(2.0 * 0.674, rel=0.25)
+    assert figures.se50_m == pytest.approx(2.0 * 1.538, rel=0.15)
+    many = figures_of(np.random.default_rng(1).standard_normal((200_000, 3)))
+    assert many is not None
+    assert many.ce95_m == pytest.approx(2.448, rel=0.01)
+    assert many.ve95_m == pytest.approx(1.960, rel=0.01)
+
+
+def test_nothing_has_no_figures() -> None:
+    assert stated_figures([]) is None
+    assert figures_of(np.zeros((0, 3))) is None
+    assert floor_probability([], 3.0) is None
+    assert len(errors_against([sample(1.0)], [])) == 0
+
+
+def test_errors_are_taken_where_the_other_trail_reaches_and_in_between() -> None:
+    truth = [sample(0.0, 0.0), sample(10.0, 10.0)]
+    live = [sample(5.0, 6.0), sample(20.0, 99.0)]
+    errors = errors_against(live, truth)
+    assert errors.shape == (1, 3)
+    assert errors[0].tolist() == pytest.approx([1.0, 0.0, 0.0])
+
+
+def test_the_floor_is_as_sure_as_the_height_by_the_storey() -> None:
+    assert floor_probability([sample(0.0, std_m=0.5)], 3.0) == pytest.approx(0.9973, abs=1e-3)
+    assert floor_probability([sample(0.0, std_m=3.0)], 3.0) == pytest.approx(0.383, abs=1e-2)
+
+
+def fused(**changes: object) -> FusedPosition:
+    position = FusedPosition(
+        header=Header("station", 1, 1, 0, 0),
+        unit_id="FF-01",
+        t_meas_ns=0,
+        north_m=0.0,
+        east_m=0.0,
+        down_m=0.0,
+        std_north_m=1.0,
+        std_east_m=1.0,
+        std_down_m=0.3,
+        correlation_ne=0.0,
+        heading_rad=0.0,
+        heading_std_rad=0.1,
+        floor=0,
+        quality=Quality.GOOD,
+        quality_reason="",
+        fuser="gps-inertial",
+        since_gps_s=1.0,
+    )
+    return msgspec.structs.replace(position, **changes)
+
+
+def known(**changes: object) -> UnitState:
+    return UnitState("FF-01", registered=True, link="live", fused=fused(**changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "level", "words"),
+    [
+        ({}, "green", ""),
+        ({"std_north_m": 3.0}, "amber", "only known to 7 m"),
+        ({"std_north_m": 30.0}, "red", "only known to 73 m"),
+        ({"std_down_m": 4.0}, "amber", "height"),
+        ({"quality": Quality.LOST, "quality_reason": "tracker is lost"}, "red", "tracker is lost"),
+        ({"quality": Quality.DEGRADED, "quality_reason": "heading"}, "amber", "heading"),
+    ],
+)
+def test_the_light_says_why(changes: dict[str, object], level: str, words: str) -> None:
+    trust = trust_of(StationState(), known(**changes))
+    assert trust.level == level
+    assert words in trust.reason
+    assert (trust.reason == "") == (level == "green")
+
+
+def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:
+    lost = known()
+    lost.link = "lost"
+    stranger = known()
+    stranger.registered = False
+    for unit in (lost, stranger, UnitState("FF-01", registered=True)):
+        assert trust_of(StationState(), unit).level == "red"
+
+
+def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
+    state = StationState()
+    state.pins["p"] = Pin("p", "place", "FF-01", 1, 1.0, 1, "chief")
+    state.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    trust = trust_of(state, known())
+    assert (trust.level, trust.reason) == ("amber", "a pin contradicts the trail")
+    state.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
+    assert trust_of(state, known()).level == "green"

@@ -1,0 +1,127 @@
+"""An incident afterwards: smoothed beside what was shown, kept, raw, and assessed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pytest
+
+from base_station.checkpoints import Checkpoints
+from base_station.db.models import Incident
+from base_station.db.projecting import project_into
+from base_station.db.records import Records, TrackSample
+from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
+from base_station.db.store import Store
+from base_station.exporters.incident import incident_tracks
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.hindsight import Hindsight
+from base_station.playback import Archive
+from base_station.rebuild import project_log
+from shared.clock import ManualClock
+from shared.messages.station import CloseIncident
+from tests.live_station import make_pipeline
+from tests.square_walk import Walk, truth
+
+
+class Past:
+    """A closed incident of two units, with pins, in a store and a log."""
+
+    def __init__(self, folder: Path, clock: ManualClock) -> None:
+        self.walk = Walk("FF-01", "FF-02", turn_rad=0.5)
+        for unit_id in self.walk.units:
+            self.walk.start(unit_id)
+        self.walk.go(300)
+        self.walk.pin("p1", "FF-01", 250.0)
+        self.walk.script.act(CloseIncident("i1"))
+        records = self.walk.script.records
+        self.store = Store(folder / "station.sqlite")
+        self.records = Records(self.store, clock)
+        self.roster = Roster(self.store, clock)
+
+        def write(projection: object) -> None:
+            with self.store.write() as session:
+                project_into(session, (projection,))  # type: ignore[arg-type]  # of the projector
+
+        project_log(records, make_pipeline(), write, lambda _: None)
+        archive = Archive(
+            lambda t_ns: [record for record in records if record[0] >= t_ns],
+            Checkpoints(folder / "checkpoints"),
+            make_pipeline,
+        )
+        self.kept = SmoothedTracks(self.store)
+        self.hindsight = Hindsight(archive, SMOOTHERS[0], self.kept, clock)
+        incident = self.records.incident("i1")
+        assert incident is not None
+        self.incident: Incident = incident
+
+    def mean_off_m(self, track: Sequence[TrackSample]) -> float:
+        begin_ns = self.walk.script.t_ns - self.walk.walked_s * 10**9
+        apart = [
+            math.dist((one.north_m, one.east_m), truth((one.t_ns - begin_ns) / 1e9))
+            for one in track
+        ]
+        return sum(apart) / len(apart)
+
+
+@pytest.fixture
+def past(tmp_path: Path, clock: ManualClock) -> Iterator[Past]:
+    past = Past(tmp_path, clock)
+    yield past
+    past.store.close()
+
+
+def test_smoothed_is_better_than_shown_and_both_are_kept(past: Past) -> None:
+    shown = past.records.tracks_of(past.incident)
+    smoothed = past.hindsight.smoothed(past.incident)
+    assert set(smoothed.tracks) == {"FF-01", "FF-02"}
+    assert past.mean_off_m(smoothed.tracks["FF-01"]) < 0.5 * past.mean_off_m(shown["FF-01"])
+    assert past.records.tracks_of(past.incident) == shown
+    assert past.kept.of("i1") is not None
+
+
+def test_what_was_made_is_not_made_again(past: Past) -> None:
+    first = past.hindsight.smoothed(past.incident)
+    again = past.hindsight.smoothed(past.incident)
+    assert again.made_ns == first.made_ns
+    assert again.tracks == first.tracks
+    fractions: list[float] = []
+    assert past.hindsight.smooth(past.incident, fractions.append).tracks == first.tracks
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
+    raw = past.hindsight.raw(past.incident)["FF-01"]
+    smoothed = past.hindsight.smoothed(past.incident).tracks["FF-01"]
+    assert (raw[0].north_m, raw[0].east_m) == (smoothed[0].north_m, smoothed[0].east_m)
+    assert past.mean_off_m(raw) > 2.0 * past.mean_off_m(smoothed)
+
+
+def test_an_exporter_takes_the_smoothed_trail(past: Past) -> None:
+    smoothed = past.hindsight.smoothed(past.incident).tracks
+    shown = incident_tracks(past.records, past.roster, past.incident)
+    chosen = incident_tracks(past.records, past.roster, past.incident, smoothed)
+    assert [track.unit_id for track in chosen.tracks] == [track.unit_id for track in shown.tracks]
+    assert [point.t_ns for point in chosen.tracks[0].points] == [
+        sample.t_ns for sample in smoothed["FF-01"]
+    ]
+
+
+def test_the_assessment_holds_what_was_shown_against_what_is_known(past: Past) -> None:
+    report = past.hindsight.assess(past.incident, past.records.tracks_of(past.incident))
+    one, two = report.units
+    assert one.against_smoothed is not None
+    assert one.stated is not None
+    true_m = past.mean_off_m(past.records.tracks_of(past.incident)["FF-01"])
+    assert one.against_smoothed.ce50_m == pytest.approx(true_m, rel=0.6)
+    assert one.against_smoothed.ce50_m <= one.against_smoothed.ce95_m
+    (residual,) = one.pin_residuals
+    assert residual.used
+    assert residual.shown_m is not None
+    assert residual.shown_m > residual.trail_m
+    assert two.pin_residuals == ()
+    assert one.loop_closure_m is not None
+    assert one.walked_m == pytest.approx(300.0, rel=0.05)
