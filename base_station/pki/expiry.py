@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-from base_station.pki.folder import PkiFolder
+from base_station.pki.folder import STATION_NAME, PkiFolder
 from base_station.pki.registry import Entry, Registry
 from shared.clock import NS_PER_S, Clock
 from shared.enrolment import Holder
 from shared.errors import ConfigError
 
-FIRST_STATION = "station"  # which has the authority
 EXPIRY_WARNING = timedelta(days=30)
 _READ_AGAIN_NS = 60 * NS_PER_S
 
@@ -54,7 +53,7 @@ def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tup
 
 
 def _expiry_sentence(entry: Entry, now: datetime) -> str:
-    if entry.holder is Holder.STATION and entry.name == FIRST_STATION:
+    if entry.holder is Holder.STATION and entry.name == STATION_NAME:
         who, command = "this station", "muster pki renew-station, then start the station again"
     elif entry.holder is Holder.STATION:
         who, command = f"station {entry.name}", f"muster pki enroll-station {entry.name}"
