@@ -32,6 +32,7 @@ MessageId = tuple[str, int, int]  # unit, boot id, sequence number
 _LOOK_EVERY_S = 0.1
 _START_S = 90.0
 _STOP_S = 30.0
+_ELSEWHERE = 503
 _NOT_YET = (urllib.error.URLError, ConnectionError, TimeoutError, StoreError)
 
 
@@ -60,7 +61,7 @@ class Place:
         return () if self.namespace is None else self.namespace.inside()
 
 
-@dataclass
+@dataclass(eq=False)
 class Station:
     """One of the two; ``start`` it as often as wanted."""
 
@@ -121,6 +122,24 @@ class Station:
 
     def post(self, path: str, body: dict[str, Any]) -> Any:
         return self.place.call(lambda: self._logged_in().post(path, body))
+
+    def refuses(self, path: str, body: dict[str, Any]) -> bool:
+        """Whether it says that nothing is to be changed here."""
+        try:
+            self.post(path, body)
+        except urllib.error.HTTPError as error:
+            return error.code == _ELSEWHERE
+        return False
+
+    def delivered(self, text: str) -> set[str]:
+        """The units that have this message."""
+        return {
+            unit["unit_id"]
+            for command in self.get("/commands")
+            if command["text"] == text
+            for unit in command["units"]
+            if unit["received_ms"]
+        }
 
     def standing(self) -> dict[str, Any]:
         """Empty while the station does not answer."""
@@ -211,6 +230,10 @@ class TwoStations:
             return {u["unit_id"] for u in units if u["last_heard_ms"]} >= self.units.keys()
 
         wait_until(f"all units are heard at {station.name}", all_heard)
+
+    def stop_units(self) -> None:
+        for process in self.units.values():
+            _end(process)
 
     def said(self) -> set[MessageId]:
         """What the units have ever said, by their journals."""

@@ -11,9 +11,11 @@ from typing import Literal, NamedTuple
 
 from base_station.standby.places import Place
 from base_station.standby.words import Beat, Role
+from shared.clock import NS_PER_S
 
 Decision = Literal["stay", "follow", "lead", "step back"]
 _GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
+_ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
 
 
 class Me(NamedTuple):
@@ -23,7 +25,8 @@ class Me(NamedTuple):
     preferred: bool
     term: int  # of the last take-over in its log
     place: Place
-    units: int  # that it hears
+    units: int  # that are linked with either router, as far as it knows
+    unit_heard_ns: int  # when a unit last said anything; monotonic
 
 
 class Election:
@@ -58,10 +61,11 @@ class Election:
         return now_ns - self._heard_ns < patience_ns
 
     def is_cut_off(self, me: Me, now_ns: int) -> bool:
-        """This standby hears neither the active station nor any of the units that it had."""
+        """This standby hears neither the active station nor a unit, though that one had some."""
         other = self._other
-        alone = self.role == "standby" and not self.is_there(now_ns)
-        return alone and other is not None and other.units > 0 and me.units == 0
+        if self.role != "standby" or self.is_there(now_ns) or other is None:
+            return False
+        return other.units > 0 and me.unit_heard_ns <= self._heard_ns + _ON_THE_WAY_NS
 
     def decide(self, me: Me, now_ns: int) -> Decision:
         other = self._other if self.is_there(now_ns) else None

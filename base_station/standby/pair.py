@@ -246,8 +246,8 @@ class Pair:
         self._around.start_again(cut)
 
     def _me(self) -> Me:
-        log, config = self._around.log, self._config
-        return Me(config.name, config.preferred, log.term, log.place, len(self._units))
+        log, config, heard_ns = self._around.log, self._config, self._around.feed.unit_heard_ns
+        return Me(config.name, config.preferred, log.term, log.place, len(self._units), heard_ns)
 
     def _say_beat(self) -> None:
         """A station that leads and writes no log, though it should every second, says nothing."""

@@ -33,6 +33,7 @@ class StandbyFeed:
         self._followed_bytes = 0
         self._kept: deque[tuple[int, str, bytes]] = deque()  # monotonic time, key, payload
         self._kept_bytes = 0
+        self.unit_heard_ns = 0  # when a unit last said anything; monotonic
         self._lead_asked = False
         self._woken = False
         self._closed = False
@@ -107,7 +108,7 @@ class StandbyFeed:
             return  # its unit will say what it was
         if channel.direction is not Direction.UP or not channel.logged or is_backfilled(key):
             return
-        now_ns = self._clock.monotonic_ns()
+        now_ns = self.unit_heard_ns = self._clock.monotonic_ns()
         self._kept.append((now_ns, backfilled_key(unit_id, channel.suffix), payload))
         self._kept_bytes += len(payload)
         while self._kept and (

@@ -31,7 +31,7 @@ class Beat(msgspec.Struct, frozen=True):
     place: Place  # up to which it has the log
     preferred: bool
     run: int  # of its program; another number: it has started anew
-    units: int  # that it hears, by whichever router
+    units: int  # that are linked, with whichever router
     url: str  # where consoles find it
 
 

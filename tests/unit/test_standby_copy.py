@@ -232,9 +232,10 @@ class TestFeed:
         feed.deliver(events(2))
         feed.lead()
         assert list(feed.take(1.0)) == events(2)
-        assert feed.follows
+        follows = [feed.follows]
         assert [r[1:] for r in feed.take(1.0)] == [(backfilled_key("u", EVENT.suffix), b"heard")]
-        assert not feed.follows
+        follows.append(feed.follows)
+        assert follows == [True, False]
         feed.offer(POSITION.key("u"), b"live")
         assert [r[1:] for r in feed.take(1.0)] == [(POSITION.key("u"), b"live")]
 

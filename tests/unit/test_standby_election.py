@@ -16,10 +16,10 @@ HERE = Place(50, 1)
 class Site:
     """One station's election, and what it hears of the other."""
 
-    def __init__(self, *, preferred: bool = False, units: int = 1) -> None:
+    def __init__(self, *, preferred: bool = False) -> None:
         self.now_s = 100.0
         self.election = Election(round(LEASE_S * NS_PER_S), self.now_ns)
-        self.me = Me("b", preferred, term=1, place=HERE, units=units)
+        self.me = Me("b", preferred, term=1, place=HERE, units=1, unit_heard_ns=0)
 
     @property
     def now_ns(self) -> int:
@@ -32,6 +32,9 @@ class Site:
     def decide(self, after_s: float = 0.0) -> Decision:
         self.now_s += after_s
         return self.election.decide(self.me, self.now_ns)
+
+    def hear_unit(self) -> None:
+        self.me = self.me._replace(unit_heard_ns=self.now_ns)
 
     def become(self, role: Role) -> None:
         self.election.role = role
@@ -68,7 +71,9 @@ def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     site = Site()
     site.become("standby")
     site.hear("active")
-    assert site.decide(LEASE_S - 0.1) == "stay"
+    site.now_s += 1.0
+    site.hear_unit()
+    assert site.decide(LEASE_S - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
 
 
@@ -76,8 +81,10 @@ def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
     site = Site()
     site.become("standby")
     site.hear("active")
+    site.now_s += 1.0
+    site.hear_unit()
     site.election.note_token(there=False)
-    assert site.decide(LEASE_S / 2 - 0.1) == "stay"
+    assert site.decide(LEASE_S / 2 - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
 
 
@@ -90,18 +97,21 @@ def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> N
         assert site.decide(0.5) == "stay"
 
 
-def test_who_hears_no_unit_that_the_active_station_had_is_cut_off_and_waits() -> None:
-    site = Site(units=0)
+def test_who_hears_no_unit_though_the_active_station_had_some_is_cut_off_and_waits() -> None:
+    site = Site()
     site.become("standby")
     site.hear("active", units=2)
+    site.now_s += 0.2
+    site.hear_unit()  # that had been said before the cable was cut
     assert site.decide(10 * LEASE_S) == "stay"
     assert site.election.is_cut_off(site.me, site.now_ns)
-    site.me = site.me._replace(units=1)
+    site.hear_unit()  # it has come over to this station's router
+    assert not site.election.is_cut_off(site.me, site.now_ns)
     assert site.decide() == "lead"
 
 
 def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
-    site = Site(units=0)
+    site = Site()
     site.become("standby")
     site.hear("active", units=0)
     assert site.decide(LEASE_S) == "lead"
@@ -132,12 +142,12 @@ def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
             there = Election(round(LEASE_S * NS_PER_S), 0)
             there.role = "active"
             there.hear(Beat("b", PROTOCOL, "active", mine, BEGINNING, False, 2, 1, ""), 0)
-            other = there.decide(Me("a", True, theirs, BEGINNING, 1), 0)
+            other = there.decide(Me("a", True, theirs, BEGINNING, 1, 0), 0)
             assert {here.decide(), other} == {"stay", "step back"}
 
 
 def test_an_active_station_goes_on_when_the_other_is_gone() -> None:
-    site = Site(units=0)
+    site = Site()
     site.become("active")
     site.hear("standby")
     assert site.decide(100 * LEASE_S) == "stay"

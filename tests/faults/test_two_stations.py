@@ -1,0 +1,129 @@
+"""Two real stations and real units: one dies and comes back, and the cable between them is cut."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
+from base_station.bench.two_stations import Place, Station, TwoStations, wait_until
+from shared.errors import BusError
+
+pytestmark = pytest.mark.timeout(300)
+
+APART_S = 3.0
+
+
+@pytest.fixture
+def closing() -> Iterator[ExitStack]:
+    with ExitStack() as closing:
+        yield closing
+
+
+def texts(station: Station) -> list[str]:
+    return [command["text"] for command in station.get("/commands")]
+
+
+def tell_everyone(station: Station, text: str) -> None:
+    station.post("/commands", {"kind": "text", "target": {"everyone": True}, "text": text})
+
+
+def complete(two: TwoStations) -> None:
+    """Wait until both logs have everything that the units have said by now."""
+    said = two.said()
+    assert len(said) > 100
+
+    def nothing_is_missing() -> bool:
+        return all(said <= one.logged().messages.keys() for one in (two.first, two.second))
+
+    wait_until("nothing is missing", nothing_is_missing)
+
+
+def end_and_compare(two: TwoStations, ends_first: Station) -> None:
+    """No message is twice in a log, and one log is the beginning of the other."""
+    two.stop_units()
+    ends_first.stop()
+    (ends_last,) = {two.first, two.second} - {ends_first}
+    ends_last.stop()
+    short, long = ends_first.logged(), ends_last.logged()
+    assert (short.duplicates, long.duplicates) == (0, 0)
+    assert short.events == long.events[: len(short.events)]
+
+
+def test_the_other_station_takes_over_and_the_first_comes_back(
+    tmp_path: Path, closing: ExitStack
+) -> None:
+    two = TwoStations(tmp_path, (Place(), Place()), closing)
+    two.start()
+    two.start_unit("anna", two.first)
+    two.start_unit("bert", two.second)
+    two.wait_heard(two.first)
+    two.first.post("/incidents", {"name": "Mill Lane"})
+    assert two.second.refuses("/incidents", {"name": "Other"})
+    two.first.kill()
+    wait_until("the second leads", two.second.leads)
+    assert [one["name"] for one in two.second.get("/incidents")] == ["Mill Lane"]
+    tell_everyone(two.second, "come out")
+    wait_until("the units answer", lambda: two.second.delivered("come out") == {"anna", "bert"})
+    two.first.start()
+    wait_until("the first follows", two.first.follows)
+    assert texts(two.first) == ["come out"]
+    complete(two)
+    end_and_compare(two, two.first)
+
+
+@pytest.fixture(scope="module")
+def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TwoStations, LossyLink]]:
+    """Two stations with a cable between them, and one unit near the first."""
+    with ExitStack() as closing:
+        try:
+            link = LossyLink(5, closing)
+        except BusError as error:
+            pytest.skip(str(error))
+        places = [Place(one.address, one) for one in (link.station, link.units)]
+        two = TwoStations(tmp_path_factory.mktemp("two"), places, closing)
+        two.start()
+        two.start_unit("anna", two.first)
+        two.wait_heard(two.first)
+        yield two, link
+
+
+def test_a_standby_that_hears_nobody_waits_for_a_person(
+    apart: tuple[TwoStations, LossyLink],
+) -> None:
+    two, link = apart
+    link.set(DARK)
+    wait_until(
+        "it says that it is cut off",
+        lambda: "probably cut off" in str(two.second.get("/health")["problems"]),
+    )
+    assert not two.second.leads()
+    link.set(CLEAN)
+    wait_until("the second follows again", two.second.follows)
+
+
+def test_a_cut_cable_leaves_two_that_lead_and_heals_to_one(
+    apart: tuple[TwoStations, LossyLink],
+) -> None:
+    two, link = apart
+    two.start_unit("bert", two.second)
+    two.wait_heard(two.first)
+    link.set(DARK)
+    wait_until("the second leads too", two.second.leads)
+    tell_everyone(two.first, "said at the first")
+    tell_everyone(two.second, "said at the second")
+    time.sleep(APART_S)
+    assert two.first.leads()
+    link.set(CLEAN)
+    wait_until("the first follows", two.first.follows)
+    wait_until("what was apart is told", lambda: "acted at first" in str(two.second.get("/alarms")))
+    assert texts(two.second) == texts(two.first) == ["said at the second"]
+    done = [entry for entry in two.second.get("/audit") if entry["action"] == "DoneApart"]
+    assert len(done) == 1
+    assert "said at the first" in done[0]["detail"]
+    complete(two)
+    end_and_compare(two, two.first)

@@ -1,0 +1,104 @@
+"""A second station of the same authority."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from base_station.pki.access import access_control
+from base_station.pki.folder import PkiFolder
+from base_station.pki.station_enrolment import read_station_enrolment
+from shared.errors import ConfigError
+from shared.tls import parse_certificate
+
+FIRST, SECOND = "tls/10.0.0.1:7447", "tls/10.0.0.2:7447"
+
+
+@pytest.fixture
+def first(tmp_path: Path) -> PkiFolder:
+    folder = PkiFolder(tmp_path / "first")
+    folder.create("Test", ["10.0.0.1"], [FIRST])
+    return folder
+
+
+@pytest.fixture
+def second(first: PkiFolder, tmp_path: Path) -> PkiFolder:
+    file = tmp_path / "second.station.toml"
+    first.enroll_station("second", ["10.0.0.2"], SECOND).write(file)
+    assert file.stat().st_mode & 0o077 == 0
+    folder = PkiFolder(tmp_path / "second")
+    folder.join(read_station_enrolment(file))
+    return folder
+
+
+def test_it_has_a_certificate_of_its_own_for_its_own_address(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    one, other = first.station_identity(), second.station_identity()
+    assert one.authority == other.authority
+    assert (one.common_name(), other.common_name()) == ("station", "station:second")
+    names = parse_certificate(other.certificate, "certificate").extensions
+    assert "10.0.0.2" in str(names)
+    assert not (second.path / "authority.key").exists()
+
+
+def test_both_let_in_the_same_units_and_each_other(first: PkiFolder, second: PkiFolder) -> None:
+    first.enroll("FF-01")
+    second.take_registry(first.registry())
+    for folder in (first, second):
+        subjects = {one["id"] for one in access_control(folder.registry())["subjects"]}
+        assert subjects == {"station", "station:second", "FF-01"}
+
+
+def test_units_that_are_enrolled_from_now_on_know_both(first: PkiFolder, second: PkiFolder) -> None:
+    del second
+    assert first.enroll("FF-01").connect == (FIRST, SECOND)
+
+
+def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: PkiFolder) -> None:
+    first.enroll("FF-01")
+    second.take_registry(first.registry())
+    second.revoke("FF-01")
+    first.take_registry(second.registry())
+    assert first.registry().entries == second.registry().entries
+    assert first.enroll("FF-01").identity.common_name() == "FF-01#2"
+
+
+def test_the_newer_certificate_stands_whoever_heard_of_it_first(
+    first: PkiFolder, second: PkiFolder, tmp_path: Path
+) -> None:
+    first.enroll("FF-01")
+    second.take_registry(first.registry())
+    old = second.registry()
+    later = PkiFolder(tmp_path / "first", lambda: datetime.now(UTC) + timedelta(hours=1))
+    later.renew("FF-01")
+    for registry in (first.registry().merged(old), old.merged(first.registry())):
+        assert set(registry.entries) == set(first.registry().entries)
+
+
+def test_a_station_is_enrolled_again_for_a_new_certificate(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    second.join(first.enroll_station("second", ["10.0.0.9"], SECOND))
+    assert second.station_identity().common_name() == "station:second"
+    assert len(second.registry().entries) == 2
+
+
+def test_a_folder_of_another_authority_is_left_alone(first: PkiFolder, tmp_path: Path) -> None:
+    other = PkiFolder(tmp_path / "other")
+    other.create("Other", [], [FIRST])
+    with pytest.raises(ConfigError, match="another authority"):
+        other.join(first.enroll_station("second", [], SECOND))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
+def test_a_file_that_was_cut_short_is_refused(
+    first: PkiFolder, tmp_path: Path, share: float
+) -> None:
+    text = first.enroll_station("second", [], SECOND).to_toml()
+    file = tmp_path / "short.toml"
+    file.write_text(text[: round(share * len(text))])
+    with pytest.raises(ConfigError, match="copy the whole file again"):
+        read_station_enrolment(file)
