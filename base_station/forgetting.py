@@ -8,6 +8,7 @@ beyond this station's reach: docs/security.md says what to do about it.
 from __future__ import annotations
 
 import logging
+import shutil
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Protocol
 import msgspec
 
 from base_station.checkpoints import Checkpoints
+from base_station.data_folder import DataFolder
 from base_station.db.forgetting import forget_in, known_names
 from base_station.db.records import Records
 from base_station.db.store import Store
@@ -129,9 +131,10 @@ class Forgetter:
         return done
 
     def _rewrite_log(self, erasure: Erasure, on_progress: Progress) -> tuple[int, int]:
-        segments = list(self._log.complete_segments())
+        segments = [*self._log.complete_segments(), *self._set_aside()]
         redactor = Redactor(erasure, self._clocks(erasure))
-        records, files = 0, remove_torn(self._log.folder)
+        records = 0
+        files = self._remove_recordings(erasure) + sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
             changed = rewrite_segment(path, redactor)
@@ -141,6 +144,28 @@ class Forgetter:
                 self._log.note_rewritten(path)
         on_progress(1.0)
         return records, files
+
+    def _set_aside(self) -> list[Path]:
+        """Parts of logs that stand beside the log in the station's folder."""
+        station = self._log.folder.parent
+        known = (self._log.folder, DataFolder(station).recordings)
+        return sorted(
+            path
+            for path in station.rglob("*.mcap")
+            if not any(path.is_relative_to(folder) for folder in known)
+        )
+
+    def _folders(self, segments: list[Path]) -> set[Path]:
+        return {self._log.folder, *(path.parent for path in segments)}
+
+    def _remove_recordings(self, erasure: Erasure) -> int:
+        """Raw recordings of the units, whoever wore them: the unit still has its own."""
+        recordings = DataFolder(self._log.folder.parent).recordings
+        gone = [recordings / unit_id for unit_id in erasure.unit_ids]
+        count = sum(1 for folder in gone for path in folder.rglob("*") if path.is_file())
+        for folder in gone:
+            shutil.rmtree(folder, ignore_errors=True)
+        return count
 
     def _actions(self) -> Collection[tuple[int, str, bytes]]:
         return list(read_log(self._log.folder, keys={OPERATOR.key(STATION_ID)}))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import io
+import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -111,6 +112,7 @@ class Story:
             roster.set_photo("p-77", self.photo, "1234")
             Records(store, SystemClock()).audit("chief", "AddedPerson", f"p-77 {ANA}")
         self.before = list(read_log(folder / "log"))
+        self._keep_copies()
 
     def _tell(self, station: LiveStation) -> None:
         for unit_id in ("FF-01", "FF-02"):
@@ -134,11 +136,19 @@ class Story:
         station.act(CloseIncident("i1"))
         station.act(Unassign("FF-01"))
 
+    def _keep_copies(self) -> None:
+        """A part of the log that was set aside, a torn segment and a unit's own recording."""
+        (segment,) = segment_paths(self.folder / "log")
+        for copy in ("aside/000001-20260101T000000Z.mcap", "recordings/FF-01/day/raw.mcap"):
+            (self.folder / copy).parent.mkdir(parents=True)
+            shutil.copy(segment, self.folder / copy)
+        shutil.copy(segment, segment.with_name(segment.name + ".torn"))
+
     def stored(self) -> bytes:
         """Every byte in the folder, with what is packed in the log unpacked."""
         files = [path for path in sorted(self.folder.rglob("*")) if path.is_file()]
         parts = [path.read_bytes() for path in files]
-        for path in segment_paths(self.folder / "log"):
+        for path in sorted(self.folder.rglob("*.mcap*")):
             with SegmentReader(path) as reader:
                 parts += [chunk.data for chunk in reader.intact_chunks()]
         return b"\0".join(parts)
