@@ -36,6 +36,7 @@ from shared.messages.station import (
     SetAccountability,
     SetAnchor,
     SetPlan,
+    SetReference,
     SetRest,
     SetStart,
     TakeOver,
@@ -69,7 +70,7 @@ class Actions:
                 effects = self._register(state, action)
             case SetStart():
                 effects = self._start(state, action)
-            case SetAnchor() | SetPlan():
+            case SetAnchor() | SetPlan() | SetReference():
                 self._site(state, action)
             case TakeOver():
                 state.take_overs.append(action)
@@ -85,11 +86,16 @@ class Actions:
                 effects = self._reviewed(state, _people(state, by, action))
         return effects
 
-    def _site(self, state: StationState, action: SetAnchor | SetPlan) -> None:
+    def _site(self, state: StationState, action: SetAnchor | SetPlan | SetReference) -> None:
         if isinstance(action, SetAnchor):
             self._positioning.set_anchor(state, _anchor(action))
+        elif isinstance(action, SetReference):
+            _require_finite(action.down_m)
+            unit_id = _registered(state, action.unit_id).unit_id if action.unit_id else None
+            state.barometers.refer_to(unit_id, action.down_m)
         else:
             state.plan = read_plan(action.geojson)
+            self._positioning.consider(state.plan)
 
     def _alarm(
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm

@@ -14,8 +14,9 @@ import msgspec
 from base_station.boot_state import BootState
 from base_station.command_state import SentCommand
 from base_station.fusion.path_history import PathHistory
+from base_station.fusion.weather import Barometers
 from base_station.pins import Beacon, Pin, PinVerdict
-from base_station.plan import Plan
+from base_station.plan import Plan, Ring
 from shared.channels import GPS, NO_TRACKER, Channel
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -118,6 +119,7 @@ class UnitState(msgspec.Struct):
     fault: Fault | None = None
     stopped_ns: int | None = None  # said goodbye in an orderly way
     inside_since_ns: int | None = None
+    reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
     duty: Duty | None = None  # somebody wears it and an incident is open
     off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
@@ -330,6 +332,7 @@ class StationState(msgspec.Struct):
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    barometers: Barometers = msgspec.field(default_factory=Barometers)
     start_set: bool = False  # somebody said where a unit began
     paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting

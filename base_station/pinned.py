@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
+from base_station.floor_grid import FloorGrid
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Fuser, FuserKind
 from base_station.fusion.smoother.port import Smoother
@@ -24,6 +25,7 @@ class PinnedUnits:
     def __init__(self, kind: FuserKind, smoother: Smoother, saved: Mapping[str, bytes]) -> None:
         self._kind = kind
         self._smoother = smoother
+        self.grid: FloorGrid | None = None  # what stands in everybody's way
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
 
     def save(self) -> dict[str, bytes]:
@@ -64,6 +66,7 @@ class PinnedUnits:
             self._fusers.pop(unit.unit_id, None)
             return unit.show_plain_trail()
         fuser = self._kind.restore(plain(unit.unit_id).save())
+        fuser.consider(self.grid)
         fuser.settle(result.path.present)
         self._fusers[unit.unit_id] = fuser
         unit.show_solved_trail(result.trail)

@@ -94,6 +94,7 @@ class StationPipeline:
             checkpoint.fusers if checkpoint is not None and usable else {},
             checkpoint.pinned if checkpoint is not None and usable else {},
         )
+        self._positioning.consider(self.state.plan)
         self._book = AlarmBook(rules)
         self._actions = Actions(self._book, self._positioning)
 
@@ -136,6 +137,7 @@ class StationPipeline:
             link = unit.link_at(self.state.t_ns)
             if link != unit.link or link in {"stale", "lost"}:  # an old position looks older
                 unit.link = link
+                unit.reach = self._positioning.reach(self.state, unit)
                 outputs.append(UnitTouched(unit.unit_id))
             if accountability.note_work(self.state, unit):
                 outputs.append(UnitTouched(unit.unit_id))

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from base_station.floor_grid import FloorGrid
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Start
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
@@ -17,12 +18,16 @@ from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
 from base_station.pin_book import reframe_pins
 from base_station.pinned import PinnedUnits
+from base_station.plan import Plan, Ring
+from base_station.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position
 from shared.quality import Quality
 
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
+OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
+OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
 WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
 
 
@@ -38,7 +43,26 @@ class Positioning:
     ) -> None:
         self._kind = kind
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
+        self._grid: FloorGrid | None = None
         self._pinned = PinnedUnits(kind, smoother, saved_pinned)
+
+    def consider(self, plan: Plan | None) -> None:
+        """What stands in everybody's way, from now on."""
+        self._grid = FloorGrid.of(plan)
+        self._pinned.grid = self._grid
+        for fuser in (*self._fusers.values(), *self._pinned.all()):
+            fuser.consider(self._grid)
+
+    def reach(self, state: StationState, unit: UnitState) -> Ring:
+        """The border of what somebody who is not heard can have walked to since, on the floor
+        where that was; empty where no plan tells, or somebody is heard.
+        """
+        fused = unit.fused
+        if self._grid is None or fused is None or fused.floor is None or unit.link == "live":
+            return ()
+        known_m = RADII_95 * max(fused.std_north_m, fused.std_east_m)
+        way_m = known_m + roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
+        return self._grid.reach(fused.floor, fused.north_m, fused.east_m, way_m)
 
     def save(self) -> dict[str, bytes]:
         return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
@@ -50,11 +74,18 @@ class Positioning:
         """Gives the units whose past was solved again because this one has gone on."""
         reason = self._fuser(unit).advance(position)
         _count(unit, reason)
+        t_ns = _station_ns(state, unit, position.header.t_mono_ns)
+        is_outside = _is_outside(state, unit)
+        air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=is_outside)
+        if air is not None:
+            self._fuser(unit).feel(air)
         history = state.paths.setdefault(unit.unit_id, PathHistory())
-        history.note(position, _station_ns(state, unit, position.header.t_mono_ns), bool(reason))
+        history.note(position, t_ns, bool(reason))
         pinned = self._pinned.get(unit.unit_id)
         if pinned is not None:
             pinned.advance(position)
+            if air is not None:
+                pinned.feel(air)
         if self._pinned.is_due(unit.unit_id, history):
             return self.solve_pins(state, [unit.unit_id])
         return []
@@ -120,6 +151,7 @@ class Positioning:
             plain = self._message(state, unit, estimate, was, header)
             unit.extend_plain_trail(plain)
             unit.fused = self._message(state, unit, pinned.estimate() or estimate, held, header)
+        unit.reach = ()
         unit.extend_trail(unit.fused)
         if unit.unit_id in state.paths:
             state.paths[unit.unit_id].show(estimate, plain.floor)
@@ -159,12 +191,17 @@ class Positioning:
     ) -> FusedPosition:
         """``held``: the floor it was on, where that is known."""
         floor = state.plan.floor_at(estimate.down_m, held) if state.plan is not None else None
-        return _as_message(estimate, unit, self._kind.name, floor, header)
+        sure = None
+        if floor is not None and state.plan is not None:
+            sure = state.plan.sureness(floor, estimate.down_m, estimate.std_down_m)
+        message = _as_message(estimate, unit, self._kind.name, floor, header)
+        return msgspec.structs.replace(message, floor_probability=sure)
 
     def _fuser(self, unit: UnitState) -> Fuser:
         fuser = self._fusers.get(unit.unit_id)
         if fuser is None:
             fuser = self._fusers[unit.unit_id] = self._kind.new()
+            fuser.consider(self._grid)
         return fuser
 
     def _judge_fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
@@ -265,6 +302,16 @@ def _as_message(
         fuser=fuser,
         since_gps_s=estimate.since_gps_s,
     )
+
+
+def _is_outside(state: StationState, unit: UnitState) -> bool:
+    """Whether its barometer feels the weather, and no doors and fans of the building."""
+    fused = unit.fused
+    if fused is None:
+        return False
+    if state.plan is not None and state.plan.outlines:
+        return state.plan.depth_m(fused.north_m, fused.east_m) < -OUTSIDE_M
+    return fused.since_gps_s is not None and fused.since_gps_s < OUTSIDE_FIX_S
 
 
 def _note_inside(state: StationState, unit: UnitState) -> None:

@@ -33,7 +33,6 @@ from base_station.api.wire import (
 from base_station.assessment.trust import trust_of
 from base_station.command_state import Delivery, SentCommand
 from base_station.live_state import (
-    STALE_AFTER_S,
     Alarm,
     Duty,
     Incident,
@@ -43,15 +42,14 @@ from base_station.live_state import (
     UnitState,
 )
 from base_station.pins import WAITING, Pin
+from base_station.plan import Ring
+from base_station.roaming import RADII_95, roamed_m
 from base_station.sinks import PhotoUrls
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import AlarmChange, AlarmState, FusedPosition, Heartbeat, Status
 
 NS_PER_MS = 1_000_000
-RADII_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's normal distribution
-ROAMING_MPS = 1.0  # how fast the region widens in which a wearer may be who is not heard (ours)
-ROAMING_MOST_M = 250.0
 RESOLVED_SHOWN = 20
 
 
@@ -96,7 +94,7 @@ def _unit_view(
         status_ms=_ms(unit.status_ns) if unit.status else None,
         ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
         heat_level=heat.level if heat is not None and heat.is_open else "",
-        position=_position_view(state, unit.fused) if unit.fused else None,
+        position=_position_view(state, unit.fused, unit.reach) if unit.fused else None,
         inside_since_ms=_ms(unit.inside_since_ns),
         duty=_duty_view(unit.duty) if unit.duty else None,
         alarms=tuple(open_alarms),
@@ -311,11 +309,11 @@ def _status_view(unit: UnitState, status: Status) -> StatusView:
     )
 
 
-def _position_view(state: StationState, fused: FusedPosition) -> PositionView:
+def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> PositionView:
     lat_deg = lon_deg = None
     if state.anchor is not None:
         lat_deg, lon_deg, _ = state.anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
-    roamed_m = _roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
+    silent_m = roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
     return PositionView(
         t_ms=fused.t_meas_ns // NS_PER_MS,
@@ -323,8 +321,8 @@ def _position_view(state: StationState, fused: FusedPosition) -> PositionView:
         east_m=fused.east_m,
         down_m=fused.down_m,
         floor=fused.floor,
-        ellipse_major_m=major_m + roamed_m,
-        ellipse_minor_m=minor_m + roamed_m,
+        ellipse_major_m=major_m + silent_m,
+        ellipse_minor_m=minor_m + silent_m,
         ellipse_heading_rad=heading_rad,
         std_down_m=fused.std_down_m,
         heading_rad=fused.heading_rad,
@@ -334,14 +332,9 @@ def _position_view(state: StationState, fused: FusedPosition) -> PositionView:
         since_gps_s=fused.since_gps_s,
         lat_deg=lat_deg,
         lon_deg=lon_deg,
+        floor_probability=fused.floor_probability,
+        reach=tuple((round(east_m, 1), round(north_m, 1)) for east_m, north_m in reach),
     )
-
-
-def _roamed_m(age_s: float) -> float:
-    """How far a wearer may have got who has not been heard for a while."""
-    if age_s < STALE_AFTER_S:
-        return 0.0
-    return min(ROAMING_MPS * age_s, ROAMING_MOST_M)
 
 
 def _ellipse(fused: FusedPosition) -> tuple[float, float, float]:

@@ -50,6 +50,9 @@ class PositionView(msgspec.Struct, frozen=True):
     since_gps_s: float | None
     lat_deg: float | None  # where the site has an anchor
     lon_deg: float | None
+    floor_probability: float | None
+    reach: tuple[tuple[float, float], ...]  # [east_m, north_m]; border of what a wearer who is
+    # not heard can have walked to, walls considered; empty: the ellipse is all that is known
 
 
 class AlarmView(msgspec.Struct, frozen=True):

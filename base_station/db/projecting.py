@@ -40,6 +40,7 @@ from shared.messages.station import (
     SetAccountability,
     SetAnchor,
     SetPlan,
+    SetReference,
     SetRest,
     SetStart,
     TakeOver,
@@ -121,7 +122,7 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case ForgetWearers():
             pass  # what is stored was rewritten before
 
-        case TakeOver() | DoneApart():
+        case TakeOver() | DoneApart() | SetReference():
             pass  # the audit and the log have it
 
 

@@ -1,18 +1,23 @@
-"""The change of air pressure that everybody shares, as the height that it feigns.
+"""What barometers tell, with the weather taken out of it.
 
-Told by one barometer that stays where it is (the reference), or by those of people outside, whose
-own paths say how they climb.  Every barometer has an offset of its own, so that only changes
-count: one that joins begins at what is held already, and nobody moves by its joining or leaving.
+The change of air pressure that everybody shares is kept as the height that it feigns.  It is told
+by one barometer that stays where it is (the reference), or by those of people outside, whose own
+paths say how they climb.  Every barometer has an offset of its own, so that only changes count:
+one that joins begins at what is held already, and nobody moves by its joining or leaving.
 """
 
 from __future__ import annotations
 
 import msgspec
 
+from base_station.fusion.port import AirHeight
 from shared.clock import NS_PER_S
+from shared.geo import pressure_altitude_m
+from shared.messages import Position
 
 FRESH_NS = 10 * NS_PER_S
 SMOOTHING_S = 10.0
+LEAST_PA, MOST_PA = 30_000.0, 120_000.0  # where people live
 
 
 class _Source(msgspec.Struct):
@@ -46,5 +51,33 @@ class Weather(msgspec.Struct):
         """Whether somebody measures it now."""
         return self.t_ns is not None and t_ns - self.t_ns <= FRESH_NS
 
-    def forget(self, name: str) -> None:
-        self.sources.pop(name, None)
+
+class Barometers(msgspec.Struct):
+    """Everybody's."""
+
+    reference_id: str | None = None  # the unit whose barometer stays where it is
+    reference_down_m: float = 0.0
+    weather: Weather = msgspec.field(default_factory=Weather)
+
+    def refer_to(self, unit_id: str | None, down_m: float) -> None:
+        self.reference_id, self.reference_down_m = unit_id, down_m
+        self.weather.sources.clear()
+
+    def hear(
+        self, unit_id: str, t_ns: int, position: Position, *, is_outside: bool
+    ) -> AirHeight | None:
+        """Of a position that came; None where it has no pressure, or none that can be."""
+        pressure_pa = position.pressure_pa
+        if pressure_pa is None or not LEAST_PA < pressure_pa < MOST_PA:
+            return None
+        altitude_m = pressure_altitude_m(pressure_pa)
+        if self.reference_id == unit_id:
+            self.weather.note(unit_id, t_ns, altitude_m, self.reference_down_m)
+        elif self.reference_id is None and is_outside:
+            name = f"{unit_id} {position.header.boot_id}"  # its own height begins anew with it
+            self.weather.note(name, t_ns, altitude_m, position.down_m)
+        return AirHeight(
+            t_mono_ns=position.header.t_mono_ns,
+            down_m=self.weather.rise_m - altitude_m,
+            referenced=self.weather.is_known(t_ns),
+        )

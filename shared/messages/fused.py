@@ -37,6 +37,7 @@ class FusedPosition(msgspec.Struct, frozen=True):
     quality_reason: str
     fuser: str
     since_gps_s: float | None  # None: no fix ever
+    floor_probability: float | None = None  # of the floor, where one is known
 
     def to_wire(self) -> fused_pb2.FusedPosition:
         return fused_pb2.FusedPosition(
@@ -59,6 +60,7 @@ class FusedPosition(msgspec.Struct, frozen=True):
             fuser=self.fuser,
             seconds_since_gps=unsigned32(self.since_gps_s or 0.0, 1.0),
             gps_ever=self.since_gps_s is not None,
+            floor_permille=unsigned32(self.floor_probability or 0.0, 1e3),
         )
 
     @staticmethod
@@ -81,4 +83,5 @@ class FusedPosition(msgspec.Struct, frozen=True):
             quality_reason=wire.quality_reason,
             fuser=wire.fuser,
             since_gps_s=float(wire.seconds_since_gps) if wire.gps_ever else None,
+            floor_probability=wire.floor_permille * 1e-3 if wire.floor_permille else None,
         )

@@ -95,6 +95,13 @@ class SetStart(msgspec.Struct, frozen=True):
     heading_std_rad: float
 
 
+class SetReference(msgspec.Struct, frozen=True):
+    """This unit's barometer stays where it is and tells the weather; no unit: nobody's does."""
+
+    unit_id: str
+    down_m: float
+
+
 class SetPlan(msgspec.Struct, frozen=True):
     """The building's plan, metre-based site GeoJSON."""
 
@@ -183,6 +190,7 @@ Action = (
     | SetAnchor
     | SetStart
     | SetPlan
+    | SetReference
     | ReportProblem
     | SendCommand
     | ConfirmCommand
@@ -211,6 +219,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     SetAnchor: "set_anchor",
     SetStart: "set_start",
     SetPlan: "set_plan",
+    SetReference: "set_reference",
     ReportProblem: "report_problem",
     SendCommand: "send_command",
     ConfirmCommand: "confirm_command",

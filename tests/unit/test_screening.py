@@ -73,7 +73,7 @@ def test_the_wrong_hemisphere_is_too_far() -> None:
 def test_a_receiver_is_never_believed_to_the_centimetre() -> None:
     place = in_incident_frame(fix(horizontal_std_m=0.01), ANCHOR)
     assert isinstance(place, PlaceFix)
-    assert place.horizontal_std_m >= 2.0
+    assert place.horizontal_std_m >= 1.0
 
 
 def test_an_accuracy_that_is_not_stated_is_a_poor_one() -> None:

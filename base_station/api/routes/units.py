@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -14,7 +14,7 @@ from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.db import models
 from shared.channels import validate_unit_id
-from shared.messages.station import RegisterUnit, SetStart
+from shared.messages.station import RegisterUnit, SetReference, SetStart
 
 router = APIRouter(tags=["units"])
 
@@ -53,6 +53,11 @@ class Start(Form):
     heading_std_rad: Annotated[float, Field(gt=0.0, le=math.pi)] = math.pi
 
 
+class Reference(Form):
+    unit_id: UnitIdText | Literal[""]
+    down_m: Metres = 0.0
+
+
 @router.get("/units")
 def list_units(station: Station, _: Viewer) -> list[Unit]:
     return [_unit(unit, worn) for unit, worn in station.roster.units()]
@@ -80,6 +85,14 @@ def set_start(unit_id: UnitId, start: Start, station: Station, who: Commander) -
     if station.roster.unit(unit_id) is None:
         raise Problem(404, f"There is no unit {unit_id}.")
     station.act(who.username, SetStart(unit_id, **start.model_dump()))
+
+
+@router.put("/reference-barometer", status_code=204)
+def set_reference(reference: Reference, station: Station, who: Commander) -> None:
+    """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's."""
+    if reference.unit_id and station.roster.unit(reference.unit_id) is None:
+        raise Problem(404, f"There is no unit {reference.unit_id}.")
+    station.act(who.username, SetReference(reference.unit_id, reference.down_m))
 
 
 def _one(station: Services, unit_id: str) -> Unit:

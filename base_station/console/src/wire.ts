@@ -41,6 +41,8 @@ export interface PositionView {
   since_gps_s: number | null;
   lat_deg: number | null;
   lon_deg: number | null;
+  floor_probability: number | null;
+  reach: [number, number][]; // [east_m, north_m]; where a silent wearer may be, by the walls
 }
 
 export interface AlarmView {

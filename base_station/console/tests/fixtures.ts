@@ -51,6 +51,8 @@ export function position(change: Partial<PositionView> = {}): PositionView {
     since_gps_s: null,
     lat_deg: null,
     lon_deg: null,
+    floor_probability: null,
+    reach: [],
     ...change,
   };
 }
