@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib.metadata
 import logging
 import secrets
-from contextlib import ExitStack, closing
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
 from datetime import UTC, datetime
 from queue import SimpleQueue
 from threading import Event, Timer
@@ -66,6 +67,22 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
         return
     speed = config.speed if paced else None
     _run_once(config, member.unit_id, source, station, stop, for_s, speed)
+
+
+@contextmanager
+def opened_source(config: EdgeConfig) -> Iterator[Source]:
+    """The source that is set, ready to be read; one on the bus is waited for until it speaks."""
+    source = open_source(config.source)
+    with ExitStack() as held:
+        held.callback(source.close)
+        if isinstance(source, BusSource):
+            station = ZenohStation(membership(config))
+            listener = UnitListener(source.unit_id, station.open_listening_bus)
+            held.callback(listener.close)
+            never = Event()
+            listener.open(never)
+            source.follow(listener, never)
+        yield source
 
 
 def _track_for(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,7 +14,11 @@ from edge.calibration.file import write_calibration
 from edge.calibration.guide import guide, solve, take
 from edge.calibration.report import print_report
 from edge.calibration.steps import PosesStep, Step, StillStep, TurningStep, WarmUpStep
+from edge.samples import SensorBatch
 from edge.sources import SOURCES, open_source
+from edge.sources.port import Source
+from edge.timeline import Pacer
+from shared.clock import NS_PER_S
 from shared.errors import UserError
 
 _LIMIT_S = 600.0
@@ -21,12 +26,22 @@ _WARM_UP_LIMIT_S = 3600.0
 
 
 def calibrate_guided(
-    source: str, out: Path, unit: str, sensor: str | None, *, with_warm_up: bool
+    source: Source,
+    out: Path,
+    unit: str,
+    sensor: str | None,
+    *,
+    with_warm_up: bool,
+    speed: float | None = None,
 ) -> None:
-    """Guide a person through the steps with samples from ``source``."""
+    """Guide a person through the steps with samples from ``source``.
+
+    ``speed`` plays a recorded or simulated unit at that multiple of real time; None: at once.
+    """
     console = _console()
-    steps, name = _guided(source, with_warm_up, console)
-    _finish(steps, unit, name if sensor is None else sensor, out, console)
+    batches = source.batches() if speed is None else _played(source.batches(), speed)
+    steps = _guided(source.description.mag_present, with_warm_up, batches, console)
+    _finish(steps, unit, source.description.name if sensor is None else sensor, out, console)
 
 
 def calibrate_recorded(
@@ -59,18 +74,28 @@ def _take_recording(step: Step, text: str) -> None:
             raise UserError(f"{text}: {error}") from error
 
 
-def _guided(text: str, with_warm_up: bool, console: Console) -> tuple[list[Step], str]:
-    with closing(open_source(text)) as source:
-        steps: list[Step] = [StillStep(), PosesStep()]
-        if source.description.mag_present:
-            steps.append(TurningStep())
-        if with_warm_up:
-            steps.append(WarmUpStep())
-        batches = source.batches()
-        for number, step in enumerate(steps, start=1):
-            console.print(f"[bold]{number} of {len(steps)}: {step.name}.[/] {step.instruction}")
-            limit_s = _WARM_UP_LIMIT_S if isinstance(step, WarmUpStep) else _LIMIT_S
-            with console.status("waiting for samples") as status:
-                guide(step, batches, limit_s, status.update)
-            console.print(f"   done: {step.progress()}")
-        return steps, source.description.name
+def _guided(
+    has_magnetometer: bool, with_warm_up: bool, batches: Iterator[SensorBatch], console: Console
+) -> list[Step]:
+    steps: list[Step] = [StillStep(), PosesStep()]
+    if has_magnetometer:
+        steps.append(TurningStep())
+    if with_warm_up:
+        steps.append(WarmUpStep())
+    for number, step in enumerate(steps, start=1):
+        console.print(f"[bold]{number} of {len(steps)}: {step.name}.[/] {step.instruction}")
+        limit_s = _WARM_UP_LIMIT_S if isinstance(step, WarmUpStep) else _LIMIT_S
+        with console.status("waiting for samples") as status:
+            guide(step, batches, limit_s, status.update)
+        console.print(f"   done: {step.progress()}")
+    return steps
+
+
+def _played(batches: Iterator[SensorBatch], speed: float) -> Iterator[SensorBatch]:
+    pacer = Pacer(speed)
+    for batch in batches:
+        if len(batch.imu):
+            first_ns, last_ns = int(batch.imu.t_ns[0]), int(batch.imu.t_ns[-1])
+            due_ns = pacer.place(first_ns, last_ns, time.monotonic_ns()).to_mono_ns(last_ns)
+            time.sleep(max(0.0, (due_ns - time.monotonic_ns()) / NS_PER_S))
+        yield batch

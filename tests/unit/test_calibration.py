@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import TypeVar
@@ -18,6 +19,7 @@ from edge.calibration.steps import PosesStep, StillStep, TurningStep, WarmUpStep
 from edge.samples import ImuBatch, SensorBatch, SensorDescription
 from edge.simulation.handling import EDGES, SIDES, HandledUnit
 from edge.simulation.imu import GRAVITY_MPS2
+from edge.sources import open_source
 from shared.errors import ConfigError, UserError
 
 T = TypeVar("T")
@@ -315,7 +317,8 @@ def test_a_reading_at_the_end_of_the_range_stays_there():
 
 
 def test_a_whole_calibration_from_a_source_and_from_recordings(tmp_path, capsys):
-    calibrate_guided("bench:7", tmp_path / "guided.toml", "u1", None, with_warm_up=True)
+    with closing(open_source("bench:7")) as unit:
+        calibrate_guided(unit, tmp_path / "guided.toml", "u1", None, with_warm_up=True)
     guided = read_calibration(tmp_path / "guided.toml")
     assert guided.sensor == "simulated on a table"
     assert None not in (guided.accelerometer, guided.gyroscope, guided.magnetometer, guided.warmth)
