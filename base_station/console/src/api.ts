@@ -167,6 +167,12 @@ export const forgetPerson = (personId: string, name: string) =>
 export const forgetIncident = (incidentId: string, name: string) =>
   call<Forgotten>("POST", `/incidents/${id(incidentId)}/forget`, { name });
 
+/** Have a unit's raw recording pulled: of an incident, or of the last hour. */
+export const fetchRecording = (unitId: string, incidentId: string | null) =>
+  call<object>("POST", "/recordings", {
+    unit_id: unitId,
+    ...(incidentId === null ? { from_ms: Date.now() - 3_600_000 } : { incident_id: incidentId }),
+  });
 export const registerUnit = (unitId: string, label: string) =>
   call<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>
@@ -272,6 +278,8 @@ export interface TrailsAnswer {
 
 export const trails = (incidentId: string, kind: string) =>
   call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
+
+export const takeOver = () => call<void>("POST", "/standby/take-over");
 
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
 export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);

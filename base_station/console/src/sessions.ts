@@ -19,9 +19,14 @@ export const picture = computed(() => (replay.value?.session ?? live.value)?.pic
 export const isPast = computed(() => picture.value !== null && picture.value.replay.value !== null);
 /** Whether there is a live picture behind the replay. */
 export const besideLive = computed(() => replay.value?.session !== live.value);
-/** A viewer only looks, and the past is only looked at. */
+/** Whether this station leads; of two, things are changed only there. */
+const leads = computed(() => {
+  const standby = live.value?.picture.health.value?.standby ?? null;
+  return standby === null || standby.role === "active";
+});
+/** A viewer only looks, and the past and a standby are only looked at. */
 export const mayAct = computed(
-  () => user.value !== null && user.value.role !== "viewer" && !isPast.value,
+  () => user.value !== null && user.value.role !== "viewer" && !isPast.value && leads.value,
 );
 
 /** Show the console of whoever is logged in; without anyone the login form stays. */

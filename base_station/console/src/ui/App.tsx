@@ -8,6 +8,7 @@ import { Login } from "./Login";
 import { People } from "./People";
 import { PlanPanel } from "./PlanPanel";
 import { ReplayBar } from "./ReplayBar";
+import { StandbyBar } from "./StandbyBar";
 
 export function App() {
   if (user.value === null) return <Login />;
@@ -18,6 +19,7 @@ export function App() {
   return (
     <div class={`console ${kind} ${stopped ? "stopped" : ""}`}>
       <LinkBanner picture={shown} />
+      <StandbyBar picture={shown} />
       {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}
       <Header picture={shown} />
       <AlarmStrip picture={shown} />

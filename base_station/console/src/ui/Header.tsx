@@ -98,7 +98,9 @@ function HealthLight({ picture }: { picture: Picture }) {
 
 function LinkLight({ picture }: { picture: Picture }) {
   const { kind } = picture.link.value;
-  const word = kind === "up" ? "Connected" : kind === "down" ? "Connection lost" : "Connecting";
+  const station = picture.health.value?.standby?.station;
+  const connected = station === undefined ? "Connected" : `Connected to ${station}`;
+  const word = kind === "up" ? connected : kind === "down" ? "Connection lost" : "Connecting";
   return (
     <span class={`light ${kind === "up" ? "good" : "bad"}`} data-testid="link">
       <Icon name={kind === "up" ? "linkGood" : "linkLost"} />

@@ -3,6 +3,7 @@ import { useSignal } from "@preact/signals";
 import type { Picture } from "../live/picture";
 import { clockTime, duration } from "../words";
 import { Icon } from "./Icon";
+import { OtherConsole } from "./StandbyBar";
 
 /** When the station cannot be heard, nothing on the screen may look as if it were now. */
 export function LinkBanner({ picture }: { picture: Picture }) {
@@ -17,6 +18,7 @@ export function LinkBanner({ picture }: { picture: Picture }) {
     return () => clearInterval(timer);
   }, [sinceMs]);
   if (sinceMs === null) return null;
+  const standby = picture.health.peek()?.standby;
   const shown = picture.ready.value
     ? `This picture is from ${clockTime(pictureMs(picture, sinceMs))} and is not being updated.`
     : "";
@@ -27,6 +29,7 @@ export function LinkBanner({ picture }: { picture: Picture }) {
         Connection to the station lost <span aria-live="off">{age} ago</span>.
       </strong>
       <span>{shown} Trying to connect again.</span>
+      {standby && <OtherConsole standby={standby} />}
     </div>
   );
 }

@@ -1,7 +1,7 @@
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { UnitView } from "../wire";
-import { alarmWord, linkWord } from "../words";
+import { alarmWord, bytes, linkWord } from "../words";
 import { Dialog } from "./Dialog";
 import { fields, useLoaded } from "./useLoaded";
 import { Wearer } from "./Wearer";
@@ -24,6 +24,7 @@ export function UnitsDialog() {
             <th scope="col">Worn by</th>
             <th scope="col">Calibration</th>
             <th scope="col">Positions a second</th>
+            <th scope="col">Raw recording</th>
           </tr>
         </thead>
         <tbody>
@@ -64,6 +65,7 @@ function UnitRow({ unit, people, calibration }: RowProps) {
         <Calibration unit={unit} calibration={calibration} />
       </td>
       <td>{unit.registered && <Rate unitId={unit.unit_id} />}</td>
+      <td>{unit.registered && <Recording unitId={unit.unit_id} />}</td>
     </tr>
   );
 }
@@ -99,6 +101,39 @@ function Rate({ unitId }: { unitId: string }) {
         </option>
       ))}
     </select>
+  );
+}
+
+/** The unit's black box, pulled over the bus behind everything that is live. */
+function Recording({ unitId }: { unitId: string }) {
+  const picture = live.value?.picture;
+  const pulls = picture?.health.value?.recordings ?? [];
+  const pull = pulls.filter((one) => one.unit_id === unitId).at(-1);
+  if (pull !== undefined && pull.state !== "done" && pull.state !== "failed") {
+    return (
+      <label>
+        {bytes(pull.done_bytes)}
+        {pull.total_bytes > 0 && ` of ${bytes(pull.total_bytes)}`}
+        <progress
+          {...(pull.total_bytes > 0 ? { value: pull.done_bytes, max: pull.total_bytes } : {})}
+        />
+      </label>
+    );
+  }
+  return (
+    <>
+      <button
+        type="button"
+        aria-label={`Fetch the recording of ${unitId}`}
+        onClick={() => {
+          const incident = picture?.incident.peek()?.incident_id ?? null;
+          void attempt(api.fetchRecording(unitId, incident));
+        }}
+      >
+        Fetch
+      </button>
+      {pull !== undefined && <small> {pull.state === "done" ? "fetched" : pull.problem}</small>}
+    </>
   );
 }
 
