@@ -21,6 +21,7 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
+from base_station.bench import smoothing
 from base_station.bench.incident_bound import ENGINE_STD_M, bound_m2, draw_errors_m
 from base_station.bench.incident_building import SteelBuilding, draw_building
 from base_station.bench.incident_people import PEOPLE, Truth, live_through
@@ -38,6 +39,7 @@ from base_station.bench.incident_sensors import (
 from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
 from base_station.fusion.port import AirHeight, FuserKind, PlaceFix, Start
+from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.weather import Weather
 from base_station.plan import read_plan
 from shared.geo import pressure_altitude_m
@@ -76,6 +78,7 @@ class FusionReport:
     floor_stated: float  # and the mean of the stated probability
     heading_walked_m: dict[str, float]  # walked with fixes until the heading is solved
     step_us: dict[str, float]  # of a position, and of one with a fix
+    afterwards: smoothing.SmoothingReport
 
 
 def bench_fusion(
@@ -92,6 +95,8 @@ def bench_fusion(
     Console().print(_errors_table(report))
     Console().print(_held_table(report))
     Console().print(_figures_table(report))
+    for table in smoothing.tables_of(report.afterwards):
+        Console().print(table)
     if json_file is not None:
         json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
 
@@ -100,20 +105,28 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
     names = (WITH_PLAN, WITHOUT, BOUND, "fixes alone", "path alone", "switching")
     ways = {name: Scores() for name in names}
     timing, right = Timing(), FloorScores()
+    afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
     walked_m: list[float] = []
     for number in progress_bar(
         range(incidents), description="Incidents", console=Console(stderr=True), transient=True
     ):
         rng = np.random.default_rng(seed + number)
-        for person in draw_incident(rng):
-            for name in (WITH_PLAN, WITHOUT):
-                run = fuse(kind, person, timing, with_plan=name == WITH_PLAN)
+        people = draw_incident(rng)
+        shown_m: dict[str, list[Floats]] = {WITH_PLAN: [], WITHOUT: []}
+        kinds = {name: smoothing.RecordingKind(kind) for name in shown_m}
+        for person in people:
+            for name, recording in kinds.items():
+                run = fuse(recording, person, timing, with_plan=name == WITH_PLAN)
+                shown_m[name].append(run.places_m)
                 ways[name].note(person.truth, run.places_m, run.normalised2)
                 if name == WITH_PLAN:
                     right.note(person.truth, person.building, run.floors, run.surenesses)
             walked_m.append(run.heading_walked_m)
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
+        for name, recording in kinds.items():
+            truths = [person.truth for person in people]
+            afterwards.note(name, truths, shown_m[name], recording.histories, rng)
     return FusionReport(
         fuser=kind.name,
         incidents=incidents,
@@ -135,6 +148,7 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
             "position": float(np.median(timing.steps_ns)) / 1e3,
             "position and fix": float(np.median(timing.fixes_ns)) / 1e3,
         },
+        afterwards=afterwards.report(seed),
     )
 
 

@@ -1,0 +1,39 @@
+"""The smoothing half of ``muster bench fusion``; targets are not asserted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from base_station.bench.fusion import WITHOUT, Timing, draw_incident, fuse
+from base_station.bench.smoothing import RecordingKind, SmoothingScores, tables_of
+from base_station.fusion import FUSERS
+from base_station.fusion.smoother import SMOOTHERS
+
+
+@pytest.fixture(scope="module")
+def scores() -> SmoothingScores:
+    rng = np.random.default_rng(11)
+    people = draw_incident(rng)[:2]
+    kind = RecordingKind(FUSERS[0])
+    shown_m = [fuse(kind, person, Timing(), with_plan=False).places_m for person in people]
+    scores = SmoothingScores(SMOOTHERS[0])
+    scores.note(WITHOUT, [person.truth for person in people], shown_m, kind.histories, rng)
+    return scores
+
+
+def test_recording_changes_nothing(scores: SmoothingScores) -> None:
+    person = draw_incident(np.random.default_rng(11))[0]
+    plain = fuse(FUSERS[0], person, Timing(), with_plan=False)
+    recorded = fuse(RecordingKind(FUSERS[0]), person, Timing(), with_plan=False)
+    assert np.array_equal(plain.places_m, recorded.places_m)
+
+
+def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScores) -> None:
+    report = scores.report(seed=1)
+    live, smoothed = report.live_mean_m[WITHOUT], report.smoothed_mean_m[WITHOUT]
+    assert smoothed["inside"] < live["inside"]
+    assert report.pin_after_m < report.pin_before_m
+    assert 0.5 < report.held_95[WITHOUT]["inside"] <= 1.0
+    assert report.hour_s > 0.0
+    assert len(tables_of(report)) == 2
