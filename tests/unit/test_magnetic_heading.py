@@ -169,3 +169,34 @@ def test_the_row_is_the_derivative_of_the_model(axis):
         step = 1e-5 * np.eye(COMPASS_SIZE)[state]
         slope = (component(here + step) - component(here - step)) / 2e-5
         assert compass["row"][state] == pytest.approx(slope, abs=1e-4), state
+
+
+def test_iron_that_is_put_on_on_the_way_does_no_harm():
+    """A magnetic tool in the boot: what was learned of the iron is wrong from then on."""
+    for seed in SEEDS:
+        description, imu, truth = simulated(seed)
+        mag_ut = imu.mag_ut.copy()
+        mag_ut[len(imu) // 2 :] += [40.0, -25.0, 30.0]
+        rows = run(description, replace(imu, mag_ut=mag_ut))
+        error_rad = rms(heading_errors_rad(rows, truth))
+        assert error_rad < rms(blind_errors_rad(seed)) + np.radians(2.0)
+
+
+def test_the_mount_of_the_sensor_makes_no_difference():
+    """To the shape of the path; its north is the first attitude's."""
+    description, imu, _ = simulated(0)
+    first = imu.part(slice(0, 20_000))
+    turn = np.zeros((3, 3))
+    rotation_matrix(np.array([0.5, -0.5, 0.1, 0.7]), turn)
+    turned = ImuBatch(
+        first.t_ns, first.accel_mps2 @ turn.T, first.gyro_radps @ turn.T, first.mag_ut @ turn.T
+    )
+    one, other = run(description, first), run(description, turned)
+    for axis in (None, 2):
+        ways_m = [
+            np.linalg.norm(rows.position_n_m[:, :2], axis=1)
+            if axis is None
+            else rows.position_n_m[:, axis]
+            for rows in (one, other)
+        ]
+        np.testing.assert_allclose(ways_m[0], ways_m[1], atol=1e-3)
