@@ -225,9 +225,12 @@ class TwoStations:
         self._closing.callback(_end, self.units[unit_id])
 
     def wait_heard(self, station: Station) -> None:
+        """And known as ours."""
+
         def all_heard() -> bool:
             units = station.get("/units")
-            return {u["unit_id"] for u in units if u["last_heard_ms"]} >= self.units.keys()
+            heard = {u["unit_id"] for u in units if u["last_heard_ms"] and u["registered"]}
+            return heard >= self.units.keys()
 
         wait_until(f"all units are heard at {station.name}", all_heard)
 

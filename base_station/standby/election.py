@@ -16,6 +16,7 @@ from shared.clock import NS_PER_S
 Decision = Literal["stay", "follow", "lead", "step back"]
 _GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
 _ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
+_WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
 
 
 class Me(NamedTuple):
@@ -38,6 +39,7 @@ class Election:
         self._other: Beat | None = None
         self._heard_ns = 0
         self._token_there = False
+        self._witness_ns: int | None = None  # since when a unit is heard, and not the other
         self.role: Role = "waiting"
 
     @property
@@ -48,6 +50,7 @@ class Election:
     def hear(self, beat: Beat, now_ns: int) -> None:
         self._other, self._heard_ns = beat, now_ns
         self._token_there = True
+        self._witness_ns = None
 
     def note_token(self, *, there: bool) -> None:
         """Whether the other one's liveliness token is on the bus."""
@@ -60,14 +63,13 @@ class Election:
         patience_ns = self._lease_ns * (1.0 if self._token_there else _GONE_SHARE)
         return now_ns - self._heard_ns < patience_ns
 
-    def is_cut_off(self, me: Me, now_ns: int) -> bool:
+    def is_cut_off(self, now_ns: int) -> bool:
         """This standby hears neither the active station nor a unit, though that one had some."""
-        other = self._other
-        if self.role != "standby" or self.is_there(now_ns) or other is None:
-            return False
-        return other.units > 0 and me.unit_heard_ns <= self._heard_ns + _ON_THE_WAY_NS
+        alone = self.role == "standby" and not self.is_there(now_ns)
+        return alone and not self._has_witness(now_ns)
 
     def decide(self, me: Me, now_ns: int) -> Decision:
+        self._note_witness(me, now_ns)
         other = self._other if self.is_there(now_ns) else None
         if self.role == "active":
             loses = other is not None and other.role == "active" and _claim(other) > _claim_of(me)
@@ -80,9 +82,19 @@ class Election:
 
     def _alone(self, me: Me, now_ns: int) -> Decision:
         if self.role == "standby":
-            return "stay" if self.is_cut_off(me, now_ns) else "lead"
+            return "lead" if self._has_witness(now_ns) else "stay"
         patience_ns = self._lease_ns if me.preferred else 2 * self._lease_ns
         return "lead" if now_ns - self._since_ns >= patience_ns else "stay"
+
+    def _note_witness(self, me: Me, now_ns: int) -> None:
+        if self._witness_ns is None and me.unit_heard_ns > self._heard_ns + _ON_THE_WAY_NS:
+            self._witness_ns = now_ns
+
+    def _has_witness(self, now_ns: int) -> bool:
+        """Whether it is the other station that is gone, and not this one."""
+        if self._other is not None and self._other.units == 0:
+            return True  # there is nobody who could tell
+        return self._witness_ns is not None and now_ns - self._witness_ns >= _WITNESS_NS
 
 
 def _claim(beat: Beat) -> tuple[int, bool, str]:

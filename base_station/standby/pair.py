@@ -281,7 +281,7 @@ class Pair:
                 found.append("There is no standby: what is done now is on this station alone")
             elif self.copy.is_behind:
                 found.append("The standby is behind: what is done now is on this station alone")
-        elif self._election.is_cut_off(self._me(), now_ns):
+        elif self._election.is_cut_off(now_ns):
             assert other is not None
             found.append(
                 f"Neither {other.station} nor any unit is heard: this station is probably cut off. "

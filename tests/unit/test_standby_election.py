@@ -33,8 +33,10 @@ class Site:
         self.now_s += after_s
         return self.election.decide(self.me, self.now_ns)
 
-    def hear_unit(self) -> None:
+    def hear_unit(self, after_s: float) -> None:
+        self.now_s += after_s
         self.me = self.me._replace(unit_heard_ns=self.now_ns)
+        self.decide()
 
     def become(self, role: Role) -> None:
         self.election.role = role
@@ -71,8 +73,7 @@ def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     site = Site()
     site.become("standby")
     site.hear("active")
-    site.now_s += 1.0
-    site.hear_unit()
+    site.hear_unit(after_s=1.0)
     assert site.decide(LEASE_S - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
 
@@ -81,10 +82,9 @@ def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
     site = Site()
     site.become("standby")
     site.hear("active")
-    site.now_s += 1.0
-    site.hear_unit()
+    site.hear_unit(after_s=0.6)
     site.election.note_token(there=False)
-    assert site.decide(LEASE_S / 2 - 1.1) == "stay"
+    assert site.decide(0.9) == "stay"  # the lease of a station without a token is over
     assert site.decide(0.1) == "lead"
 
 
@@ -101,13 +101,23 @@ def test_who_hears_no_unit_though_the_active_station_had_some_is_cut_off_and_wai
     site = Site()
     site.become("standby")
     site.hear("active", units=2)
-    site.now_s += 0.2
-    site.hear_unit()  # that had been said before the cable was cut
+    site.hear_unit(after_s=0.2)  # that had been said before the cable was cut
     assert site.decide(10 * LEASE_S) == "stay"
-    assert site.election.is_cut_off(site.me, site.now_ns)
-    site.hear_unit()  # it has come over to this station's router
-    assert not site.election.is_cut_off(site.me, site.now_ns)
-    assert site.decide() == "lead"
+    assert site.election.is_cut_off(site.now_ns)
+    site.hear_unit(after_s=0.2)  # it has come over to this station's router
+    assert site.decide(0.9) == "stay"
+    assert site.decide(0.1) == "lead"
+
+
+def test_a_unit_that_is_heard_first_when_the_cable_is_whole_again_changes_nothing() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active")
+    assert site.decide(10 * LEASE_S) == "stay"
+    site.hear_unit(after_s=0.2)
+    assert site.decide(0.3) == "stay"
+    site.hear("active")
+    assert site.decide(2.0) == "stay"
 
 
 def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
