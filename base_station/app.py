@@ -145,7 +145,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             ),
         )
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
-        recordings = _beside_messages(bus, folder, steady, closing)
+        recordings = _beside_messages(bus, folder, steady, side, closing)
         backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
@@ -398,10 +398,11 @@ def _replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartRepl
 
 
 def _beside_messages(
-    bus: ZenohBus, folder: DataFolder, clock: Clock, closing: ExitStack
+    bus: ZenohBus, folder: DataFolder, clock: Clock, side: Side, closing: ExitStack
 ) -> RecordingDesk:
     """What units ask for, and are asked for, beside their messages and journals."""
-    closing.callback(bus.serve(clock_key("*"), ClockServer(clock).replies).close)
+    clock_server = ClockServer(clock, lambda: side.leads)
+    closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
     return closing.enter_context(RecordingDesk(ask_over(bus), folder.recordings, clock))
 
 
