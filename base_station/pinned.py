@@ -2,7 +2,7 @@
 
 The first fuser goes on as if there were no pin, so that taking the last one away leaves exactly
 what would have been without.  The second begins where the solution of the whole past ends, again
-at every change of a pin and then every so many points of the path.
+at every change of a pin.
 """
 
 from __future__ import annotations
@@ -10,13 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 
 from base_station.floor_grid import FloorGrid
-from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Fuser, FuserKind
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
 from base_station.pinning import Repinned, solve_pins, with_partners
-
-SOLVE_POINTS = 64  # of the path until it is solved again
 
 
 class PinnedUnits:
@@ -41,12 +38,6 @@ class PinnedUnits:
 
     def all(self) -> Iterable[Fuser]:
         return self._fusers.values()
-
-    def is_due(self, unit_id: str, history: PathHistory) -> bool:
-        """Whether the path has gone on so far that it should be solved again."""
-        if history.awaited_ns is not None and (history.end_ns or 0) >= history.awaited_ns:
-            return True
-        return unit_id in self._fusers and history.count - history.solved_count >= SOLVE_POINTS
 
     def solve(
         self, state: StationState, unit_ids: Iterable[str], plain: Callable[[str], Fuser]

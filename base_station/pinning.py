@@ -225,7 +225,6 @@ def _await(history: PathHistory, pins: Sequence[Pin], waiting: Mapping[str, str]
     end_ns = history.end_ns or 0
     times = [pin.t_ns for pin in pins if pin.pin_id in waiting and pin.t_ns > end_ns]
     history.awaited_ns = min(times, default=None)
-    history.solved_count = history.count
 
 
 def _evidence(history: PathHistory, places: Sequence[PlaceSeen]) -> UnitEvidence:

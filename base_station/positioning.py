@@ -86,7 +86,7 @@ class Positioning:
             pinned.advance(position)
             if air is not None:
                 pinned.feel(air)
-        if self._pinned.is_due(unit.unit_id, history):
+        if history.is_awaited:
             return self.solve_pins(state, [unit.unit_id])
         return []
 

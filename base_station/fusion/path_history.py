@@ -109,8 +109,6 @@ class PathHistory(msgspec.Struct):
     packed_fixes: bytes = b""
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
-    count: int = 0  # points ever begun
-    solved_count: int = 0  # of these, when the path was last solved with its pins
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
 
     @property
@@ -123,6 +121,11 @@ class PathHistory(msgspec.Struct):
     def end_ns(self) -> int | None:
         return self.points[-1].t_ns if self.points else None
 
+    @property
+    def is_awaited(self) -> bool:
+        """The path has come to where a pin waits for it."""
+        return self.awaited_ns is not None and (self.end_ns or 0) >= self.awaited_ns
+
     def note(self, position: Position, t_ns: int, jumped: bool) -> None:
         """The own path went on; ``jumped``: not from where it was."""
         boot_id = position.header.boot_id
@@ -133,7 +136,6 @@ class PathHistory(msgspec.Struct):
         point.flags |= RESTART * restarted | BREAK * (jumped and not restarted)
         if not self.points:
             self.points.append(point)
-            self.count += 1
             return
         tip = self.points[-1]
         for name in _SHOWN:
@@ -257,7 +259,6 @@ class PathHistory(msgspec.Struct):
 
     def _append(self, point: Point) -> None:
         self.points.append(point)
-        self.count += 1
         if len(self.points) >= 2 * CHUNK:
             self.packed += _pack(self.points[:CHUNK]).tobytes()
             del self.points[:CHUNK]

@@ -66,9 +66,9 @@ class Past:
         return sum(apart) / len(apart)
 
 
-@pytest.fixture
-def past(tmp_path: Path, clock: ManualClock) -> Iterator[Past]:
-    past = Past(tmp_path, clock)
+@pytest.fixture(scope="module")
+def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Past]:
+    past = Past(tmp_path_factory.mktemp("past"), ManualClock())
     yield past
     past.store.close()
 

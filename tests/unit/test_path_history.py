@@ -1,0 +1,141 @@
+"""The thinned path of a unit: what is kept, where it breaks, what comes late, how it is saved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.fusion.path_history import (
+    BREAK,
+    DOUBTFUL,
+    MOST_POINTS,
+    RESTART,
+    PathHistory,
+)
+from base_station.fusion.port import PlaceFix, Start
+from shared.clock import NS_PER_S
+from shared.messages import Header, Position
+from shared.quality import Quality
+
+MakePosition = Callable[[], Position]
+
+
+@pytest.fixture
+def at(make_position: MakePosition) -> Callable[..., Position]:
+    def make(t_s: float, north_m: float, boot_id: int = 1, **changes: object) -> Position:
+        header = Header("FF-01", boot_id, 1, round(t_s * NS_PER_S))
+        changes = {"north_m": north_m, "east_m": 0.0, "quality": Quality.GOOD} | changes
+        return msgspec.structs.replace(make_position(), header=header, **changes)
+
+    return make
+
+
+def walked(at: Callable[..., Position], seconds: int, mps: float = 1.0) -> PathHistory:
+    history = PathHistory()
+    for tenth in range(seconds * 5):
+        history.note(at(tenth / 5, mps * tenth / 5), round(tenth / 5 * NS_PER_S), jumped=False)
+    return history
+
+
+def test_a_point_a_metre_and_the_newest_place(at: Callable[..., Position]) -> None:
+    arrays = walked(at, 100).arrays()
+    assert 90 <= len(arrays) <= 110
+    assert arrays.own_m[-1, 0] == pytest.approx(99.8)
+    assert arrays.t_ns[-1] == round(99.8 * NS_PER_S)
+    assert arrays.moving_s.sum() == pytest.approx(99.8)
+    assert (np.diff(arrays.t_ns) > 0).all()
+
+
+def test_somebody_at_rest_leaves_a_point_now_and_then(at: Callable[..., Position]) -> None:
+    arrays = walked(at, 120, mps=0.0).arrays()
+    assert 10 <= len(arrays) <= 15
+    assert arrays.moving_s.sum() == 0.0
+
+
+def test_breaks_and_doubts_stand_where_they_were(at: Callable[..., Position]) -> None:
+    history = PathHistory()
+    for t_s, north_m, boot_id, jumped in (
+        (0.0, 0.0, 1, False),
+        (1.0, 0.2, 1, False),
+        (2.0, 50.0, 1, True),
+        (3.0, 0.0, 2, False),
+    ):
+        history.note(at(t_s, north_m, boot_id), round(t_s * NS_PER_S), jumped)
+    history.note(at(4.0, 0.1, 2, quality=Quality.DEGRADED), 4 * NS_PER_S, jumped=False)
+    flags = history.arrays().flags.tolist()
+    assert flags.count(BREAK) == 1
+    assert flags.count(RESTART) == 1
+    assert flags[-1] == DOUBTFUL
+
+
+def test_it_is_written_out_and_read_back_the_same(at: Callable[..., Position]) -> None:
+    history = walked(at, 600)
+    history.fix(PlaceFix(0, 1.5, -2.5, 0.0, 3.0, None), 7 * NS_PER_S)
+    history.begin_with(Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2))
+    again = msgspec.msgpack.decode(msgspec.msgpack.encode(history), type=PathHistory)
+    assert again == history
+    assert len(history.packed) > 0
+    one, two = again.arrays(), history.arrays()
+    assert np.array_equal(one.own_m, two.own_m)
+    assert np.array_equal(one.fix_m, two.fix_m)
+
+
+def test_a_long_path_is_thinned_where_it_is_old(at: Callable[..., Position]) -> None:
+    history = PathHistory()
+    for second in range(MOST_POINTS + 4000):
+        history.note(at(float(second), 1.1 * second), second * NS_PER_S, jumped=False)
+    arrays = history.arrays()
+    assert len(arrays) <= MOST_POINTS + 300
+    assert arrays.t_ns[0] == 0
+    assert arrays.t_ns[-1] == (MOST_POINTS + 3999) * NS_PER_S
+    assert arrays.moving_s.sum() == pytest.approx(MOST_POINTS + 3999)
+    early, late = np.diff(arrays.t_ns[:100]).mean(), np.diff(arrays.t_ns[-100:]).mean()
+    assert early > 1.5 * late
+
+
+def test_fixes_close_by_are_one(at: Callable[..., Position]) -> None:
+    history = walked(at, 10)
+    for tenth in range(50):
+        history.fix(PlaceFix(0, 1.0, 2.0, 0.0, 3.0, None), round(tenth / 5 * NS_PER_S))
+    assert len(history.arrays().fix_t_ns) == 5
+
+
+def test_what_comes_late_fills_a_gap(at: Callable[..., Position]) -> None:
+    history = PathHistory()
+    for t_s in (0, 1, 2, 22, 23):
+        history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
+    before = history.arrays()
+    history.fill(at(12.0, 12.0), 12 * NS_PER_S)
+    history.fill(at(12.5, 12.5), round(12.5 * NS_PER_S))
+    history.fill(at(15.0, 15.0, boot_id=9), 15 * NS_PER_S)
+    after = history.arrays()
+    assert len(after) == len(before) + 1
+    assert 12.0 in after.own_m[:, 0].tolist()
+    assert after.moving_s.sum() == pytest.approx(before.moving_s.sum())
+
+
+def test_a_moved_frame_moves_what_is_of_the_frame_only(at: Callable[..., Position]) -> None:
+    history = walked(at, 300)
+    history.fix(PlaceFix(0, 10.0, 0.0, 0.0, 3.0, None), NS_PER_S)
+    history.begin_with(Start(10.0, 0.0, 1.0, 0.0, 0.5, 0.2))
+    before = history.arrays()
+    history.reframe(math.pi / 2.0, 1.0, 2.0, 3.0)
+    after = history.arrays()
+    assert np.array_equal(after.own_m, before.own_m)
+    assert after.fix_m[0].tolist() == pytest.approx([1.0, 12.0], abs=1e-3)
+    assert after.down_m[0] == pytest.approx(before.down_m[0] + 3.0)
+    assert history.start is not None
+    assert (history.start.north_m, history.start.east_m) == pytest.approx((1.0, 12.0))
+
+
+def test_trimmed_it_begins_later(at: Callable[..., Position]) -> None:
+    history = walked(at, 400)
+    history.trim(200 * NS_PER_S)
+    assert history.begin_ns == pytest.approx(200 * NS_PER_S, abs=2 * NS_PER_S)
+    history.trim(10**18)
+    assert history.begin_ns is None
+    assert len(history.arrays()) == 0
