@@ -17,6 +17,7 @@ from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
+from edge.knocker import Knocker
 from edge.last_words import answers_before, mayday_before
 from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
@@ -199,6 +200,7 @@ class ZenohStation:
 
     def __init__(self, member: Membership) -> None:
         self._member = member
+        self._knocker = Knocker(member.connect)
 
     def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
@@ -212,6 +214,9 @@ class ZenohStation:
         from shared.bus_zenoh import ClientEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
         return ZenohBus(ClientEndpoint(self._member.connect, self._member.identity, _PATIENCE_S))
+
+    def is_reachable(self, timeout_s: float) -> bool:
+        return self._knocker.wait(timeout_s)
 
     def why_no_link(self) -> str:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load

@@ -21,6 +21,7 @@ logger = logging.getLogger(__name__)
 _RETRY_S = 1.0
 _LOOK_EVERY_S = 0.5
 _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
+_LOST_LOOKS = 2  # without the link that was there: knock until the station is back
 _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 
 
@@ -29,6 +30,10 @@ class OtherEnd(Protocol):
 
     def open_bus(self) -> Bus:
         """Raises BusError when it cannot be opened."""
+        ...
+
+    def is_reachable(self, timeout_s: float) -> bool:
+        """True as soon as somebody takes connections there; False when the time is over."""
         ...
 
     def why_no_link(self) -> str:
@@ -58,6 +63,7 @@ class Link:
         self._failure_told = False
         self._heard_told: bool | None = None
         self._looks_unheard = 0
+        self._away = False  # the link was lost: it makes no sense to try until it may be back
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
 
@@ -93,6 +99,8 @@ class Link:
                 self._changed.wait_for(lambda: self._wanted_up or self._ended)
                 if self._ended:
                     return
+            if self._away and not self._is_reachable():
+                continue
             if not self._hold():
                 with self._changed:
                     self._changed.wait_for(lambda: self._ended, timeout=_RETRY_S)
@@ -116,28 +124,45 @@ class Link:
         return True
 
     def _watch(self, bus: Bus) -> None:
-        """Until the link is no longer wanted, or has been gone for so long that it may be stuck."""
+        """Until the link is no longer wanted, is lost, or did not come about in good time."""
         looks_without = 0
-        while looks_without * _LOOK_EVERY_S < _REOPEN_AFTER_S:
-            looks_without = 0 if bus.is_linked() else looks_without + 1
-            self._tell(bus, looks_without)
+        was_linked = False
+        most_looks = _REOPEN_AFTER_S / _LOOK_EVERY_S
+        while looks_without < (_LOST_LOOKS if was_linked else most_looks):
+            linked = bus.is_linked()
+            was_linked = was_linked or linked
+            looks_without = 0 if linked else looks_without + 1
+            self._tell(bus if linked else None)
             with self._changed:
                 if self._changed.wait_for(
                     lambda: self._ended or not self._wanted_up, timeout=_LOOK_EVERY_S
                 ):
                     return
+        self._away = True
         logger.debug("opening the bus anew")
 
-    def _tell(self, bus: Bus, looks_without: int) -> None:
-        """Say once when the station comes, and once when it goes."""
-        heard = looks_without == 0 and bus.is_heard(HEARTBEAT.key(self._unit_id))
+    def _is_reachable(self) -> bool:
+        """Knock at the station for as long as a look takes."""
+        self._away = not self._station.is_reachable(_LOOK_EVERY_S)
+        if self._away:
+            self._tell(None)
+        return not self._away
+
+    def _tell(self, bus: Bus | None) -> None:
+        """Say once when the station comes, and once when it goes; None: there is no link."""
+        heard = bus is not None and bus.is_heard(HEARTBEAT.key(self._unit_id))
         self._looks_unheard = 0 if heard else self._looks_unheard + 1
         if heard and self._heard_told is not True:
             self._heard_told = True
             logger.info("linked to the station")
         elif self._looks_unheard >= _LOOKS_UNTIL_TOLD and self._heard_told is not False:
             self._heard_told = False
-            why = self._station.why_no_link() if looks_without else "no station listens there"
+            # Finding out takes seconds, in which the link may be back.
+            Thread(target=self._tell_why, args=(bus is not None,), daemon=True).start()
+
+    def _tell_why(self, is_linked: bool) -> None:
+        why = "no station listens there" if is_linked else self._station.why_no_link()
+        if self._heard_told is False:
             logger.warning("no link: %s; messages are kept and sent later", why)
 
     def _declare(self, bus: Bus, declared: ExitStack) -> None:

@@ -39,6 +39,9 @@ class Nobody:
     def open_bus(self) -> Bus:
         return MemoryRouter().attach_unit()
 
+    def is_reachable(self, timeout_s: float) -> bool:
+        return True
+
     def why_no_link(self) -> str:
         return "nobody is there"
 

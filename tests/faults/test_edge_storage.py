@@ -40,6 +40,9 @@ class Station:
     def open_bus(self) -> Bus:
         return self.router.attach_unit()
 
+    def is_reachable(self, timeout_s: float) -> bool:
+        return True
+
     def why_no_link(self) -> str:
         return "nobody is there"
 

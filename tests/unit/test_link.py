@@ -42,15 +42,22 @@ def station() -> Station:
 class OtherEnd:
     def __init__(self, open_bus) -> None:
         self.open_bus = open_bus
+        self.reachable = threading.Event()
+        self.reachable.set()
+        self.knocked = 0
+
+    def is_reachable(self, timeout_s: float) -> bool:
+        self.knocked += 1
+        return self.reachable.wait(timeout_s)
 
     def why_no_link(self) -> str:
         return "nobody is there"
 
 
-def make_link(open_bus, commands) -> Link:
+def make_link(open_bus, commands, other_end: OtherEnd | None = None) -> Link:
     return Link(
         "u1",
-        OtherEnd(open_bus),
+        other_end or OtherEnd(open_bus),
         lambda _, payload: commands.append(payload),
         [("muster/v1/u1/journal/**", lambda key, parameters, payload: [b"journal"])],
     )
@@ -135,6 +142,26 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
         link.close()
     assert len(opened) == 4
     assert caplog.text.count("no link") == 1
+
+
+def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, monkeypatch):
+    monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.005)
+    opened = []
+
+    def open_bus():
+        opened.append(station.router.attach_unit())
+        return opened[-1]
+
+    other_end = OtherEnd(open_bus)
+    link = make_link(open_bus, [], other_end)
+    wait_until(lambda: station.alive == [True])
+    other_end.reachable.clear()
+    opened[0].link_down()
+    wait_until(lambda: other_end.knocked > 3)
+    assert len(opened) == 1, "no bus is opened towards nobody"
+    other_end.reachable.set()
+    wait_until(lambda: station.alive == [True, False, True])
+    link.close()
 
 
 def test_publishing_while_the_link_closes_is_no_error(station):

@@ -1,0 +1,79 @@
+"""Tells at once when a station that was out of reach takes connections again.
+
+A connection that is being made while the radio is away sends its first packet again after 1, 2, 4
+and more seconds, so it notices the radio's return late.  Here a new one is begun several times a
+second, and the first that comes about says that it is worth opening the bus.
+"""
+
+from __future__ import annotations
+
+import errno
+import select
+import socket
+import time
+from collections.abc import Sequence
+
+_EVERY_S = 0.3
+_AT_ONCE = 8  # attempts under way; the oldest is given up first
+
+
+class Knocker:
+    """For ``proto/HOST:PORT`` endpoints; one thread, and ``close`` it."""
+
+    def __init__(self, endpoints: Sequence[str]) -> None:
+        self._places = [_host_and_port(endpoint) for endpoint in endpoints]
+        self._knocks: list[socket.socket] = []
+        self._next_s = 0.0
+
+    def wait(self, timeout_s: float) -> bool:
+        """True as soon as one of them takes a connection; False when the time is over."""
+        end_s = time.monotonic() + timeout_s
+        while (now_s := time.monotonic()) < end_s:
+            if now_s >= self._next_s:
+                self._next_s = now_s + _EVERY_S
+                self._knock()
+            if self._is_open(min(end_s, self._next_s) - now_s):
+                self.close()
+                return True
+        return False
+
+    def close(self) -> None:
+        for knock in self._knocks:
+            knock.close()
+        self._knocks.clear()
+        self._next_s = 0.0
+
+    def _knock(self) -> None:
+        for host, port in self._places:
+            try:
+                family, kind, protocol, _, address = socket.getaddrinfo(
+                    host, port, type=socket.SOCK_STREAM
+                )[0]
+                knock = socket.socket(family, kind, protocol)
+            except OSError:
+                continue  # no such name, for now
+            knock.setblocking(False)
+            if knock.connect_ex(address) in (0, errno.EINPROGRESS):
+                self._knocks.append(knock)
+            else:
+                knock.close()  # no network at all
+        for oldest in self._knocks[: -_AT_ONCE * len(self._places)]:
+            oldest.close()
+            self._knocks.remove(oldest)
+
+    def _is_open(self, timeout_s: float) -> bool:
+        if not self._knocks:
+            time.sleep(max(timeout_s, 0.0))
+            return False
+        answered = select.select([], self._knocks, [], max(timeout_s, 0.0))[1]
+        for knock in answered:
+            if knock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
+                return True
+            knock.close()  # refused: the machine is there, the station is not
+            self._knocks.remove(knock)
+        return False
+
+
+def _host_and_port(endpoint: str) -> tuple[str, int]:
+    host, _, port = endpoint.partition("/")[2].rpartition(":")
+    return host.strip("[]"), int(port)

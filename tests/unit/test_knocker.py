@@ -1,0 +1,75 @@
+"""It is known at once when a station takes connections again."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+
+import pytest
+
+from edge.knocker import Knocker
+from tests.station_command import free_port
+
+
+@pytest.fixture
+def port() -> int:
+    return free_port()
+
+
+def listen(port: int) -> socket.socket:
+    listening = socket.create_server(("127.0.0.1", port))
+    listening.listen()
+    return listening
+
+
+@pytest.mark.parametrize("proto", ["tcp", "tls"])
+def test_who_listens_is_there(port: int, proto: str) -> None:
+    with listen(port):
+        assert Knocker([f"{proto}/127.0.0.1:{port}"]).wait(5.0)
+
+
+def test_a_machine_without_a_station_is_not(port: int) -> None:
+    knocker = Knocker([f"tcp/127.0.0.1:{port}"])
+    assert not knocker.wait(0.5)
+    knocker.close()
+
+
+def test_a_name_that_nobody_knows_is_not_there() -> None:
+    assert not Knocker(["tls/station.invalid:7447"]).wait(0.2)
+
+
+def test_one_of_two_stations_is_enough(port: int) -> None:
+    with listen(port):
+        assert Knocker([f"tcp/127.0.0.1:{free_port()}", f"tcp/127.0.0.1:{port}"]).wait(5.0)
+
+
+def test_an_ipv6_station_is_found() -> None:
+    try:
+        listening = socket.create_server(("::1", 0), family=socket.AF_INET6)
+    except OSError:
+        pytest.skip("this machine has no IPv6")
+    with listening:
+        assert Knocker([f"tcp/[::1]:{listening.getsockname()[1]}"]).wait(5.0)
+
+
+def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> None:
+    knocker = Knocker([f"tcp/127.0.0.1:{port}"])
+    stations: list[socket.socket] = []
+    later = threading.Timer(0.5, lambda: stations.append(listen(port)))
+    later.start()
+    began_s = time.monotonic()
+    assert knocker.wait(30.0)
+    assert time.monotonic() - began_s < 15.0
+    later.join()
+    stations[0].close()
+
+
+def test_many_looks_hold_no_more_than_a_few_connections() -> None:
+    """Where packets are thrown away, attempts pile up and the oldest go."""
+    knocker = Knocker(["tcp/192.0.2.1:7447"])  # nobody has this address
+    for _ in range(40):
+        knocker._knock()
+    assert len(knocker._knocks) <= 8
+    knocker.close()
+    assert knocker._knocks == []
