@@ -135,6 +135,7 @@ class Scope(StrEnum):
     RECORDINGS = "recordings"
     REPLAYS = "replays"
     SITE = "site"
+    STANDBY = "standby"
     TOKENS = "tokens"
     TRACKS = "tracks"
     UNITS = "units"
