@@ -6,7 +6,7 @@ import asyncio
 import logging
 import secrets
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -52,6 +52,7 @@ from base_station.rebuild import project_log
 from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import ask_over
+from base_station.recovering import Watch, recovering
 from base_station.replay import ReplaySession, Window
 from base_station.router import station_endpoint
 from base_station.router_process import RouterProcess
@@ -174,6 +175,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
                 say=lambda orders: downlink.report(orders if side.leads else ()),
             ),
             side.begin,
+            recovering(recorder.segments(), listening, config.http, announce),
         )
         gate = side.gate_to(drive)
         closing.callback(drive.stop)
@@ -356,13 +358,15 @@ def _start_drive(
     log: LogFeed,
     surroundings: Surroundings,
     begin: Callable[[tuple[int, int], StationState], None],
+    recovery: AbstractContextManager[Watch],
 ) -> StationDrive:
     """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
     saved = surroundings.checkpoints.latest()
     pipeline = _pipeline(saved.pipeline if saved else None)
     drive = StationDrive(pipeline, surroundings)
     place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
-    stepped = drive.rebuild(log.records(place[0]), place)
+    with recovery as watched:
+        stepped = drive.rebuild(watched(log.records(place[0])), place)
     _log.info("live state from the log: %d events after the checkpoint", stepped)
     begin(drive.place, pipeline.state)
     drive.start()

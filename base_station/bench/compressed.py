@@ -11,7 +11,7 @@ import asyncio
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from base_station.alarms import ALARMS
@@ -191,7 +191,9 @@ def _watching(hub: Hub, drive: StationDrive, consoles: int) -> Iterator[list[int
         loop.run_forever()
         for task in watching:
             task.cancel()
-        loop.run_until_complete(asyncio.gather(*watching, return_exceptions=True))
+        for task in watching:
+            with suppress(asyncio.CancelledError):
+                loop.run_until_complete(task)
 
     thread = threading.Thread(target=run, name=_CONSOLES, daemon=True)
     thread.start()

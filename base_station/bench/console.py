@@ -86,6 +86,7 @@ class Console:
         self.bytes_received = 0
         self.snapshots = 0
         self.gaps = 0
+        self.units_shown = 0  # in the first snapshot
         self._seq: int | None = None
         self._ready = Event()
         self._socket: ClientConnection = closing.enter_context(
@@ -120,6 +121,7 @@ class Console:
     def _note(self, message: _MessageSeen, seen_ns: int) -> None:
         if message.type == "snapshot":
             self.snapshots += 1
+            self.units_shown = self.units_shown or len(message.units)
             self._ready.set()
         elif self._seq is not None and message.seq != self._seq + 1:
             self.gaps += 1

@@ -45,24 +45,24 @@ class Recorded(NamedTuple):
 
 
 class StationProcess:
-    def __init__(self, data: Path, process: subprocess.Popen[str]) -> None:
+    def __init__(self, data: Path, process: subprocess.Popen[str], patience_s: float) -> None:
         self._data = DataFolder(data)
         self._process = process
         self._usage = psutil.Process(process.pid)
         self._cpu_s = 0.0
         self._since = 0.0
-        self._url = _ready_url(process, data / _SAID)
+        self._url = _ready_url(process, data / _SAID, patience_s)
 
     @cached_property
     def api(self) -> Api:
         return Api(self._url, *_first_login(self._data.first_login))
 
     def begin_measuring(self) -> None:
-        self._cpu_s, self._since = self._cpu_now_s(), time.perf_counter()
+        self._cpu_s, self._since = self.cpu_s(), time.perf_counter()
 
     def cpu_share(self) -> float:
         """Of one core, since ``begin_measuring``, children included."""
-        return (self._cpu_now_s() - self._cpu_s) / (time.perf_counter() - self._since)
+        return (self.cpu_s() - self._cpu_s) / (time.perf_counter() - self._since)
 
     def memory_mb(self) -> float:
         processes = (self._usage, *self._usage.children(recursive=True))
@@ -94,7 +94,8 @@ class StationProcess:
         repeated = sum(messages.values()) - len(messages)
         return Recorded(len(messages), repeated, len(damage), len(seconds), int(points))
 
-    def _cpu_now_s(self) -> float:
+    def cpu_s(self) -> float:
+        """Spent since it began, children included."""
         processes = (self._usage, *self._usage.children(recursive=True))
         return sum(sum(process.cpu_times()[:2]) for process in processes)
 
@@ -116,7 +117,10 @@ class Membership:
 
 @contextmanager
 def station_process(
-    data: Path, bus_address: str, inside: Sequence[str] = ()
+    data: Path,
+    bus_address: str,
+    inside: Sequence[str] = (),
+    patience_s: float = _START_TIMEOUT_S,
 ) -> Iterator[StationProcess]:
     """Runs ``muster base serve``; ended hard where ``stop`` was not called.
 
@@ -135,7 +139,7 @@ def station_process(
         ) as process,
     ):
         try:
-            yield StationProcess(data, process)
+            yield StationProcess(data, process, patience_s)
         finally:
             if process.poll() is None:
                 process.kill()
@@ -148,9 +152,9 @@ def free_port() -> int:
         return port
 
 
-def _ready_url(process: subprocess.Popen[str], said: Path) -> str:
+def _ready_url(process: subprocess.Popen[str], said: Path, patience_s: float) -> str:
     assert process.stdout is not None
-    deadline = time.monotonic() + _START_TIMEOUT_S
+    deadline = time.monotonic() + patience_s
     for line in process.stdout:
         if "ready http" in line:
             return line.split("ready ", 1)[1].strip()
