@@ -1,0 +1,242 @@
+"""Random and mutated payloads on every channel stop neither the station nor an agent.
+
+The suite says some thousands; ``MUSTER_MUTATIONS=1000000`` says a million.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import threading
+from contextlib import closing, suppress
+from pathlib import Path
+
+from base_station.api.wire import HealthView
+from base_station.checkpoints import Checkpoints
+from base_station.drive import StationDrive
+from base_station.events import DECODER_FAILED, Rejected, event_of
+from base_station.playback import compare
+from base_station.surroundings import Record, Surroundings
+from base_station.views import StationFacts
+from edge.commands import CommandDesk
+from edge.journal_server import JournalServer
+from edge.spool import Spool
+from edge.station_clock import StationClock
+from shared.channels import (
+    CHANNELS,
+    COMMAND,
+    IMU,
+    POSITION,
+    Channel,
+    Direction,
+    backfilled_key,
+    parse_key,
+    tracker_id,
+)
+from shared.clock import ManualClock
+from shared.codec import decode, encode
+from shared.envelope import Stamper
+from shared.errors import UnknownChannelError, WireError
+from shared.messages import (
+    Command,
+    JournalBoot,
+    JournalChunk,
+    JournalEntry,
+    JournalIndex,
+    RawImu,
+)
+from shared.messages.clock import ClockAnswer
+from shared.messages.station import RegisterUnit
+from tests.live_station import PATIENCE_S, Screen, Store, make_pipeline
+from tests.mutated import mutated, random_payload
+
+COUNT = int(os.environ.get("MUSTER_MUTATIONS", "6000"))
+KEPT_FOR_REPLAY = 20_000
+AT_ONCE = 200
+QUIET_TURNS = 60  # at the end: 3 s in which health is told
+UNITS = ("FF-01", "FF-02", "stranger")
+
+
+class Said:
+    """A ``Feed`` of mutated messages, with time going on."""
+
+    follows = False
+
+    def __init__(self, clock: ManualClock, seed: int, count: int) -> None:
+        self._clock = clock
+        self._chance = random.Random(seed)
+        self._left = count
+        self._quiet = 0
+        self.done = threading.Event()
+        self.left_alone = 0  # of no channel that is kept, or the station's own
+
+    def take(self, timeout_s: float) -> list[Record]:
+        self._clock.advance(0.05)
+        if self._left == 0:
+            self._quiet += 1
+            if self._quiet > QUIET_TURNS:
+                self.done.set()
+            return []
+        count = min(self._left, AT_ONCE)
+        self._left -= count
+        return [self._record() for _ in range(count)]
+
+    def wake(self) -> None:
+        pass
+
+    def _record(self) -> Record:
+        chance = self._chance
+        channel, unit_id = chance.choice(CHANNELS), chance.choice(UNITS)
+        payload = mutated(chance, random_payload(chance, channel, unit_id, chance.randrange(10**6)))
+        key = self._key(channel, unit_id)
+        self.left_alone += is_left_alone(key)
+        return self._clock.utc_ns(), key, payload
+
+    def _key(self, channel: Channel, unit_id: str) -> str:
+        match self._chance.randrange(8):
+            case 0:
+                return backfilled_key(unit_id, channel.suffix)
+            case 1:
+                return channel.key(tracker_id(unit_id))
+            case 2:
+                return self._chance.choice(CHANNELS).key(self._chance.choice(UNITS))
+            case 3:
+                return f"muster/v1/{unit_id}/up/{self._chance.randrange(10**6)}"
+            case _:
+                return channel.key(unit_id)
+
+
+class Written:
+    """A ``Log`` that counts, and keeps the first records."""
+
+    problem = ""
+    is_behind = False
+
+    def __init__(self) -> None:
+        self.from_bus = 0
+        self.unreadable = 0
+        self.records: list[Record] = []
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        if len(self.records) < KEPT_FOR_REPLAY:
+            self.records.append((t_ns, key, payload))
+        if not key.startswith(("foxglove/", "muster/v1/station/")):
+            self.from_bus += 1
+            self.unreadable += isinstance(event_of(t_ns, key, payload), Rejected)
+        return True
+
+    def flush(self) -> bool:
+        return True
+
+
+def is_left_alone(key: str) -> bool:
+    try:
+        channel = parse_key(key)[1]
+    except UnknownChannelError:
+        return False
+    return channel.direction is Direction.STATION or not channel.logged
+
+
+def test_the_station_keeps_counts_and_shows_whatever_is_said(tmp_path: Path) -> None:
+    clock, log, screen = ManualClock(), Written(), Screen()
+    feed, pipeline = Said(clock, 4, COUNT), make_pipeline()
+    drive = StationDrive(
+        pipeline,
+        Surroundings(
+            feed=feed,
+            log=log,
+            live=screen,
+            projection=Store(),
+            checkpoints=Checkpoints(tmp_path),
+            photo_urls=lambda _: None,
+            facts=StationFacts,
+            report=lambda _: None,
+            say=lambda _: None,
+            clock=clock,
+            boot_id=1,
+        ),
+    )
+    registered = drive.submit("chief", RegisterUnit("FF-01", "one"))
+    drive.start()
+    assert registered.result(PATIENCE_S).refused is None
+    feed.done.wait(PATIENCE_S + COUNT / 500)
+    drive.stop()
+
+    assert feed.done.is_set()
+    state = pipeline.state
+    own_mistakes = {"station|drive", "station|pipeline"} & set(state.alarms)
+    assert not own_mistakes, [state.alarms[name].text for name in own_mistakes]
+    assert DECODER_FAILED not in state.counts.last_undecodable
+    health = last_health(screen)
+    assert log.from_bus + health.repeated + feed.left_alone == COUNT
+    assert health.undecodable == state.counts.undecodable == log.unreadable > 0
+    if COUNT <= KEPT_FOR_REPLAY / 3:
+        assert list(compare(log.records, make_pipeline())) == []
+
+
+def last_health(screen: Screen) -> HealthView:
+    return next(delta.health for delta in reversed(screen.deltas) if delta.health is not None)
+
+
+def test_an_agent_answers_whatever_command_it_can_read_and_counts_the_rest() -> None:
+    chance = random.Random(5)
+    desk = CommandDesk(Stamper("FF-01", 1, ManualClock()), lambda _: None)
+    answered = unreadable = 0
+    for number in range(COUNT // 4):
+        payload = mutated(chance, random_payload(chance, COMMAND, "station", number))
+        try:
+            command = decode(COMMAND, payload)
+        except WireError:
+            unreadable += 1
+            continue
+        assert isinstance(command, Command)
+        assert encode(desk.take(command))
+        answered += 1
+    assert answered > 0
+    assert unreadable > 0
+
+
+def test_an_agent_that_tracks_for_another_gets_finite_samples_or_none() -> None:
+    chance = random.Random(6)
+    for number in range(COUNT // 8):
+        payload = mutated(chance, random_payload(chance, IMU, "FF-01", number))
+        try:
+            raw = decode(IMU, payload)
+        except WireError:
+            continue
+        assert isinstance(raw, RawImu)
+
+
+def test_no_answer_breaks_the_clock() -> None:
+    chance, machine = random.Random(7), ManualClock()
+    clock = StationClock(machine)
+    good = ClockAnswer(10**18, 10**18 + 1).to_bytes()
+    for _ in range(COUNT // 8):
+        machine.advance(60.0)
+        clock.turn(lambda take: take(mutated(chance, good)))
+        estimate = clock.estimate()
+        assert estimate is None or estimate.std_s >= 0.0
+
+
+def test_no_question_breaks_the_journal(tmp_path: Path) -> None:
+    chance = random.Random(8)
+    with closing(Spool(tmp_path / "journal.sqlite", lambda: 1, 0, 10**7)) as spool:
+        server = JournalServer("FF-01", spool)
+        good = b"epoch=1;from=1;to=9;max=10;bytes=100"
+        for _ in range(COUNT // 20):
+            what = chance.choice(("index", "range", "urgent", "acknowledge", "what?"))
+            parameters = mutated(chance, good).decode("latin-1")
+            list(server.replies(f"muster/v1/FF-01/journal/{what}", parameters, b""))
+        [index] = server.replies("muster/v1/FF-01/journal/index", "", b"")
+        assert JournalIndex.from_bytes(index).boots == ()
+
+
+def test_no_reply_breaks_what_is_fetched() -> None:
+    chance = random.Random(9)
+    entries = tuple(JournalEntry(seq, POSITION.suffix, b"x" * 20) for seq in range(1, 4))
+    chunk = JournalChunk(7, 1, 3, entries).to_bytes()
+    index = JournalIndex((JournalBoot(7, 1, 3, 0, 0),)).to_bytes()
+    for _ in range(COUNT // 4):
+        for kind, good in ((JournalChunk, chunk), (JournalIndex, index)):
+            with suppress(WireError):
+                kind.from_bytes(mutated(chance, good))
