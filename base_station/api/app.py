@@ -50,7 +50,12 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
     )
     app.state.services = services
     app.state.login_throttle = LoginThrottle()
-    app.add_middleware(SecurityHeaders, secure=services.secure)
+    standing = services.standing
+    app.add_middleware(
+        SecurityHeaders,
+        secure=services.secure,
+        other_console=lambda: "" if standing is None else standing.view().other_url,
+    )
     handle_problems(app)
     for router in ROUTERS:
         app.include_router(

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
+
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 # The console needs no inline script and nothing from elsewhere; photos are drawn from memory
 # while they are chosen (blob:).
-CONTENT_POLICY = (
-    "default-src 'self'; img-src 'self' blob:; object-src 'none'; base-uri 'none'; "
-    "form-action 'self'; frame-ancestors 'none'"
+_CONTENT_POLICY = (
+    "default-src 'self'; connect-src 'self'{other}; img-src 'self' blob:; object-src 'none'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 )
+_ORIGIN = re.compile(r"https?://[A-Za-z0-9.:\[\]-]+")
 _HEADERS = {
-    "Content-Security-Policy": CONTENT_POLICY,
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
     "Referrer-Policy": "no-referrer",
@@ -22,11 +25,21 @@ _HEADERS = {
 }
 
 
+def content_policy(other_console: str) -> str:
+    """What the console may load, and whom it may ask: this station, and the other one."""
+    known = _ORIGIN.fullmatch(other_console) is not None
+    return _CONTENT_POLICY.format(other=f" {other_console}" if known else "")
+
+
 class SecurityHeaders:
     """ASGI middleware."""
 
-    def __init__(self, app: ASGIApp, secure: bool) -> None:
+    def __init__(
+        self, app: ASGIApp, secure: bool, other_console: Callable[[], str] = lambda: ""
+    ) -> None:
+        """``other_console``: the other station's, which may be asked whether it leads."""
         self._app = app
+        self._other_console = other_console
         self._headers = dict(_HEADERS)
         if secure:
             self._headers["Strict-Transport-Security"] = "max-age=31536000"
@@ -41,6 +54,7 @@ class SecurityHeaders:
                 headers = MutableHeaders(scope=message)
                 for name, value in self._headers.items():
                     headers[name] = value
+                headers["Content-Security-Policy"] = content_policy(self._other_console())
                 headers.setdefault("Cache-Control", "no-store")
             await send(message)
 

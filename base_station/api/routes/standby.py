@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import msgspec
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import BaseModel
 
 from base_station.api.problems import Problem
@@ -24,9 +24,20 @@ class Standby(BaseModel):
     in_step: bool
 
 
+class Leads(BaseModel):
+    leads: bool
+
+
 @router.get("/standby")
 def get_standby(station: Station, _: Viewer) -> Standby:
     return Standby.model_validate(msgspec.to_builtins(_standing_or_404(station).view()))
+
+
+@router.get("/standby/leads")
+def get_leads(station: Station, response: Response) -> Leads:
+    """For the other station's console, of another origin, where nobody is logged in here yet."""
+    response.headers["Access-Control-Allow-Origin"] = "*"
+    return Leads(leads=station.standing is None or station.standing.refusal() is None)
 
 
 @router.post("/standby/take-over", status_code=202)

@@ -1,6 +1,7 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
+import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
 
@@ -40,8 +41,12 @@ export async function resume(): Promise<void> {
 
 export function begin(me: api.Me): void {
   user.value = me;
-  live.value ??= new Session(api.LIVE_PATH, forget);
+  if (live.value !== null) return;
+  live.value = new Session(api.LIVE_PATH, forget);
+  stopWatching = watchOver(live.value, (url) => location.assign(url));
 }
+
+let stopWatching: () => void = () => undefined;
 
 export async function leave(): Promise<void> {
   stopReplay();
@@ -81,6 +86,7 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
 /** Back to the login form: the station knows nobody here any more. */
 function forget(): void {
   stopReplay();
+  stopWatching();
   live.peek()?.close();
   live.value = null;
   replay.value = null;
