@@ -32,12 +32,22 @@ class Score:
     per_cent_of_distance: float | None  # ATE, or the closure of a closed loop, by distance
     vertical_rms_m: float | None  # after fitting the mean height
     coverage_95: float | None  # share of reference points in the stated 95 % ellipse, fitted
-    coverage_95_from_start: float | None  # the same with the first point held, only yaw fitted
+    coverage_95_from_start: float | None  # the same with the first point held; yaw fitted or known
     mean_nees: float | None  # of the fitted horizontal error; 2 is honest
 
 
-def score_track(rows: TrackBatch, truth: RecordedTruth | None, *, closed_loop: bool) -> Score:
-    """Score one trial's rows; without ``truth`` only closure and distance are known."""
+def score_track(
+    rows: TrackBatch,
+    truth: RecordedTruth | None,
+    *,
+    closed_loop: bool,
+    heading_known: bool = False,
+) -> Score:
+    """Score one trial's rows; without ``truth`` only closure and distance are known.
+
+    ``heading_known``: the truth is in the rows' own frame, so that holding the start leaves
+    nothing to fit.
+    """
     position_n_m = rows.position_n_m
     step_m = position_n_m[-1] - position_n_m[0]
     distance_m = float(rows.distance_m[-1])
@@ -54,7 +64,7 @@ def score_track(rows: TrackBatch, truth: RecordedTruth | None, *, closed_loop: b
     )
     error_m = closure_m if closed_loop else None
     if truth is not None:
-        figures |= _against_truth(rows, truth)
+        figures |= _against_truth(rows, truth, heading_known=heading_known)
         error_m = figures["ate_m"]
     return Score(
         samples=len(rows),
@@ -68,13 +78,16 @@ def score_track(rows: TrackBatch, truth: RecordedTruth | None, *, closed_loop: b
     )
 
 
-def _against_truth(rows: TrackBatch, truth: RecordedTruth) -> dict[str, float | None]:
+def _against_truth(
+    rows: TrackBatch, truth: RecordedTruth, *, heading_known: bool
+) -> dict[str, float | None]:
     estimate_n_m, covariance_m2 = rows_at(rows, truth.t_s)
     fitted_m, turned_m2 = fit_yaw(estimate_n_m, covariance_m2, truth.position_n_m)
     ate_m = rms_distance(fitted_m, truth.position_n_m)
     nees = horizontal_nees(fitted_m, truth.position_n_m, turned_m2)
-    held_m = fitted_m + (truth.position_n_m[0] - fitted_m[0])
-    nees_from_start = horizontal_nees(held_m[1:], truth.position_n_m[1:], turned_m2[1:])
+    held_m, held_m2 = (estimate_n_m, covariance_m2) if heading_known else (fitted_m, turned_m2)
+    held_m = held_m + (truth.position_n_m[0] - held_m[0])
+    nees_from_start = horizontal_nees(held_m[1:], truth.position_n_m[1:], held_m2[1:])
     return {
         "ate_m": ate_m,
         "armse_2d_m": ate_m / np.sqrt(2.0),

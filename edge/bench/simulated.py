@@ -9,6 +9,7 @@ from edge.simulation import open_simulation
 from edge.sources.recording import RecordedTruth
 from edge.tracker import make_tracker
 from edge.tracker.rows import join_rows
+from edge.tracker.strapdown import rotation_matrix
 
 WALKS = ("square-60m", "rectangle", "j-shape", "track-400m")
 SEEDS = range(3)
@@ -27,5 +28,12 @@ def score_simulated(walk: str, tracker: str) -> Score:
     rows = join_rows([*(tracking.push(batch.imu) for batch in simulation.batches()),
                       tracking.finish()])  # fmt: skip
     t_s = np.arange(rows.t_ns[0] * 1e-9, rows.t_ns[-1] * 1e-9, _TRUTH_STEP_S)
-    truth = RecordedTruth(t_s, simulation.truth(t_s).position_n_m)
-    return score_track(rows, truth, closed_loop=False)
+    motion = simulation.truth(t_s)
+    start_nb = np.zeros((3, 3))
+    rotation_matrix(rows.quaternion_nb[0], start_nb)
+    turn = start_nb @ motion.rotation_nb[0].T
+    yaw_rad = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    to_walk = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    truth = RecordedTruth(t_s, motion.position_n_m @ to_walk.T)
+    return score_track(rows, truth, closed_loop=False, heading_known=True)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 import statistics
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich import box
 from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
 from edge.bench.cross_validation import cross_validate, left_out_table
+from edge.bench.perturbed import perturbed_table, score_perturbed
 from edge.bench.scoring import Score, score_track
 from edge.bench.simulated import score_simulated, simulated_walks
 from edge.bench.speed import measure_speed, print_speed
@@ -42,16 +44,19 @@ class Column:
 
 
 COLUMNS = (
-    Column("distance m", "distance_m", 1),
-    Column("closure m", "closure_horizontal_m", 3),
-    Column("closure down m", "closure_vertical_m", 3),
-    Column("ATE m", "ate_m", 3),
-    Column("2D ARMSE m", "armse_2d_m", 4),
-    Column("% of distance", "per_cent_of_distance", 2),
-    Column("vertical RMS m", "vertical_rms_m", 3),
-    Column("in 95 % ellipse", "coverage_95", 3),
-    Column("... from start", "coverage_95_from_start", 3),
+    Column("walked", "distance_m", 1),
+    Column("closure", "closure_horizontal_m", 3),
+    Column("down", "closure_vertical_m", 3),
+    Column("ATE", "ate_m", 3),
+    Column("ARMSE", "armse_2d_m", 4),
+    Column("%", "per_cent_of_distance", 2),
+    Column("height", "vertical_rms_m", 3),
+    Column("in 95 %", "coverage_95", 3),
+    Column("held", "coverage_95_from_start", 3),
 )
+UNITS = """metres; % of the distance walked; height: vertical RMS; in 95 %: share of the truth in
+the stated 95 % ellipse, the track fitted to the truth, or held at its start"""
+WIDTH = 110  # that the tables need
 
 
 def bench_track(
@@ -68,13 +73,17 @@ def bench_track(
     speed: Annotated[
         bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
     ] = False,
+    perturbed: Annotated[
+        bool,
+        typer.Option("--perturbed", help="Also track every trial with worse sensors (a minute)."),
+    ] = False,
     cross_validation: Annotated[
         bool,
         typer.Option("--cross-validate", help="Also leave each dataset out once (a minute)."),
     ] = False,
 ) -> None:
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
-    console = Console(width=max(Console().width, 150))
+    console = Console(width=max(Console().width, WIDTH))
     trials = find_trials(data)
     scorings = [partial(score_trial, path, tracker) for path in trials]
     if simulated:
@@ -96,6 +105,16 @@ def bench_track(
         figures = measure_speed(RecordingSource(trials[0]), tracker)
         print_speed(console, figures)
         report["speed"] = asdict(figures)
+    if perturbed:
+        outcomes = score_perturbed(trials, tracker)
+        console.print(perturbed_table(outcomes))
+        for outcome in outcomes:
+            if outcome.silent:
+                console.print(
+                    f"silent: {outcome.perturbation}, {outcome.dataset} {outcome.trial}, "
+                    f"{outcome.error_m:.2f} m"
+                )
+        report["perturbed"] = [asdict(outcome) for outcome in outcomes]
     if cross_validation:
         left_out = cross_validate(trials)
         console.print(left_out_table(left_out))
@@ -129,19 +148,26 @@ def score_simulation(walk: str, tracker: str) -> TrialScore:
 
 
 def trial_table(scores: Iterable[TrialScore]) -> Table:
-    table = Table(title="Trials")
-    table.add_column("dataset")
-    table.add_column("trial")
-    for column in COLUMNS:
-        table.add_column(column.title, justify="right")
+    table = _table("Trials", "trial")
     for entry in scores:
         values = (getattr(entry.score, column.field) for column in COLUMNS)
-        cells = (
-            "" if value is None else f"{value:.{column.decimals}f}"
-            for value, column in zip(values, COLUMNS, strict=True)
-        )
-        table.add_row(entry.dataset, entry.trial, *cells)
+        table.add_row(entry.dataset, entry.trial, *_cells(values))
     return table
+
+
+def _table(title: str, second: str) -> Table:
+    table = Table(title=title, caption=UNITS, caption_justify="left", box=box.SIMPLE_HEAD)
+    table.collapse_padding = True
+    for name in ("dataset", second):
+        table.add_column(name, no_wrap=True)
+    for column in COLUMNS:
+        table.add_column(column.title, justify="right", no_wrap=True)
+    return table
+
+
+def _cells(values: Iterable[float | None]) -> Iterator[str]:
+    for value, column in zip(values, COLUMNS, strict=True):
+        yield "" if value is None else f"{value:.{column.decimals}f}"
 
 
 def summarise(scores: Sequence[TrialScore]) -> dict[str, dict[str, dict[str, float]]]:
@@ -166,14 +192,9 @@ def summarise(scores: Sequence[TrialScore]) -> dict[str, dict[str, dict[str, flo
 
 
 def summary_table(scores: Sequence[TrialScore]) -> Table:
-    table = Table(title="Datasets: mean / median / worst")
-    table.add_column("dataset")
-    for column in COLUMNS:
-        table.add_column(column.title, justify="right")
+    table = _table("Datasets", "of trials")
     for dataset, figures in summarise(scores).items():
-        cells = []
-        for column in COLUMNS:
-            values = figures.get(column.field, {})
-            cells.append(" / ".join(f"{value:.{column.decimals}f}" for value in values.values()))
-        table.add_row(dataset, *cells)
+        for statistic in ("mean", "median", "worst"):
+            values = (figures.get(column.field, {}).get(statistic) for column in COLUMNS)
+            table.add_row(dataset, statistic, *_cells(values), end_section=statistic == "worst")
     return table

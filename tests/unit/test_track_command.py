@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from edge.bench.track import bench_track, find_trials
+from edge.bench.track import WIDTH, bench_track, find_trials
 from edge.track_command import COLUMNS, track
 from shared.errors import UserError
 from tests.walking import walk
@@ -77,6 +77,19 @@ def test_bench_scores_every_trial_as_table_and_json(trial, tmp_path):
     assert figures["ate_m"] < 0.1
     assert figures["vertical_rms_m"] < 0.1
     assert report["datasets"]["made"]["ate_m"]["mean"] == pytest.approx(figures["ate_m"])
+
+
+def test_bench_tracks_with_worse_sensors(trial, tmp_path):
+    json_file = tmp_path / "figures.json"
+    output = invoke(bench_track, trial, "--perturbed", "--json", json_file)
+    assert "another mount" in output
+    outcomes = json.loads(json_file.read_text())["perturbed"]
+    assert outcomes[0]["perturbation"] == "as recorded"
+    assert outcomes[0]["right"]
+
+
+def test_tables_fit_a_terminal(trial):
+    assert max(len(line) for line in invoke(bench_track, trial).splitlines()) <= WIDTH
 
 
 def test_a_folder_without_trials_is_an_error(tmp_path):

@@ -1,0 +1,174 @@
+"""What can be wrong with a recording of another sensor on another person, done to recorded walks.
+
+Each perturbation takes a description, samples and a generator and gives both as the worse
+sensor would have; all of a trial's perturbations are the same in every run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from edge.samples import Floats, ImuBatch, SensorDescription
+
+Made = tuple[SensorDescription, ImuBatch]
+Change = Callable[[SensorDescription, ImuBatch, np.random.Generator], Made]
+
+CUT_S = 3.0
+BIAS_RADPS = np.radians(0.5)
+ACCEL_SCALE = 0.03
+GYRO_SCALE = 0.01
+CLIPPED_AT = 0.7  # of the recording's largest reading
+LOST = 0.01
+JITTER = 0.5  # of a sample interval
+
+
+@dataclass(frozen=True, slots=True)
+class Perturbation:
+    name: str
+    apply: Change
+
+
+def as_recorded(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+    return description, imu
+
+
+def other_mount(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    """Any rotation; by right angles where a full scale is told along the axes."""
+    rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    if description.gyro_full_scale_radps is not None:
+        rotation = np.eye(3)[rng.permutation(3)]
+    rotation[0] *= np.linalg.det(rotation)
+    return description, _with(imu, imu.accel_mps2 @ rotation.T, imu.gyro_radps @ rotation.T)
+
+
+def late_start(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+    first = int(np.searchsorted(imu.t_ns, imu.t_ns[0] + round(1e9 * CUT_S)))
+    return description, imu.part(slice(first, None))
+
+
+def gyro_bias(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    axis = rng.normal(size=3)
+    bias_radps = BIAS_RADPS * axis / np.linalg.norm(axis)
+    return description, _with(imu, imu.accel_mps2, imu.gyro_radps + bias_radps)
+
+
+def accel_scale(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    scale = 1.0 + ACCEL_SCALE * rng.choice((-1.0, 1.0), 3)
+    return description, _with(imu, scale * imu.accel_mps2, imu.gyro_radps)
+
+
+def gyro_scale(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    scale = 1.0 + GYRO_SCALE * rng.choice((-1.0, 1.0), 3)
+    return description, _with(imu, imu.accel_mps2, scale * imu.gyro_radps)
+
+
+def thrice_the_noise(
+    description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
+) -> Made:
+    def noisier(readings: Floats) -> Floats:
+        added = np.sqrt(8.0) * _quietest_std(readings, description.rate_hz)
+        return np.asarray(readings + added * rng.normal(size=readings.shape))
+
+    return description, _with(imu, noisier(imu.accel_mps2), noisier(imu.gyro_radps))
+
+
+def gyro_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+    full_scale = CLIPPED_AT * float(np.nanmax(np.abs(imu.gyro_radps)))
+    clipped = np.clip(imu.gyro_radps, -full_scale, full_scale)
+    told = replace(description, gyro_full_scale_radps=full_scale)
+    return told, _with(imu, imu.accel_mps2, clipped)
+
+
+def gyro_clipped_untold(
+    description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
+) -> Made:
+    _, clipped = gyro_clipped(description, imu, rng)
+    return replace(description, gyro_full_scale_radps=None), clipped
+
+
+def accel_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+    full_scale = CLIPPED_AT * float(np.nanmax(np.abs(imu.accel_mps2)))
+    clipped = np.clip(imu.accel_mps2, -full_scale, full_scale)
+    told = replace(description, accel_full_scale_mps2=full_scale)
+    return told, _with(imu, clipped, imu.gyro_radps)
+
+
+def samples_lost(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    kept = rng.random(len(imu)) >= LOST
+    return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+
+
+def late_stamps(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    late_ns = JITTER * 1e9 / description.rate_hz * rng.random(len(imu))
+    t_ns = np.maximum.accumulate(imu.t_ns + late_ns.astype(np.int64))
+    return description, ImuBatch(t_ns, imu.accel_mps2, imu.gyro_radps)
+
+
+def slower(rate_hz: float, *, filtered: bool) -> Change:
+    """About ``rate_hz``: means of consecutive samples, or every so manieth as it is."""
+
+    def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+        every = max(1, round(description.rate_hz / rate_hz))
+        told = replace(description, rate_hz=description.rate_hz / every)
+        if not filtered:
+            return told, ImuBatch(
+                imu.t_ns[::every], imu.accel_mps2[::every], imu.gyro_radps[::every]
+            )
+        even = _evenly(imu, description.rate_hz)
+        count = len(even) // every * every
+        return told, ImuBatch(
+            even.t_ns[:count].reshape(-1, every).mean(axis=1).astype(np.int64),
+            even.accel_mps2[:count].reshape(-1, every, 3).mean(axis=1),
+            even.gyro_radps[:count].reshape(-1, every, 3).mean(axis=1),
+        )
+
+    return change
+
+
+PERTURBATIONS: tuple[Perturbation, ...] = (
+    Perturbation("as recorded", as_recorded),
+    Perturbation("another mount", other_mount),
+    Perturbation("first 3 s missing", late_start),
+    Perturbation("gyroscope 0.5 deg/s off", gyro_bias),
+    Perturbation("accelerometer scale 3 % off", accel_scale),
+    Perturbation("gyroscope scale 1 % off", gyro_scale),
+    Perturbation("noise x 3", thrice_the_noise),
+    Perturbation("gyroscope clips at 70 %", gyro_clipped),
+    Perturbation("the same, untold", gyro_clipped_untold),
+    Perturbation("accelerometer clips at 70 %", accel_clipped),
+    Perturbation("1 % of samples lost", samples_lost),
+    Perturbation("stamps late by half a sample", late_stamps),
+    Perturbation("100 Hz, filtered", slower(100.0, filtered=True)),
+    Perturbation("66 Hz, filtered", slower(66.0, filtered=True)),
+    Perturbation("66 Hz, unfiltered", slower(66.0, filtered=False)),
+)
+
+
+def _with(imu: ImuBatch, accel_mps2: Floats, gyro_radps: Floats) -> ImuBatch:
+    return ImuBatch(imu.t_ns, accel_mps2, gyro_radps)
+
+
+def _quietest_std(readings: Floats, rate_hz: float) -> Floats:
+    """Return the noise (3,) of the quietest half second, by its differences."""
+    window = max(2, round(rate_hz / 2.0))
+    count = (len(readings) - 1) // window * window
+    steps = np.diff(readings, axis=0)[:count].reshape(-1, window, 3)
+    stds: Floats = np.std(steps, axis=1) / np.sqrt(2.0)
+    quietest: Floats = stds[np.argmin(stds.sum(axis=1))]
+    return quietest
+
+
+def _evenly(imu: ImuBatch, rate_hz: float) -> ImuBatch:
+    """Return the samples at even times; repeated ones would count twice in a mean."""
+    new = np.r_[True, np.diff(imu.t_ns) > 0]
+    t_s = imu.t_ns[new] * 1e-9
+    even_s = np.arange(t_s[0], t_s[-1], 1.0 / rate_hz)
+
+    def at(readings: Floats) -> Floats:
+        axes = [np.interp(even_s, t_s, readings[new, axis]) for axis in range(3)]
+        return np.column_stack(axes)
+
+    return ImuBatch(np.rint(1e9 * even_s).astype(np.int64), at(imu.accel_mps2), at(imu.gyro_radps))
