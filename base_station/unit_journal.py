@@ -117,7 +117,7 @@ class UnitJournal:
         """Learn from one reply; what it brings is to be kept.  Raises WireError."""
         self._told += 1
         if question.what in ("index", "acknowledge"):
-            self._learn(JournalIndex.from_bytes(reply), now_ns)
+            self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 1)
             return None
         chunk = JournalChunk.from_bytes(reply)
         boot = self._boots.setdefault(chunk.boot_id, _Boot())
@@ -146,9 +146,11 @@ class UnitJournal:
             boot.acknowledged = last
         self._acknowledging = None
 
-    def _learn(self, index: JournalIndex, now_ns: int) -> None:
+    def _learn(self, index: JournalIndex, now_ns: int, *, is_first: bool) -> None:
+        """Two machines under one name both answer."""
         self._index_due_ns = now_ns + _INDEX_EVERY_NS
-        self._indexed = {one.boot_id: None for one in index.boots}
+        before = {} if is_first else self._indexed
+        self._indexed = before | {one.boot_id: None for one in index.boots}
         for one in index.boots:
             boot = self._boots.setdefault(one.boot_id, _Boot())
             boot.first = one.first_seq

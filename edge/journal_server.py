@@ -53,6 +53,8 @@ class JournalServer:
 
     def _range(self, values: dict[str, str], *, urgent_only: bool) -> Iterator[bytes]:
         boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
+        if not self._spool.has_boot(boot_id):
+            return  # of another machine under this name: it may have what this one has not
         if boot_id == self._spool.boot_id:
             last = min(last, self._spool.last_seq)  # what is not written yet is not lost
         most = int(values.get("max", _MAX_MESSAGES))

@@ -128,6 +128,12 @@ class Spool:
                     kept.append(JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns))
         return tuple(kept)
 
+    def has_boot(self, boot_id: int) -> bool:
+        """Whether this boot was ever written here, though nothing of it may be left."""
+        with _in_words(self._path), closing(_connect(self._path)) as reader:
+            found = reader.execute("SELECT 1 FROM boot WHERE boot_id = ?", (boot_id,))
+            return found.fetchone() is not None
+
     def newest_first(self, boot_id: int, channel: Channel) -> Iterator[bytes]:
         """What is kept of one channel of a boot; reads while it is iterated."""
         with _in_words(self._path), closing(_connect(self._path)) as reader:

@@ -8,7 +8,7 @@ import pytest
 
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
-from shared.channels import POSITION
+from shared.channels import EVENT, POSITION
 from shared.messages import JournalChunk, JournalIndex
 
 
@@ -56,9 +56,29 @@ def test_what_is_not_written_yet_is_not_called_lost(spool):
     assert not chunks(spool, "epoch=9;from=101;to=200")
 
 
-def test_of_a_boot_that_nobody_knows_nothing_is_kept(spool):
+def test_of_a_boot_of_another_machine_nothing_is_said(spool):
+    assert not chunks(spool, "epoch=1234;from=1;to=5")
+
+
+def test_of_a_boot_of_which_nothing_is_left_all_is_called_gone(tmp_path):
+    path = tmp_path / "journal.sqlite"
+    Spool(path, lambda: 1234, 123, 10**8).close()
+    spool = Spool(path, lambda: 9, 123, 10**8)
     (chunk,) = chunks(spool, "epoch=1234;from=1;to=5")
     assert (chunk.from_seq, chunk.to_seq, chunk.entries) == (1, 5, ())
+    spool.close()
+
+
+def test_the_alerts_of_a_range_are_given_by_themselves(spool):
+    alerts = [Journaled(seq, EVENT, 0, b"fall") for seq in (104, 140)]
+    others = [Journaled(seq, POSITION, 0, bytes(100)) for seq in range(101, 161)]
+    spool.append([one for one in others if one.seq not in (104, 140)] + alerts)
+    question = "epoch=9;from=50;to=160;bytes=500;total=1000"
+    (answer,) = ask(spool, "urgent", question)
+    chunk = JournalChunk.from_bytes(answer)
+    assert [entry.seq for entry in chunk.entries] == [104, 140]
+    assert (chunk.from_seq, chunk.to_seq, chunk.urgent_only) == (50, 160, True)
+    assert not any(one.urgent_only for one in chunks(spool, question))
 
 
 def test_index_and_acknowledgement(spool):

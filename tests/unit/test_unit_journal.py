@@ -113,3 +113,16 @@ def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
     for number in (3, 4):
         journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8})
+
+
+def test_of_two_machines_under_one_name_both_journals_are_known() -> None:
+    journal = UnitJournal()
+    held = Held(BOOT, (Run(1, 10),)), Held(8, (Run(1, 4), Run(7, 8)))
+    journal.report(held, 0)
+    question = journal.next_question()
+    assert question is not None
+    for boot_id, last in ((8, 8), (BOOT, 10)):
+        journal.take(question, JournalIndex((JournalBoot(boot_id, 1, last, 0, 0),)).to_bytes(), 1)
+    journal.end(question, 1)
+    what, asked = next_of(journal)
+    assert (what, asked["epoch"], asked["from"], asked["to"]) == ("urgent", 8, 5, 6)
