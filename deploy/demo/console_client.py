@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import TracebackType
 from typing import Any, Self
 
@@ -47,6 +48,22 @@ class ConsoleClient:
         """Say where a unit without GPS begins its walk."""
         start = {"north_m": north_m, "east_m": east_m, "std_m": 1.0, "heading_std_rad": 0.2}
         self._call("PUT", f"/units/{unit_id}/start", json=start)
+
+    def start_at_engine(self, unit_ids: Sequence[str], north_m: float, east_m: float) -> None:
+        """Pin where everybody began: at the engine, one or two metres off."""
+        start = {
+            "unit_ids": unit_ids,
+            "north_m": north_m,
+            "east_m": east_m,
+            "std_m": 1.5,
+            "floor": 0,
+        }
+        self._call("POST", "/pins/start", json=start)
+
+    def call_roll(self) -> None:
+        """Ask everybody to answer."""
+        order = {"kind": "par_request", "target": {"everyone": True}}
+        self._call("POST", "/commands", json=order)
 
     def close_incident(self, incident_id: str) -> None:
         self._call("POST", f"/incidents/{incident_id}/close")

@@ -22,6 +22,8 @@ from shared.errors import UserError
 
 _STATION_PATIENCE_S = 60.0
 _WATCH_EVERY_S = 0.5
+_ROLL_CALL_AT_S = 55.0  # the commander asks once, when somebody is down already
+_ENGINE = -29.4, -9.6  # north and east of the plan's origin: where crew.toml has them begin
 _USUAL_HTTP_PORT = 8080
 _USUAL_BUS_PORT = 7447
 # A walk of some length on which the track is good to see.
@@ -128,6 +130,8 @@ class _Demo:
 
     def _start_agents(self, console: ConsoleClient, enrolments: Sequence[Path]) -> None:
         data = str(self._folder / "units")
+        arriving = [one.unit for one in self._crew.responder if "from=" in one.source]
+        console.start_at_engine(arriving, *_ENGINE)
         for responder, enrolment in zip(self._crew.responder, enrolments, strict=True):
             unit, source = responder.unit, responder.source
             if source.startswith("recording:"):
@@ -139,10 +143,14 @@ class _Demo:
         """Wait for the end, saying how things stand; UserError when the station dies."""
         started_s = time.monotonic()
         mourned: set[str] = set()
+        roll_called = False
         while not stop.wait(_WATCH_EVERY_S):
             elapsed_s = time.monotonic() - started_s
             if for_s is not None and elapsed_s >= for_s:
                 break
+            if elapsed_s >= _ROLL_CALL_AT_S and not roll_called:
+                console.call_roll()
+                roll_called = True
             for child in self._children.dead():
                 if child.name not in mourned:
                     mourned.add(child.name)

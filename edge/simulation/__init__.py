@@ -6,23 +6,28 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
+from math import hypot, isfinite, nan
 from pathlib import Path
 from typing import get_args
 from urllib.parse import parse_qsl
 
 from msgspec.structs import replace
 
-from edge.simulation.legs import Segment
+from edge.simulation.legs import Point, Segment, Stand, Walk
 from edge.simulation.scenario import Scenario, read_scenario
 from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
 from shared.errors import ConfigError
 
+_STANDS_S = 3.0
+_ARRIVES_MPS = 1.35
+
 __all__ = ["SCENARIOS", "Scenario", "Simulation", "open_simulation"]
 
 
 def open_simulation(text: str) -> Simulation:
-    """Make what ``NAME`` or ``PATH.toml`` says, with ``?seed=N`` and ``&worn_on=chest`` behind it.
+    """Make what ``NAME`` or ``PATH.toml`` says, with ``?seed=N``, ``&worn_on=chest`` and
+    ``&from=NORTH,EAST`` behind it.
 
     Raises ``ConfigError``.
     """
@@ -36,11 +41,38 @@ def open_simulation(text: str) -> Simulation:
     seed = options.pop("seed", "0")
     if not seed.isdecimal():
         raise ConfigError(f"simulated:{text}: seed is {seed!r}; give a whole number from 0 up")
+    if "from" in options:
+        scenario = _arriving(scenario, _place(text, options.pop("from")))
     if options:
         raise ConfigError(
-            f"simulated:{text}: unknown option {min(options)!r}; known are seed and worn_on"
+            f"simulated:{text}: unknown option {min(options)!r}; known are seed, worn_on and from"
         )
     return Simulation(replace(scenario, worn_on=worn_on), int(seed))
+
+
+def _place(text: str, said: str) -> Point:
+    try:
+        north_m, east_m = map(float, said.split(","))
+    except ValueError:
+        north_m = east_m = nan
+    if not (isfinite(north_m) and isfinite(east_m)):
+        raise ConfigError(f"simulated:{text}: from is {said!r}; give two numbers, NORTH,EAST in m")
+    return north_m, east_m
+
+
+def _arriving(scenario: Scenario, start: Point) -> Scenario:
+    """The same walk after one from another place to its start; what happens on it is later."""
+    away_m = hypot(scenario.start[0] - start[0], scenario.start[1] - start[1])
+    later_s = _STANDS_S + away_m / _ARRIVES_MPS
+    (_, first_degc), *_ = scenario.ambient_degc
+    heat = ((t_s + later_s, degc) for t_s, degc in scenario.ambient_degc)
+    return replace(
+        scenario,
+        start=start,
+        legs=(Stand(_STANDS_S), Walk((scenario.start,)), *scenario.legs),
+        ambient_degc=((0.0, first_degc), *heat),
+        radio_outages_s=tuple((t_s + later_s, long_s) for t_s, long_s in scenario.radio_outages_s),
+    )
 
 
 def _find(name: str) -> Scenario:

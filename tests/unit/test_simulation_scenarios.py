@@ -110,6 +110,23 @@ def test_the_heat_passes_every_threshold_and_falls_again() -> None:
     assert heat[190] < 60.0
 
 
+def test_who_comes_from_farther_away_meets_everything_later() -> None:
+    near, far = open_simulation("goes-down"), open_simulation("goes-down?from=-38,11")
+    began = far.truth(np.array([0.0])).position_n_m[0]
+    assert began[:2] == pytest.approx([-38.0, 11.0], abs=0.5)
+    later_s = start_of(far, Activity.LYING) - start_of(near, Activity.LYING)
+    assert later_s == pytest.approx(3.0 + 30.0 / 1.35, abs=3.0)
+    names = ("loses-radio", "loses-radio?from=-38,12")
+    first, later = (SimulatedSource(name).radio_outages[0].start_s for name in names)
+    assert later - first == pytest.approx(later_s, abs=4.0)
+
+
+@pytest.mark.parametrize("place", ["", "here", "1", "1,2,3", "nan,0"])
+def test_a_place_that_is_none_is_refused(place: str) -> None:
+    with pytest.raises(ConfigError, match="NORTH,EAST"):
+        open_simulation(f"goes-down?from={place}")
+
+
 def test_the_radio_is_lost_and_comes_back() -> None:
     outages = SimulatedSource("loses-radio").radio_outages
     assert 20.0 <= outages[0].start_s <= 30.0

@@ -3,7 +3,7 @@ import Feature from "ol/Feature";
 import OlMap from "ol/Map";
 import View from "ol/View";
 import ScaleLine from "ol/control/ScaleLine";
-import { buffer, createEmpty, extend } from "ol/extent";
+import { buffer, containsExtent, createEmpty, extend } from "ol/extent";
 import Point from "ol/geom/Point";
 import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
@@ -52,6 +52,8 @@ export class PlanMap {
     showFullExtent: true,
   });
   private readonly map: OlMap;
+  /** Whether the person chose what to look at; until then everybody is kept in view. */
+  private chosen = false;
   private fitted = false;
 
   constructor(
@@ -71,6 +73,9 @@ export class PlanMap {
       interactions: defaults().extend([this.dragging()]),
       controls: [new ScaleLine({ minWidth: 80 })],
     });
+    for (const kind of ["wheel", "pointerdown"]) {
+      target.addEventListener(kind, () => (this.chosen = true), { passive: true });
+    }
     this.map.on("singleclick", (event) => {
       if (this.events.click(placeOf(event.coordinate))) return;
       const standing = this.standingAt(event.pixel);
@@ -135,6 +140,13 @@ export class PlanMap {
     this.building.choose(scene.floor, this.colours);
     this.crowd.show({ ...scene, colours: this.colours });
     if (!this.fitted) this.fitted = this.fit(false);
+    else if (!this.chosen && !this.showsEverybody()) this.fit();
+  }
+
+  private showsEverybody(): boolean {
+    const crowd = this.crowd.extent();
+    if (crowd === null || !crowd.every(Number.isFinite)) return true;
+    return containsExtent(this.view.calculateExtent(this.map.getSize()), crowd);
   }
 
   /** Show everything there is; false where there is nothing yet. */
@@ -144,6 +156,7 @@ export class PlanMap {
       if (part !== null) extend(all, part);
     }
     if (!all.every(Number.isFinite)) return false;
+    this.chosen = false;
     this.view.fit(buffer(all, AROUND_M), {
       padding: [MARGIN_PX, RIGHT_MARGIN_PX, MARGIN_PX, MARGIN_PX],
       ...(smoothly ? moving() : {}),
@@ -152,11 +165,13 @@ export class PlanMap {
   }
 
   centre(at: [number, number]): void {
+    this.chosen = true;
     const resolution = Math.min(this.view.getResolution() ?? CLOSE_M_PER_PX, CLOSE_M_PER_PX);
     this.view.animate({ center: at, resolution, ...moving() });
   }
 
   zoom(steps: number): void {
+    this.chosen = true;
     this.view.adjustZoom(steps);
   }
 
