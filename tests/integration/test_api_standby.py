@@ -1,0 +1,107 @@
+"""The API of one of two stations."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from base_station.api.headers import content_policy
+from base_station.api.wire import StandbyView
+from base_station.db.accounts import Role
+from shared.clock import ManualClock
+from tests.station import DeskStation
+
+HERE, THERE = "https://b:8443", "https://a:8443"
+STANDBY = StandbyView("second", "standby", HERE, "first", "active", THERE, in_step=True)
+
+
+class Standing:
+    def __init__(self, refusal: str | None) -> None:
+        self._refusal = refusal
+        self.taken_over = 0
+
+    def view(self) -> StandbyView:
+        return STANDBY
+
+    def refusal(self) -> str | None:
+        return self._refusal
+
+    def take_over(self) -> None:
+        self.taken_over += 1
+
+
+@pytest.fixture
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    yield station
+    station.close()
+
+
+@pytest.fixture
+def standing(station: DeskStation) -> Standing:
+    """The station is a standby from now on."""
+    standing = Standing("this is the standby: the active station is first at https://a:8443")
+    station.services = dataclasses.replace(station.services, standing=standing)
+    station.app.state.services = station.services
+    return standing
+
+
+@pytest.mark.usefixtures("standing")
+async def test_a_standby_is_looked_at_and_refuses_changes_in_a_sentence(
+    station: DeskStation,
+) -> None:
+    async with station.client(Role.ADMINISTRATOR) as client:
+        assert (await client.get("/units")).status_code == 200
+        assert (await client.get("/standby")).json()["other_url"] == THERE
+        for method, path in (("POST", "/incidents"), ("POST", "/people"), ("PUT", "/site/anchor")):
+            answer = await client.request(method, path, json={})
+            assert answer.status_code == 503
+            assert "the active station is first at https://a:8443" in answer.json()["detail"]
+
+
+@pytest.mark.usefixtures("standing")
+async def test_people_log_in_at_a_standby(station: DeskStation) -> None:
+    async with station.client() as client:
+        answer = await client.post("/login", json={"username": "viewer", "password": "x"})
+    assert answer.status_code == 401  # asked for, and the password is wrong
+
+
+async def test_a_commander_makes_it_lead_and_a_viewer_does_not(
+    station: DeskStation, standing: Standing
+) -> None:
+    for role, status in ((Role.VIEWER, 403), (Role.COMMANDER, 202)):
+        async with station.client(role) as client:
+            assert (await client.post("/standby/take-over")).status_code == status
+    assert standing.taken_over == 1
+
+
+async def test_the_other_stations_console_may_ask_whether_this_one_leads(
+    station: DeskStation, standing: Standing
+) -> None:
+    async with station.client() as client:
+        answer = await client.get("/standby/leads", headers={"Origin": THERE})
+        assert answer.json() == {"leads": False}
+        assert answer.headers["access-control-allow-origin"] == "*"
+        standing._refusal = None
+        assert (await client.get("/standby/leads")).json() == {"leads": True}
+
+
+async def test_the_only_station_has_no_other(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as client:
+        assert (await client.get("/standby")).status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("other", "allowed"),
+    [
+        ("https://10.0.0.2:8443", "connect-src 'self' https://10.0.0.2:8443;"),
+        ("", "connect-src 'self';"),
+        ("https://x; script-src *", "connect-src 'self';"),
+        ("javascript:alert(1)", "connect-src 'self';"),
+    ],
+)
+def test_the_page_may_ask_the_other_station_and_nobody_else(other: str, allowed: str) -> None:
+    assert allowed in content_policy(other)
