@@ -56,6 +56,16 @@ export function floorName(floor: number | null): string {
   return floor > 0 ? `floor ${floor}` : `basement ${-floor}`;
 }
 
+const SURE_OF_FLOOR = 0.95;
+
+/** The floor, and how sure that is where there is a doubt. */
+export function floorOf(position: PositionView): string {
+  const { floor, floor_probability: sure } = position;
+  const name = floorName(floor);
+  if (floor === null || sure === null || sure >= SURE_OF_FLOOR) return name;
+  return `${name} (${Math.round(100 * sure)} % sure)`;
+}
+
 export function temperature(degc: number | null): string {
   return degc === null ? "no reading" : `${Math.round(degc)} °C`;
 }
@@ -127,13 +137,6 @@ export function alarmWord(alarm: AlarmView): string {
   const rule = alarm.rule.replaceAll(/[-_]/g, " ");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
-}
-
-/** Why a position is not to be trusted fully; empty where it is good. */
-export function qualityNote(position: PositionView): string {
-  if (position.quality === "good") return "";
-  const reason = position.quality_reason;
-  return reason === "" ? `Tracking ${position.quality}` : `Tracking ${position.quality}: ${reason}`;
 }
 
 export function initials(name: string): string {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { regionAt, ring, isOld } from "../src/plan/ellipse";
+import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorsOf } from "../src/plan/floors";
 import { trailLines } from "../src/plan/trail";
 import type { Plan, TrailPoint } from "../src/wire";
@@ -26,6 +26,18 @@ describe("the region of a position", () => {
     const region = regionAt(position(), 30_000);
     expect(region.major_m).toBe(32);
     expect(region.minor_m).toBe(31);
+  });
+
+  it("keeps to what the walls leave while the station can be heard", () => {
+    const reach: [number, number][] = [
+      [0, 0],
+      [4, 0],
+      [4, 3],
+    ];
+    const silent = position({ reach });
+    expect(outline([0, 0], silent, 0)).toEqual([...reach, [0, 0]]);
+    expect(outline([0, 0], silent, 5_000)).toEqual(ring([0, 0], regionAt(silent, 5_000)));
+    expect(outline([0, 0], position(), 0)).toEqual(ring([0, 0], regionAt(position(), 0)));
   });
 
   it("belongs to an old position after ten seconds", () => {

@@ -44,11 +44,12 @@ describe("words", () => {
     expect(words.activityOf(unit("a", { status: null }))).toBe("No status");
   });
 
-  it("say why a position is poor", () => {
-    expect(words.qualityNote(position())).toBe("");
-    expect(words.qualityNote(position({ quality: "lost", quality_reason: "sample gap" }))).toBe(
-      "Tracking lost: sample gap",
+  it("says how sure a floor is only where there is a doubt", () => {
+    expect(words.floorOf(position({ floor: 1, floor_probability: 0.97 }))).toBe("floor 1");
+    expect(words.floorOf(position({ floor: 1, floor_probability: 0.8 }))).toBe(
+      "floor 1 (80 % sure)",
     );
+    expect(words.floorOf(position({ floor: null }))).toBe("floor unknown");
   });
 
   it.each([

@@ -11,7 +11,7 @@ import type { FloorChoice } from "../view";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
 import { initials } from "../words";
 import type { Colours } from "./colours";
-import { isOld, regionAt, ring } from "./ellipse";
+import { isOld, outline, regionAt } from "./ellipse";
 import { labelStyle, markStyle, regionStyle, trailStyle, type Mark } from "./marks";
 import { siteCoordinate } from "./site";
 import { trailLines } from "./trail";
@@ -81,7 +81,7 @@ export class Crowd {
     const walked = scene.trails.get(unit.unit_id) ?? [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
     const ellipse = regionAt(position, scene.silentMs);
-    region.getGeometry()?.setCoordinates([ring(centre, ellipse)]);
+    region.getGeometry()?.setCoordinates([outline(centre, position, scene.silentMs)]);
     mark.getGeometry()?.setCoordinates(centre);
     label.getGeometry()?.setCoordinates(centre);
     trail.setStyle(trailStyle(looks, scene.colours));
@@ -132,7 +132,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     initials: initials(name),
     urgency: urgencyOf(unit, scene.alarms),
     chosen: unit.unit_id === scene.chosen,
-    old: isOld(position, scene.nowMs),
+    old: isOld(position, scene.nowMs) || position.reach.length > 0,
     ageMs: scene.nowMs - position.t_ms,
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,

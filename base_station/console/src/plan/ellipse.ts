@@ -29,6 +29,19 @@ export function isOld(position: PositionView, nowMs: number): boolean {
   return nowMs - position.t_ms >= OLD_MS;
 }
 
+/** Where somebody can be: what the walls leave to a wearer who is not heard, else the ellipse. */
+export function outline(
+  centre: readonly [number, number],
+  position: PositionView,
+  silentMs: number,
+): [number, number][] {
+  const { reach } = position;
+  const [first] = reach;
+  // While the station is silent the region grows, and only the ellipse is known to.
+  if (first === undefined || silentMs > 0) return ring(centre, regionAt(position, silentMs));
+  return [...reach, first];
+}
+
 /** A closed ring of `[east_m, north_m]` about a centre. */
 export function ring(centre: readonly [number, number], region: Region): [number, number][] {
   const sin = Math.sin(region.heading_rad);

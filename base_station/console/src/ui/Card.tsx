@@ -152,7 +152,7 @@ function Where({ unit, now, silentMs }: WhereProps) {
   const old = isOld(position, now);
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
-      {words.floorName(position.floor)}, {words.plusMinus(regionAt(position, silentMs).major_m)}
+      {words.floorOf(position)}, {words.plusMinus(regionAt(position, silentMs).major_m)}
       <span class="spoken">, {words.place(position)}</span>
       {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
     </Fact>
