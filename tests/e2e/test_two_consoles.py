@@ -1,0 +1,38 @@
+"""The console when its station dies: it goes to the other one, where the same people log in."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, expect
+
+from base_station.bench.two_stations import Place, Station, TwoStations
+
+PATIENCE_MS = 60_000
+
+
+def log_in(page: Page, station: Station) -> None:
+    username, password = station.login()
+    page.get_by_label("User").fill(username)
+    page.get_by_label("Password").fill(password)
+    page.get_by_role("button", name="Log in").click()
+
+
+def test_the_console_goes_to_the_station_that_has_taken_over(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    with ExitStack() as closing:
+        two = TwoStations(tmp_path, (Place(), Place()), closing)
+        two.start()
+        two.first.post("/incidents", {"name": "Mill Lane"})
+        page = chromium.new_page()
+        closing.callback(page.close)
+        page.goto(two.first.url)
+        log_in(page, two.first)
+        expect(page.get_by_text("Mill Lane").first).to_be_visible()
+        two.first.kill()
+        expect(page.get_by_role("alert")).to_contain_text("Connection to the station lost")
+        page.wait_for_url(f"{two.second.url}/**", timeout=PATIENCE_MS)
+        log_in(page, two.second)
+        expect(page.get_by_text("Mill Lane").first).to_be_visible()
