@@ -15,6 +15,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 
 AGAIN_NS = 20 * NS_PER_S  # sightings closer in time than this are one
+NEARER = 0.7  # of the standard deviation before: worth solving the past again
 REACH_M = 3.0  # of a beacon that nobody has placed yet
 TAG_REACH_M = 0.5  # of an arm
 MEETING_REACH_M = 3.0
@@ -48,7 +49,7 @@ def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> s
         other_id=sighting.seen_id,
     )
     earlier = _same_visit(state, pin)
-    if earlier is not None and earlier.std_m <= pin.std_m:
+    if earlier is not None and pin.std_m > NEARER * earlier.std_m:
         return set()
     if earlier is not None:
         del state.pins[earlier.pin_id]

@@ -1,0 +1,141 @@
+"""Trails and the assessment of an incident by way of the API."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+from base_station.checkpoints import Checkpoints
+from base_station.db.accounts import Role
+from base_station.db.smoothed import SmoothedTracks
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.hindsight import Hindsight
+from base_station.playback import Archive
+from shared.channels import channel_of
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import encode
+from shared.messages import Header, Message, Position
+from shared.messages.station import SetAnchor
+from tests.live_station import make_pipeline
+from tests.station import DeskStation
+
+Record = tuple[int, str, bytes]
+
+
+@pytest_asyncio.fixture
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+    """It keeps a log in memory of what it hears."""
+    station = DeskStation(tmp_path, clock)
+    records: list[Record] = []
+    hear = station.drive.hear
+
+    def recorded(message: Message) -> object:
+        key = channel_of(message).key(message.header.unit_id)
+        records.append((clock.utc_ns(), key, encode(message)))
+        return hear(message)
+
+    station.drive.hear = recorded  # type: ignore[method-assign,assignment]  # beside the real one
+    archive = Archive(
+        lambda t_ns: [one for one in records if one[0] >= t_ns],
+        Checkpoints(tmp_path / "checkpoints"),
+        make_pipeline,
+    )
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(station.store), clock)
+    station.app.state.services = replace(station.services, hindsight=hindsight)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    yield station
+    station.close()
+
+
+async def worked(
+    station: DeskStation, clock: ManualClock, position: Position, *, closed: bool
+) -> str:
+    """An incident of a minute in which one unit walks north and is pinned."""
+    async with station.client(Role.COMMANDER) as commander:
+        await commander.post("/units", json={"unit_id": "FF-01"})
+        opened = await commander.post("/incidents", json={"name": "Mill Lane"})
+        start = {"north_m": 0.0, "east_m": 0.0, "heading_std_rad": 0.1}
+        await commander.put("/units/FF-01/start", json=start)
+        for second in range(60):
+            clock.advance(1.0)
+            header = Header("FF-01", 7, second + 1, second * NS_PER_S)
+            walked = msgspec.structs.replace(
+                position, header=header, north_m=1.0 * second, east_m=0.0
+            )
+            station.drive.hear(walked)
+        pin = {"unit_id": "FF-01", "north_m": 58.0, "east_m": 2.0, "std_m": 0.5}
+        assert (await commander.post("/pins", json=pin)).status_code == 201
+        incident_id: str = opened.json()["incident_id"]
+        if closed:
+            clock.advance(1.0)
+            await commander.post(f"/incidents/{incident_id}/close")
+        return incident_id
+
+
+@pytest.mark.parametrize("closed", [True, False])
+async def test_raw_shown_and_smoothed_stand_side_by_side(
+    station: DeskStation, clock: ManualClock, make_position, closed: bool
+) -> None:
+    incident_id = await worked(station, clock, make_position(), closed=closed)
+    async with station.client(Role.VIEWER) as viewer:
+        last = {}
+        for kind in ("raw", "fused", "smoothed"):
+            answer = await viewer.get(f"/incidents/{incident_id}/trails", params={"kind": kind})
+            assert answer.status_code == 200, answer.text
+            body = answer.json()
+            assert (body["incident_id"], body["kind"]) == (incident_id, kind)
+            (trail,) = body["trails"]
+            assert trail["unit_id"] == "FF-01"
+            assert len(trail["points"]) > 30
+            last[kind] = trail["points"][-3]
+        assert last["smoothed"][2] > 1.0 > abs(last["fused"][2])
+        few = await viewer.get(
+            f"/incidents/{incident_id}/trails", params={"kind": "smoothed", "every_s": 30}
+        )
+        assert len(few.json()["trails"][0]["points"]) <= 4
+
+
+async def test_an_assessment_and_an_export_of_the_smoothed_trail(
+    station: DeskStation, clock: ManualClock, make_position
+) -> None:
+    incident_id = await worked(station, clock, make_position(), closed=True)
+    station.drive.submit("chief", SetAnchor(52.0, 4.0, 0.0, 0.0))
+    async with station.client(Role.VIEWER) as viewer:
+        answer = await viewer.get(f"/incidents/{incident_id}/assessment")
+        assert answer.status_code == 200, answer.text
+        (unit,) = answer.json()["units"]
+        assert unit["stated"]["ce50_m"] < unit["stated"]["ce95_m"]
+        (residual,) = unit["pin_residuals"]
+        assert residual["used"]
+        files = [
+            await viewer.get(f"/incidents/{incident_id}/export/csv", params={"kind": kind})
+            for kind in ("fused", "smoothed")
+        ]
+        assert all(file.status_code == 200 for file in files)
+        assert files[0].content != files[1].content
+
+
+async def test_what_cannot_be_is_said(station: DeskStation) -> None:
+    async with station.client(Role.VIEWER) as viewer:
+        for path in ("trails", "assessment"):
+            assert (await viewer.get(f"/incidents/none/{path}")).status_code == 404
+        odd = await viewer.get("/incidents/none/trails", params={"kind": "dreamt"})
+        assert odd.status_code == 422
+
+
+async def test_a_station_without_a_log_says_so(tmp_path: Path, clock: ManualClock) -> None:
+    station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    async with station.client(Role.COMMANDER) as commander:
+        opened = await commander.post("/incidents", json={"name": "Mill Lane"})
+        path = f"/incidents/{opened.json()['incident_id']}/trails"
+        answer = await commander.get(path, params={"kind": "smoothed"})
+        assert answer.status_code == 503
+        assert "no log" in answer.json()["detail"]
+    station.close()

@@ -1,0 +1,67 @@
+"""Whatever is pinned, moved and removed: nobody ends up nowhere, and what is undone is undone."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from shared.messages.pins import RemovePin
+from tests.square_walk import Walk
+
+SECONDS = 80
+PINS = st.lists(
+    st.tuples(
+        st.sampled_from(["p1", "p2", "p3"]),
+        st.floats(0.0, float(SECONDS)),
+        st.one_of(st.floats(-3.0, 3.0), st.floats(-1e4, 1e4)),
+        st.booleans(),  # taken back at once
+    ),
+    min_size=1,
+    max_size=6,
+)
+
+
+def walked() -> Walk:
+    walk = Walk("FF-01", turn_rad=0.7)
+    walk.start("FF-01")
+    walk.go(SECONDS)
+    return walk
+
+
+@pytest.fixture(scope="module")
+def plain() -> Walk:
+    walk = walked()
+    walk.go(10)
+    return walk
+
+
+@given(pins=PINS)
+@settings(
+    max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+def test_with_all_pins_taken_back_everything_is_as_it_was(
+    plain: Walk, pins: list[tuple[str, float, float, bool]]
+) -> None:
+    walk = walked()
+    for pin_id, second, off_m, taken_back in pins:
+        walk.pin(pin_id, "FF-01", second, off_m)
+        unit = walk.script.pipeline.state.units["FF-01"]
+        assert unit.fused is not None
+        assert all(map(math.isfinite, (unit.fused.north_m, unit.fused.std_north_m)))
+        assert all(math.isfinite(step.north_m) for step in unit.trail)
+        state = walk.script.pipeline.state
+        assert state.pin_verdicts.keys() == state.pins.keys()
+        if taken_back:
+            walk.script.act(RemovePin(pin_id))
+    for pin_id in list(walk.script.pipeline.state.pins):
+        walk.script.act(RemovePin(pin_id))
+    walk.go(10)
+    mine, theirs = (one.script.pipeline.state.units["FF-01"] for one in (walk, plain))
+    assert mine.trail == theirs.trail
+    assert mine.fused is not None
+    assert theirs.fused is not None
+    assert mine.fused.north_m == theirs.fused.north_m
+    assert mine.fused.std_east_m == theirs.fused.std_east_m
