@@ -28,3 +28,16 @@ def test_a_shown_position_is_that_of_the_nearest_sensor_time() -> None:
     sent = {"anna": [100 * MS, 200 * MS, 300 * MS], "ben": [100 * MS]}
     shown = {"anna": {102: 150 * MS, 199: 250 * MS, 201: 260 * MS}}
     assert latencies_ms(sent, shown) == [50.0, 50.0]
+
+
+def test_many_consoles_and_slow_ones_cost_nobody_a_message() -> None:
+    with Progress(disable=True) as progress:
+        report = measure(
+            units=3, rate_hz=7.0, seconds=3.0, consoles=1, progress=progress, beside=(30, 4)
+        )
+    assert (report.lost, report.stepped) == (0, report.sent)
+    assert report.console_gaps == 0
+    assert (report.onlookers.onlookers, report.slow.onlookers) == (30, 4)
+    assert report.onlookers.cut_off == 0
+    assert report.onlookers.snapshots == 30  # nobody who reads was set back to a new one
+    assert report.onlookers.least_messages > report.slow.least_messages
