@@ -25,8 +25,6 @@ _LIE_ROLL_RAD = radians(25)
 _LIE_TRUNK_RAD = radians(82)
 _LIE_PELVIS_M = 0.06
 _LIFT_DOORS_S = 2.0
-_LIFT_ACCEL_MPS2 = 0.9
-_PEAK_SPEED, _PEAK_ACCEL = 2.19, 7.52  # of a Curve's move, for a way of 1 in a time of 1
 
 
 def stand(plan: BodyPlan, duration_s: float) -> None:
@@ -39,13 +37,9 @@ def stand(plan: BodyPlan, duration_s: float) -> None:
 
 
 def ride(plan: BodyPlan, rise_m: float, speed_mps: float) -> None:
-    """Stand while the floor itself goes up or down, with what comfort allows of acceleration."""
+    """Stand while the floor itself goes up or down."""
     stand(plan, _LIFT_DOORS_S)
-    by_speed_s = _PEAK_SPEED * abs(rise_m) / speed_mps
-    by_accel_s = (_PEAK_ACCEL * abs(rise_m) / _LIFT_ACCEL_MPS2) ** 0.5
-    begin_s = plan.duration_s
-    plan.duration_s += max(by_speed_s, by_accel_s, 1.0)
-    plan.down.move(begin_s, plan.duration_s, plan.down.last - rise_m)
+    plan.duration_s = plan.floor.move(plan.duration_s, -rise_m, speed_mps)
     stand(plan, _LIFT_DOORS_S)
 
 

@@ -66,7 +66,7 @@ def _foot(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]
     flat = Place(
         plan.north.jet(t_s) + shake[0],
         plan.east.jet(t_s) + shake[1],
-        plan.down.jet(t_s) + plan.lift.jet(t_s) + shake[2],
+        plan.down.jet(t_s) + plan.floor.jet(t_s) + plan.lift.jet(t_s) + shake[2],
     )
     # The lever from the point that stays on the ground, and where it would be if flat.
     to_heel_m = _HEEL_TO_INSTEP_X_M - _BALL_TO_INSTEP_X_M
@@ -98,7 +98,10 @@ def _pelvis(plan: BodyPlan, t_s: Floats, twist: float) -> tuple[Place, Attitude]
     feet = Place(
         plan.north.smoothed(t_s, _FOLLOW_S),
         plan.east.smoothed(t_s, _FOLLOW_S),
-        plan.down.smoothed(t_s, _FOLLOW_S) - plan.pelvis_height.jet(t_s) + plan.bounce.jet(t_s),
+        plan.down.smoothed(t_s, _FOLLOW_S)
+        + plan.floor.jet(t_s)
+        - plan.pelvis_height.jet(t_s)
+        + plan.bounce.jet(t_s),
     )
     zero = constant(t_s, 0.0)
     middle = Attitude(zero, zero, yaw).yawed(zero, sway.shifted(-HALF_TRACK_M), zero)

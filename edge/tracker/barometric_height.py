@@ -68,14 +68,14 @@ def _gather(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> No
     if barometer.samples == 0:
         barometer.since_s = ring[slot].t_s
         barometer.off_m = 0.0
-        barometer.push_mps2 = 0.0
+        barometer.force_mps2 = 0.0
     barometer.samples += 1
     share = 1.0 / barometer.samples
     down_m = AIR_SCALE_HEIGHT_M * math.log(pressure_pa / barometer.reference_pa)
     off_m = down_m - state.position_n_m[2]
     barometer.off_m += share * (off_m - barometer.off_m)
-    push_mps2 = state.force_n_mps2[2] + config.gravity_mps2
-    barometer.push_mps2 += share * (push_mps2 - barometer.push_mps2)
+    x, y, z = ring[slot].accel_mps2[0], ring[slot].accel_mps2[1], ring[slot].accel_mps2[2]
+    barometer.force_mps2 += share * (math.sqrt(x * x + y * y + z * z) - barometer.force_mps2)
 
 
 @njit()
@@ -113,8 +113,9 @@ def _look(
         _refuse(barometer, residual_m, config)
     else:
         barometer.refused = 0
-        _learn_noise(barometer, residual_m, expected - noise, config)
-        _watch_floor(barometer, progress, residual_m, config)
+        if not barometer.riding:
+            _learn_noise(barometer, residual_m, expected - noise, config)
+            _watch_floor(barometer, progress, residual_m, config)
         measure_aside(
             barometer.estimate,
             barometer.covariance,
@@ -123,7 +124,7 @@ def _look(
             noise,
             barometer.column,
         )
-        _hand_over(ring, progress, state, slot, prior)
+        _hand_over(ring, progress, state, slot, prior, config)
     if barometer.riding:
         # Until the next look.
         state.covariance[DOWN, DOWN] += (config.ride_speed_mps * config.ride_look_s) ** 2
@@ -131,7 +132,9 @@ def _look(
 
 
 @njit()
-def _hand_over(ring: Ring, progress: Progress, state: FilterState, slot: int, prior: float) -> None:
+def _hand_over(
+    ring: Ring, progress: Progress, state: FilterState, slot: int, prior: float, config: EskfConfig
+) -> None:
     """Bring the height to what is known now, and the floor that is walked on with it."""
     barometer = state.barometer
     residual_m, variance = handed_over(barometer.estimate, barometer.covariance, prior)
@@ -142,6 +145,8 @@ def _hand_over(ring: Ring, progress: Progress, state: FilterState, slot: int, pr
     measure(ring, state, slot, DOWN, residual_m, variance)
     end_updates(state)
     moved_m = state.position_n_m[2] - before_m
+    if barometer.riding and abs(moved_m) > config.ride_going_m:
+        barometer.felt_s = ring[slot].t_s
     progress.level_m += moved_m
     progress.footfall_n_m[2] += moved_m
     progress.level_variance_m2 = min(progress.level_variance_m2, state.covariance[DOWN, DOWN])
@@ -153,17 +158,24 @@ def _notice_ride(
 ) -> bool:
     """A push on somebody who stands may be the start of a ride; a stride is its end.
 
-    Returns whether one starts.
+    The accelerometer's own reading at rest is the measure, learned slowly: a push lasts long
+    enough to pass for a bias.  Returns whether a ride starts.
     """
     before = barometer.riding
-    if progress.steps != barometer.steps:
-        barometer.steps = progress.steps
+    if lasted_s >= (config.ride_look_s if before else config.aid_look_s):
+        if barometer.rest_mps2 == 0.0:
+            barometer.rest_mps2 = barometer.force_mps2
+        push_mps2 = barometer.force_mps2 - barometer.rest_mps2
+        if abs(push_mps2) > config.ride_push_mps2:
+            barometer.riding = True
+            barometer.felt_s = t_s
+        elif not before:
+            barometer.rest_mps2 += config.ride_rest_weight * push_mps2
+    calm = t_s - barometer.felt_s > config.ride_calm_s
+    if progress.steps != barometer.steps and calm:
         barometer.riding = False
-    standing = lasted_s >= (config.ride_look_s if before else config.aid_look_s)
-    if standing and abs(barometer.push_mps2) > config.ride_push_mps2:
-        barometer.riding = True
-        barometer.pushed_s = t_s
-    if t_s - barometer.pushed_s > config.ride_longest_s:
+    barometer.steps = progress.steps
+    if t_s - barometer.felt_s > config.ride_longest_s:
         barometer.riding = False
     return bool(barometer.riding and not before)
 

@@ -86,10 +86,13 @@ class EskfConfig(NamedTuple):
     air_floor_off_m: float = 0.07  # mean over so many strides that speaks against a flat floor
     air_floor_sink_m: float = 0.008  # mean sink of a stride that is none
     ride_push_mps2: float = 0.15  # mean over a look at somebody who stands
+    ride_rest_weight: float = 0.1  # of one look without a push
     ride_speed_mps: float = 2.5
+    ride_going_m: float = 0.15  # in one look
+    ride_calm_s: float = 2.0  # without a push or a rise, before a stride ends it
     ride_look_s: float = 0.25
     air_stuck_s: float = 5.0  # the same to the last bit for so long is a sensor that hangs
-    ride_longest_s: float = 40.0  # after the last push
+    ride_longest_s: float = 40.0  # after the last push or rise
 
     # Process noise.
     accel_noise_mps2_rthz: float = 0.105

@@ -106,9 +106,10 @@ BAROMETER = np.dtype(
         ("samples", np.int64),  # in this stance so far
         ("since_s", np.float64),
         ("off_m", np.float64),  # their mean below the tracker's height
-        ("push_mps2", np.float64),  # mean acceleration of the standing foot, down
+        ("force_mps2", np.float64),  # and mean norm of the accelerometer
+        ("rest_mps2", np.float64),  # what that is of somebody who stands
         ("riding", np.bool_),  # perhaps in a lift
-        ("pushed_s", np.float64),
+        ("felt_s", np.float64),  # when it last pushed or rose
         ("said_pa", np.float64),  # last
         ("changed_s", np.float64),
         ("steps", np.int64),  # when that was last looked at

@@ -10,8 +10,10 @@ import msgspec
 import numpy as np
 import pytest
 
+from edge.bench.aids import whole_walk
 from edge.samples import ImuBatch
-from edge.simulation import SCENARIOS, Simulation
+from edge.simulation import SCENARIOS, Scenario, Simulation
+from edge.simulation.legs import Ride, Stand, Turn, Walk
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.rows import join_rows
 from tests.walking import walk
@@ -57,6 +59,32 @@ def test_a_lift_is_ridden_along(seed):
     assert abs(error_m[-1]) < 0.4
     normalised = error_m / np.sqrt(rows.position_cov_m2[:, 2, 2] + 0.02**2)
     assert rms(normalised) < 2.0
+
+
+def error_of(legs, seed):
+    scenario = Scenario(name="rides", summary="", legs=legs, building=True, start=(5.0, 5.0))
+    simulation = Simulation(scenario, seed)
+    imu = whole_walk(simulation)
+    down_m = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64)).position_n_m[:, 2]
+    rows = run(simulation.description, imu)
+    return rows.position_n_m[:, 2] - (down_m - down_m[0]), np.sqrt(rows.position_cov_m2[:, 2, 2])
+
+
+TO_LIFT, FROM_LIFT = Walk(((7.0, 12.0),)), Walk(((7.0, 20.0),))
+RIDES = {
+    "ten floors, fast": (Ride(32.0, 3.0), FROM_LIFT, Ride(-32.0, 3.0)),
+    "stops on the way": (Ride(3.2), Ride(3.2), Ride(6.4), FROM_LIFT, Ride(-12.8)),
+    "turns about in it": (Ride(6.4), Turn(90.0), Stand(3.0), Turn(270.0), Ride(6.4)),
+    "slow, hydraulic": (Ride(3.2, 0.3), FROM_LIFT),
+}
+
+
+@pytest.mark.parametrize("what", RIDES)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_rides_of_all_kinds_end_on_their_floor(what, seed):
+    error_m, std_m = error_of((Stand(3.0), TO_LIFT, *RIDES[what], FROM_LIFT, Stand(3.0)), seed)
+    assert abs(error_m[-1]) < 0.5
+    assert abs(error_m[-1]) < 3.0 * std_m[-1]
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -7,6 +7,7 @@ import pytest
 
 from edge.samples import Floats
 from edge.simulation import open_simulation
+from edge.simulation.glide import ACCEL_MPS2, Glide
 from edge.simulation.kinematics import Motion
 from shared.messages.status import Activity
 
@@ -63,3 +64,19 @@ def test_lying_on_the_back_points_the_front_up(segment: str) -> None:
     assert (after.rotation_nb[0] @ front_s)[2] < -0.8
     assert -after.position_n_m[0, 2] < 0.45
     assert np.abs(after.velocity_n_mps).max() == 0.0
+
+
+@pytest.mark.parametrize(("by", "speed_mps"), [(-3.2, 1.6), (32.0, 3.0), (0.4, 1.0)])
+def test_a_lift_glides_to_its_floor_with_comfort(by, speed_mps):
+    glide = Glide()
+    glide.move(1.0, 2.0, 5.0)
+    end_s = glide.move(40.0, by, speed_mps)
+    t_s = np.arange(35.0, end_s + 2.0, 1e-3)
+    jet = glide.jet(t_s)
+    assert jet.value[0] == pytest.approx(2.0)
+    assert jet.value[-1] == pytest.approx(2.0 + by)
+    assert np.abs(jet.rate).max() <= speed_mps + 1e-9
+    assert np.abs(jet.accel).max() <= ACCEL_MPS2 + 1e-9
+    assert jet.rate[t_s > end_s] == pytest.approx(0.0)
+    np.testing.assert_allclose(np.gradient(jet.value, t_s), jet.rate, atol=1e-5)
+    np.testing.assert_allclose(np.gradient(jet.rate, t_s), jet.accel, atol=1e-5)
