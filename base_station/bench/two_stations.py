@@ -238,6 +238,10 @@ class TwoStations:
         for process in self.units.values():
             _end(process)
 
+    def both_have(self, said: set[MessageId]) -> bool:
+        """Whether these messages are in both logs."""
+        return all(said <= one.logged().messages.keys() for one in (self.first, self.second))
+
     def said(self) -> set[MessageId]:
         """What the units have ever said, by their journals."""
         said = set()

@@ -36,11 +36,7 @@ def complete(two: TwoStations) -> None:
     """Wait until both logs have everything that the units have said by now."""
     said = two.said()
     assert len(said) > 100
-
-    def nothing_is_missing() -> bool:
-        return all(said <= one.logged().messages.keys() for one in (two.first, two.second))
-
-    wait_until("nothing is missing", nothing_is_missing)
+    wait_until("nothing is missing", lambda: two.both_have(said))
 
 
 def end_and_compare(two: TwoStations, ends_first: Station) -> None:
