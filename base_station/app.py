@@ -178,6 +178,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             recovering(recorder.segments(), listening, config.http, announce),
         )
         gate = side.gate_to(drive)
+        beside = closing.enter_context(ExitStack())  # ends behind the drive: the other gets all
         closing.callback(drive.stop)
         closing.callback(hearing.close)  # first: what still comes is stepped before the end
         backfill.start()
@@ -206,7 +207,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         enrolled = EnrolledUnits(pki, gate, roster.registered_units)
         keep_house = _housekeeping(recorder, records, enrolled, side)
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
-        side.start(gate, closing)
+        side.start(gate, beside)
         asyncio.run(serve_until_stopped(server, announce, keep_house))
         return again[0] if again else None
 
