@@ -204,8 +204,9 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             accountability=config.accountability,
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
-        enrolled = EnrolledUnits(pki, gate, roster.registered_units)
-        keep_house = _housekeeping(recorder, records, enrolled, side)
+        keep_house = _housekeeping(
+            recorder, records, EnrolledUnits(pki, gate, roster.registered_units), side
+        )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
         asyncio.run(serve_until_stopped(server, announce, keep_house))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -15,6 +16,8 @@ from shared.errors import StoreError
 from shared.messages.station import Action
 
 _BEHIND_NS = 2 * NS_PER_S
+_GOODBYE_NS = 2 * NS_PER_S
+_LOOK_S = 0.02
 _GONE_NS = 3 * NS_PER_S  # nothing was heard from it
 
 
@@ -93,6 +96,12 @@ class OtherCopy:
                 self._waiting.append(_Waiting(place, until_ns, done, told))
                 return
         told.set_result(done)
+
+    def hand_over(self) -> None:
+        """Wait until the standby has all of it, where it answers."""
+        end_ns = self._clock.monotonic_ns() + _GOODBYE_NS
+        while self.is_there and self._has < self._place() and self._clock.monotonic_ns() < end_ns:
+            time.sleep(_LOOK_S)
 
     def close(self) -> None:
         """Nobody is left waiting."""

@@ -52,7 +52,7 @@ class Around:
 
 
 class Pair:
-    """``start`` it when the drive runs; ``close`` it before the drive ends."""
+    """``start`` it when the drive runs; ``close`` it when the drive has ended."""
 
     def __init__(self, config: StandbyConfig, around: Around) -> None:
         self._config = config
@@ -84,12 +84,15 @@ class Pair:
         self._thread.start()
 
     def close(self) -> None:
+        """When the drive has ended: what it has still written goes to the other one."""
         with self._told:
             self._closed = True
             self._told.notify_all()
         self._thread.join()
-        self._follower.close()
+        if self.leads:
+            self.copy.hand_over()
         self.copy.close()
+        self._follower.close()
         self._shipping.close()
         for one in self._declared:
             one.close()
