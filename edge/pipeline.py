@@ -13,7 +13,7 @@ from edge.calibration import Calibration, identity
 from edge.decimation import Decimator
 from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
-from edge.raw_stream import gps_fix
+from edge.raw_stream import gps_fix, says_what, sighting
 from edge.raw_uplink import RawUplink
 from edge.samples import (
     CANCEL,
@@ -26,15 +26,18 @@ from edge.samples import (
     OtherSample,
     SensorBatch,
     SensorDescription,
+    SightingSample,
 )
 from edge.sensor_health import SensorHealth
 from edge.timeline import Timeline
 from edge.tracker.port import Tracker
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
+from shared.clock import NS_PER_S
 from shared.envelope import Stamper
 from shared.messages import EventKind, Message, Status, Temperature, UnitDescription, UnitEvent
 
 LIVE = Timeline()
+_MOST_SIGHTED = 1000  # things told from each other
 _DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
 
 
@@ -82,6 +85,7 @@ class TrackerPipeline:
         self._mayday = mayday
         self._has_gps = False
         self._journal_pending = 0
+        self._sighted_ns: dict[tuple[str, str], int] = {}
 
     def start(self) -> tuple[Message, ...]:
         """The unit's first words."""
@@ -137,6 +141,8 @@ class TrackerPipeline:
                 self._has_gps = True
                 if self._gps_times.takes(sample.t_ns):
                     return [gps_fix(self._stamper.header(mono_ns), sample)]
+            case SightingSample():
+                return self._take_sighting(sample, mono_ns)
             case BatterySample():
                 self._battery = sample.level
             case ButtonPress(button=button) if button in (MAYDAY, CANCEL):
@@ -149,6 +155,18 @@ class TrackerPipeline:
         if not self._temperature_times.takes(sample.t_ns):
             return []
         return [Temperature(self._stamper.header(mono_ns), sample.temperature_degc)]
+
+    def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
+        """The same thing at most once a second."""
+        what = (sample.kind, sample.seen_id)
+        before_ns = self._sighted_ns.get(what)
+        again = before_ns is not None and 0 <= sample.t_ns - before_ns < NS_PER_S
+        if again or not says_what(sample):
+            return []
+        if len(self._sighted_ns) >= _MOST_SIGHTED:
+            self._sighted_ns.clear()
+        self._sighted_ns[what] = sample.t_ns
+        return [sighting(self._stamper.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
         """A mayday stays until the wearer takes it back."""

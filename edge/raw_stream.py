@@ -4,9 +4,9 @@ The wire quantises.  An agent therefore takes its samples through here before it
 and a replay of the black box gives the same positions to the last bit.
 
 A sample travels as the message whose fields it has: ambient temperature as Temperature, a
-fix as GpsFix, the battery's level as a Status of unknown activity, a button as the UnitEvent
-that it causes.  Their headers carry the sample's own time and sequence number 0: they are
-not part of the unit's journal.
+fix as GpsFix, something seen as a Sighting, the battery's level as a Status of unknown activity, a
+button as the UnitEvent that it causes.  Their headers carry the sample's own time and sequence
+number 0: they are not part of the unit's journal.
 """
 
 from __future__ import annotations
@@ -17,8 +17,11 @@ import numpy as np
 
 from edge.samples import (
     ACKNOWLEDGE,
+    BEACON,
     CANCEL,
     MAYDAY,
+    TAG,
+    UNIT,
     AmbientSample,
     BatterySample,
     ButtonPress,
@@ -27,6 +30,7 @@ from edge.samples import (
     OtherSample,
     SensorBatch,
     SensorDescription,
+    SightingSample,
 )
 from shared.messages import (
     Activity,
@@ -36,6 +40,8 @@ from shared.messages import (
     Header,
     Message,
     RawImu,
+    Sighting,
+    SightingKind,
     Status,
     Temperature,
     UnitDescription,
@@ -48,6 +54,12 @@ _EVENT_OF_BUTTON = {
     ACKNOWLEDGE: EventKind.ACKNOWLEDGED,
 }
 _BUTTON_OF_EVENT = {kind: button for button, kind in _EVENT_OF_BUTTON.items()}
+_KIND_OF_SIGHTING = {
+    BEACON: SightingKind.BEACON,
+    TAG: SightingKind.TAG,
+    UNIT: SightingKind.UNIT,
+}
+_SIGHTING_OF_KIND = {kind: name for name, kind in _KIND_OF_SIGHTING.items()}
 
 
 class RawStream:
@@ -147,6 +159,21 @@ def gps_fix(header: Header, sample: GpsSample) -> GpsFix:
     )
 
 
+def says_what(sample: SightingSample) -> bool:
+    """Whether the wire can say what was seen."""
+    return sample.kind in _KIND_OF_SIGHTING and sample.seen_id != ""
+
+
+def sighting(header: Header, sample: SightingSample) -> Sighting:
+    return Sighting(
+        header=header,
+        kind=_KIND_OF_SIGHTING[sample.kind],
+        seen_id=sample.seen_id,
+        range_m=_or_none(sample.range_m),
+        range_std_m=_or_none(sample.range_std_m),
+    )
+
+
 def raw_imu(header: Header, imu: ImuBatch) -> RawImu:
     """Not rounded yet; the wire does that."""
     return RawImu(
@@ -189,6 +216,8 @@ def _message_of(header: Header, sample: OtherSample) -> Message | None:
         case BatterySample(level=level) if math.isfinite(level):
             status = _battery_status(header, min(1.0, max(0.0, level)))
             return Status.from_wire(status.to_wire())
+        case SightingSample() if says_what(sample):
+            return Sighting.from_wire(sighting(header, sample).to_wire())
         case ButtonPress(button=button) if button in _EVENT_OF_BUTTON:
             return UnitEvent(header=header, kind=_EVENT_OF_BUTTON[button])
     return None
@@ -203,6 +232,14 @@ def _sample_of(message: Message) -> OtherSample | None:
             return _gps_sample(t_ns, message)
         case Status(battery=float(level)):
             return BatterySample(t_ns, level)
+        case Sighting() if message.kind in _SIGHTING_OF_KIND:
+            return SightingSample(
+                t_ns,
+                _SIGHTING_OF_KIND[message.kind],
+                message.seen_id,
+                math.nan if message.range_m is None else message.range_m,
+                math.nan if message.range_std_m is None else message.range_std_m,
+            )
         case UnitEvent() if message.kind in _BUTTON_OF_EVENT:
             return ButtonPress(t_ns, _BUTTON_OF_EVENT[message.kind])
     return None

@@ -93,7 +93,23 @@ class ButtonPress:
     button: str
 
 
-OtherSample = AmbientSample | GpsSample | BatterySample | ButtonPress
+BEACON, TAG, UNIT = "beacon", "tag", "unit"
+
+
+@dataclass(frozen=True, slots=True)
+class SightingSample:
+    """Something that can be told from others was near: a radio beacon, a tag that was scanned, or
+    another unit.
+    """
+
+    t_ns: int
+    kind: str  # BEACON, TAG or UNIT
+    seen_id: str
+    range_m: float  # ``nan`` where it is not measured
+    range_std_m: float
+
+
+OtherSample = AmbientSample | GpsSample | BatterySample | ButtonPress | SightingSample
 
 
 @dataclass(frozen=True, slots=True)

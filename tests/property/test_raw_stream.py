@@ -18,6 +18,7 @@ from edge.samples import (
     ImuBatch,
     SensorBatch,
     SensorDescription,
+    SightingSample,
 )
 from shared.channels import channel_of
 from shared.codec import decode, encode
@@ -49,6 +50,10 @@ def imu_batches(draw) -> ImuBatch:
 OTHERS = st.one_of(
     st.builds(AmbientSample, TIMES, ANY),
     st.builds(BatterySample, TIMES, ANY),
+    st.builds(
+        SightingSample, TIMES, st.sampled_from(["beacon", "tag", "unit", "ghost"]),
+        st.text(max_size=8), ANY, ANY,
+    ),
     st.builds(ButtonPress, TIMES, st.sampled_from(["mayday", "cancel", "acknowledge", "unknown"])),
     st.builds(
         GpsSample, TIMES, st.one_of(st.just(math.nan), st.floats(-90, 90)), st.floats(-180, 180),

@@ -21,6 +21,7 @@ from edge.samples import (
     ImuBatch,
     SensorBatch,
     SensorDescription,
+    SightingSample,
 )
 from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason, TrackBatch
@@ -32,6 +33,8 @@ from shared.messages import (
     GpsFix,
     Message,
     Position,
+    Sighting,
+    SightingKind,
     Status,
     Temperature,
     UnitDescription,
@@ -206,6 +209,29 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
     cancelled = of(pipe.step(others_only(ButtonPress(4 * NS_PER_S, "cancel"))), UnitEvent)
     assert [event.kind for event in cancelled] == [EventKind.MAYDAY_CANCELLED]
     assert not of(steps(pipe, walk(300, 5.0), []), Status)[-1].mayday
+
+
+def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
+    pipe = pipeline()
+    near = SightingSample(0, "beacon", "door-3", 2.5, math.nan)
+    said = [
+        message
+        for sample in (
+            near,
+            replace(near, t_ns=NS_PER_S // 2),
+            replace(near, t_ns=NS_PER_S),
+            replace(near, seen_id="door-4"),
+            replace(near, kind="ghost"),
+            replace(near, seen_id=""),
+            replace(near, kind="unit", seen_id="FF-02"),
+        )
+        for message in pipe.step(others_only(sample))
+    ]
+    seen = of(said, Sighting)
+    assert [one.seen_id for one in seen] == ["door-3", "door-3", "door-4", "FF-02"]
+    assert (seen[0].kind, seen[0].range_m, seen[0].range_std_m) == (SightingKind.BEACON, 2.5, None)
+    seqs = [message.header.seq for message in said]
+    assert seqs == list(range(seqs[0], seqs[0] + len(seqs)))
 
 
 def test_status_tells_battery_and_journal():
