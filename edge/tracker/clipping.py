@@ -17,7 +17,7 @@ SLOPE_SAMPLES = 3
 
 
 @njit()
-def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: EskfConfig) -> None:
+def bridge_clipping(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
     """At the first clipped sample ``k`` of an axis put the whole run right, in the ring.
 
     Looks at samples before ``stop`` and within the look-ahead.  ``hidden_noise`` of the run
@@ -26,12 +26,12 @@ def bridge_clipping(ring: Ring, k: int, stop: int, clip_radps: float, config: Es
     mask = len(ring) - 1
     slot = k & mask
     for axis in range(3):
-        if abs(ring[slot].gyro_radps[axis]) < clip_radps or ring[slot].hidden_noise[axis] > 0.0:
+        if not ring[slot].clipped[axis] or ring[slot].hidden_noise[axis] > 0.0:
             continue
         end = k
         while (
             end < stop
-            and abs(ring[end & mask].gyro_radps[axis]) >= clip_radps
+            and ring[end & mask].clipped[axis]
             and ring[end & mask].t_s - ring[slot].t_s <= config.lookahead_s
         ):
             end += 1

@@ -26,6 +26,9 @@ SAMPLE_GAP = int(Reason.SAMPLE_GAP)
 
 NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock was set back
 STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
+PLATEAU_S = 0.008  # a high rate that stays the same to the last bit for so long has clipped
+PLATEAU_RADPS = 2.0  # the lowest full scale that is looked for
+PLATEAU_PASSED = 1.02  # times a full scale: then it was none
 PERIOD_WEIGHT = 0.005  # of one interval in the mean period
 
 _NO_VALUES: Floats = np.zeros(0)
@@ -40,6 +43,8 @@ GATE = np.dtype(
         ("gyro_radps", np.float64, 3),
         ("backward", np.int64),  # stamps before the last one, in a row
         ("repeats", np.int64),  # equal samples in a row
+        ("plateau", np.int64, 3),  # equal rates in a row, by axis
+        ("gyro_clip_radps", np.float64),  # that plateaus have shown
         ("started", np.bool_),
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
@@ -76,6 +81,7 @@ def new_gate(description: SensorDescription) -> NDArray[Any]:
         )
     gate = np.zeros(1, GATE)
     gate["period_s"] = 1.0 / description.rate_hz
+    gate["gyro_clip_radps"] = np.inf
     return gate
 
 
@@ -132,10 +138,13 @@ def admit(
     for i in range(len(t_ns)):
         slot = (received + i) & mask
         ring[slot].t_ns = t_ns[i]
+        for j in range(3):
+            ring[slot].clipped[j] = 0
         flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
         if flags & BAD_SAMPLES == 0:
             flags |= _time_flags(gate, t_ns[i], gap_s)
         if flags & BAD_SAMPLES == 0:
+            flags |= _clipped_axes(ring, received + i, gate, limits, gyro_radps[i])
             for j in range(3):
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
@@ -164,8 +173,6 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
             return BAD_SAMPLES  # also when not finite
         if abs(a) >= limits.accel_clip_mps2:
             flags |= ACCEL_SATURATED
-        if abs(w) >= limits.gyro_clip_radps:
-            flags |= GYRO_SATURATED
         same = same and a == gate[0].accel_mps2[j] and w == gate[0].gyro_radps[j]
         accel_square += a * a
         rate_square += w * w
@@ -173,6 +180,32 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
     resting = 81.0 < accel_square < 115.0 and rate_square < 0.04
     if gate[0].repeats >= STUCK_SAMPLES and not resting:
         return BAD_SAMPLES
+    return flags
+
+
+@njit()
+def _clipped_axes(ring: Ring, k: int, gate: NDArray[Any], limits: Limits, gyro: Floats) -> int:
+    """Mark the axes on which sample ``k`` has clipped, as told or as a plateau shows.
+
+    A plateau is known by its length, so its first samples are marked afterwards; the filter
+    is far behind.
+    """
+    mask = len(ring) - 1
+    flags = 0
+    for j in range(3):
+        rate = abs(gyro[j])
+        if rate > PLATEAU_PASSED * gate[0].gyro_clip_radps:
+            gate[0].gyro_clip_radps = np.inf
+        stays = gyro[j] == gate[0].gyro_radps[j] and gate[0].repeats == 0
+        gate[0].plateau[j] = gate[0].plateau[j] + 1 if stays and rate > PLATEAU_RADPS else 0
+        if gate[0].plateau[j] * gate[0].period_s >= PLATEAU_S:
+            gate[0].gyro_clip_radps = min(gate[0].gyro_clip_radps, 0.999 * rate)
+            for back in range(1, min(gate[0].plateau[j], mask // 8) + 1):
+                ring[(k - back) & mask].clipped[j] = 1
+                ring[(k - back) & mask].flags |= GYRO_SATURATED
+        if rate >= min(limits.gyro_clip_radps, gate[0].gyro_clip_radps):
+            ring[k & mask].clipped[j] = 1
+            flags |= GYRO_SATURATED
     return flags
 
 

@@ -41,7 +41,6 @@ class EskfTracker:
         self._ring = np.zeros(slots, RING)
         self._progress = new_progress()
         self._limits = limits_of(description, self.config.saturation_ratio)
-        self._progress["gyro_clip_radps"] = self._limits.gyro_clip_radps
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
         self._block = slots // 4

@@ -45,7 +45,7 @@ def filter_sample(
     slot = k & (len(ring) - 1)
     if ring[slot].flags & GYRO_SATURATED:
         stop = min(progress.measured, reach(ring, k))
-        bridge_clipping(ring, k, stop, progress.gyro_clip_radps, config)
+        bridge_clipping(ring, k, stop, config)
     good = ring[slot].flags & BAD_SAMPLES == 0
     if k == 0:
         _start(ring, progress, state, config)

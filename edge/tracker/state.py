@@ -34,6 +34,7 @@ RING = np.dtype(
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
         ("mag_ut", np.float64, 3),  # NaN where there is none
+        ("clipped", np.uint8, 3),  # 1 where the rate of an axis has
         ("hidden_noise", np.float64, 3),  # rad^2/s in doubt about each axis after clipping
         ("pressure_pa", np.float64),
         ("temperature_degc", np.float64),  # inside the sensor
@@ -165,7 +166,6 @@ PROGRESS = np.dtype(
         ("temperature_degc", np.float64),  # smoothed; NaN while unknown
         ("temperature_s", np.float64),  # of the sample that said it
         ("warmed_degc", np.float64),  # for which the gyroscope bias holds
-        ("gyro_clip_radps", np.float64),  # from the description
         ("in_stance", np.bool_),
         ("aligned", np.bool_),
         ("stance_since_s", np.float64),

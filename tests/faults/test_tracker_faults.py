@@ -209,3 +209,27 @@ def test_a_wrong_accelerometer_scale_is_mostly_put_right(scale):
     rows = run(t_ns, scale * accel, gyro)
     wrong_m = abs(scale - 1.0) * LENGTH_M
     assert abs(reached_m(rows) - LENGTH_M) < 0.6 * wrong_m
+
+
+@pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
+def test_clipping_that_nobody_told_shows_by_its_plateaus(rate_hz):
+    t_ns, accel, gyro = copy()
+    every = round(200.0 / rate_hz)
+    t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]
+    full_scale = 0.85 * np.abs(gyro).max()
+    description = SensorDescription("untold", rate_hz)
+    rows = run(t_ns, accel, np.clip(gyro, -full_scale, full_scale), description)
+    clipped = np.abs(gyro).max(axis=1) >= full_scale
+    assert not flagged(rows, Reason.GYRO_SATURATED)[: np.flatnonzero(clipped)[0] - 1].any()
+    assert flagged(rows, Reason.GYRO_SATURATED)[np.argmax(np.abs(gyro).max(axis=1))]
+    whole = run(t_ns, accel, gyro, description)
+    assert not flagged(whole, Reason.GYRO_SATURATED).any()
+
+
+def test_a_full_scale_that_is_passed_was_none():
+    t_ns, accel, gyro = copy()
+    k = index(IN_SWING)
+    gyro[k : k + 4, 1] = 4.0  # for once the same to the last bit
+    rows = run(t_ns, accel, gyro)
+    assert flagged(rows, Reason.GYRO_SATURATED)[k]
+    assert not flagged(rows, Reason.GYRO_SATURATED)[-300:].any()
