@@ -127,7 +127,7 @@ class Forgetter:
         self._checkpoints.clear()  # one that was being written meanwhile
         kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
         self._records.audit(by, kind, str(done))
-        _log.warning("forgotten at the wish of %s: %s", by, done)
+        _log.info("forgotten at the wish of %s: %s", by, done)
         return done
 
     def _rewrite_log(self, erasure: Erasure, on_progress: Progress) -> tuple[int, int]:

@@ -72,7 +72,8 @@ def _alarms(session: Session, erasure: Erasure) -> None:
 
 def _rewrite_alarm(session: Session, alarm: Alarm, covered: bool, names: re.Pattern[str]) -> None:
     changes = session.scalars(select(AlarmLife).where(AlarmLife.alarm_id == alarm.alarm_id)).all()
-    for row in (alarm, *changes):
+    rows: list[Alarm | AlarmLife] = [alarm, *changes]
+    for row in rows:
         row.text = FORGOTTEN if covered else names.sub(FORGOTTEN, row.text)
         row.by = names.sub(FORGOTTEN, row.by)
 
