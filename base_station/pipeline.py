@@ -64,6 +64,7 @@ from shared.quality import Quality
 _STREAMED = (Position, GpsFix, RawImu)
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
 LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
+_COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
 
 
 class Checkpoint(msgspec.Struct, frozen=True):
@@ -180,7 +181,7 @@ class StationPipeline:
             return []
         unit.link = unit.link_at(state.t_ns)
         outputs: list[Output] = []
-        if news == "new" or isinstance(message, UnitEvent | CommandReply | Sighting):
+        if news == "new" or isinstance(message, _COUNTS_LATE):
             outputs.extend(self._observe(unit, message))
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))

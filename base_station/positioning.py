@@ -170,11 +170,13 @@ class Positioning:
         boot = unit.path_boot
         if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
+        self._fuser(unit).remember(position)
         fused = self._message(state, unit, estimate, None, header)
         unit.fill_plain_trail(fused)
         pinned = self._pinned.get(unit.unit_id)
         known = None if pinned is None else pinned.recall(position)
-        if known is not None:
+        if pinned is not None and known is not None:
+            pinned.remember(position)
             fused = self._message(state, unit, known, None, header)
         unit.fill_trail(fused)
         if unit.unit_id in state.paths:
@@ -209,6 +211,8 @@ class Positioning:
         if not verdict.accepted:
             return verdict
         boot = unit.boots[-1]
+        if fix.header.boot_id != boot.boot_id:
+            return FixVerdict(False, "from an earlier run of the unit")
         if boot.is_placed and boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
             return FixVerdict(False, "from the future")
         if state.anchor is None and not self._anchor_itself(state, unit, fix):

@@ -14,7 +14,7 @@ from base_station.fusion.outliers import Outliers, Shape
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import PlaceFix
 
-SURPRISE_LEAST, SURPRISE_MOST = 0.7, 8.0
+SURPRISE_LEAST, SURPRISE_MOST = 1.06, 8.0
 SURPRISED = 3.0  # chi-square of 2 degrees of freedom from which a fix is worse than it claims
 FORGIVEN = 0.97  # of a surprise is left after a fix
 EXCESS = 2.0  # what a receiver admits beyond its usual accuracy is but half of it

@@ -20,8 +20,10 @@ from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
 from base_station.fusion.horizontal import HorizontalFilter
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path_memory import PathMemory
+from base_station.fusion.path_memory import OwnPlace, PathMemory
 from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
+from base_station.fusion.quality import Knowledge, judge
+from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
@@ -29,6 +31,8 @@ from shared.messages import Position
 from shared.quality import Quality
 
 Floats = NDArray[np.float64]
+
+LATE_NS = 5 * NS_PER_S  # a fix is later than the newest by more than receivers are
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +121,7 @@ class GpsInertialFuser:
         self._walk(memory.own.stretch(self._kind, last, position))
         self._horizontal.expect_drift(memory.own.drift_radps(self._kind, position))
         memory.last = position
-        memory.path.note(t_ns, position.north_m, position.east_m)
+        memory.path.note(position)
         return ""
 
     def feel(self, air: AirHeight) -> None:
@@ -125,12 +129,14 @@ class GpsInertialFuser:
 
     def correct(self, fix: PlaceFix) -> FixVerdict:
         memory = self._memory
-        walked_m = memory.last.distance_m if memory.last else 0.0
-        if memory.trust.is_stuck(self._kind, fix, walked_m):
-            return FixVerdict(False, "the receiver is stuck")
         then = memory.path.at(fix.t_mono_ns)
         if isinstance(then, str):
             return FixVerdict(False, then)
+        if memory.fix_t_mono_ns is not None and fix.t_mono_ns < memory.fix_t_mono_ns - LATE_NS:
+            return self._correct_past(fix, then)
+        walked_m = memory.last.distance_m if memory.last else 0.0
+        if memory.trust.is_stuck(self._kind, fix, walked_m):
+            return FixVerdict(False, "the receiver is stuck")
         if memory.assumed:  # the first thing known of the incident frame
             memory.assumed = False
             self._horizontal.forget_place()
@@ -150,6 +156,17 @@ class GpsInertialFuser:
         memory.fix_t_mono_ns = max(fix.t_mono_ns, memory.fix_t_mono_ns or 0)
         return FixVerdict(True)
 
+    def _correct_past(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
+        """A fix of a time before the newest one: the state then, less the path walked since."""
+        sighting = self._sighting(fix, then, self._kind.doubt_lasts)
+        whole_m2 = sighting.slow_m**2 + sighting.white_m2
+        once = msgspec.structs.replace(sighting, slow_m=0.0, white_m2=whole_m2)
+        if self._horizontal.distance2(once) > self._kind.gate:
+            return FixVerdict(False, "does not fit the path walked")
+        lasting_m2 = 2.0 * self._kind.wander_s * fix.horizontal_std_m**2 + whole_m2
+        self._horizontal.update(msgspec.structs.replace(once, white_m2=lasting_m2))
+        return FixVerdict(True)
+
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         self._horizontal.reframe(turn_rad, north_m, east_m)
         self._height.shift(down_m)
@@ -164,6 +181,11 @@ class GpsInertialFuser:
         place = self._horizontal.place_before(0.0, 0.0)
         height = self._height.down_m, self._height.variance_m2
         return self._estimate_at(t_mono_ns, last.heading_rad if last else 0.0, place, height)
+
+    def remember(self, position: Position) -> None:
+        last = self._memory.last
+        if last is not None and last.header.boot_id == position.header.boot_id:
+            self._memory.path.fill(position)
 
     def recall(self, position: Position) -> Estimate | None:
         """The path from then to now is taken back from the present place, with the heading and
@@ -203,7 +225,11 @@ class GpsInertialFuser:
         since_s = None
         if memory.fix_t_mono_ns is not None:
             since_s = max(0.0, (t_mono_ns - memory.fix_t_mono_ns) / NS_PER_S)
-        quality, reason = self._quality(math.hypot(std_north_m, std_east_m), turn_std_rad)
+        tracker = memory.last.quality if memory.last is not None else Quality.GOOD
+        knowledge = Knowledge(
+            math.hypot(std_north_m, std_east_m), turn_std_rad, tracker, memory.assumed
+        )
+        quality, reason = judge(self._kind, knowledge)
         return Estimate(
             t_mono_ns=t_mono_ns,
             north_m=float(place_m[0]),
@@ -236,37 +262,29 @@ class GpsInertialFuser:
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
 
-    def _sighting(self, fix: PlaceFix, then: tuple[float, float], lasts: float) -> Sighting:
+    def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:
         """``lasts``: so many fixes in a row have about the same doubtful error."""
-        last, trust, part = self._memory.last, self._memory.trust, self._kind.wander_part
-        std_m = trust.best_m(fix)
-        doubt_m2 = lasts * trust.doubt_m2(fix, self._walls_std_m()) + self._unguided_m2(
-            fix.t_mono_ns
-        )
-        own_m = (0.0, 0.0) if last is None else (last.north_m, last.east_m)
+        last, kind, trust = self._memory.last, self._kind, self._memory.trust
+        since = since_then(then, last)
+        outside_m = self._horizontal.outside_m(since.north_m, since.east_m)
+        std_m, part = trust.best_m(fix), kind.wander_part
+        doubt_m2 = lasts * trust.doubt_m2(fix, walls_std_m(kind, outside_m))
+        doubt_m2 += self._unguided_m2(fix.t_mono_ns)
+        doubt_m2 += since.doubt_m2(kind, self._horizontal.drift_std_radps)
         return Sighting(
             north_m=fix.north_m,
             east_m=fix.east_m,
-            since_north_m=own_m[0] - then[0],
-            since_east_m=own_m[1] - then[1],
+            since_north_m=since.north_m,
+            since_east_m=since.east_m,
             slow_m=std_m * math.sqrt(part),
             white_m2=std_m**2 * (1.0 - part) + doubt_m2,
         )
-
-    def _walls_std_m(self) -> float:
-        """What the building does to a fix taken beside or in it."""
-        outside_m, kind = self._horizontal.outside_m(), self._kind
-        if outside_m < -1.0:
-            return kind.inside_std_m
-        return kind.wall_std_m * math.exp(-max(outside_m, 0.0) / kind.wall_reach_m)
 
     def _unguided_m2(self, t_mono_ns: int) -> float:
         """How far a wearer may have got since the last word of the own path."""
         last = self._memory.last
         heard_ns = last.header.t_mono_ns if last else self._memory.fix_t_mono_ns
-        if heard_ns is None or t_mono_ns - heard_ns < NS_PER_S:
-            return 0.0
-        return (self._kind.unguided_mps * (t_mono_ns - heard_ns) / NS_PER_S) ** 2
+        return unguided_m2(self._kind, t_mono_ns, heard_ns)
 
     def _let_wander(self, t_mono_ns: int) -> None:
         """Predict the fixes' slow error up to the time of this one."""
@@ -278,9 +296,9 @@ class GpsInertialFuser:
         self._horizontal.fade(keep)
         self._height.fade(keep)
 
-    def _turned_away(self, fix: PlaceFix, then: tuple[float, float]) -> FixVerdict:
+    def _turned_away(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
         """Outside the gate; but fixes that draw the shape of the walk are right after all."""
-        shape = self._memory.trust.misses(self._kind, fix, then)
+        shape = self._memory.trust.misses(self._kind, fix, (then.north_m, then.east_m))
         if shape is None:
             return FixVerdict(False, "does not fit the path walked")
         held_rad, held_std_rad = self._horizontal.turn()
@@ -290,17 +308,3 @@ class GpsInertialFuser:
         if apart_rad > 3.0 * math.hypot(held_std_rad, shape_std_rad):
             self._horizontal.forget_heading()
         return FixVerdict(False, "contradicts the path, and agrees with others: going there")
-
-    def _quality(self, std_m: float, turn_std_rad: float) -> tuple[Quality, str]:
-        memory = self._memory
-        tracker = memory.last.quality if memory.last is not None else Quality.GOOD
-        within = f"within {2.0 * std_m:.0f} m"
-        causes = (
-            (tracker is Quality.LOST, Quality.LOST, "the unit's tracker is lost"),
-            (memory.assumed, Quality.DEGRADED, "start not known: shown about the unit's own start"),
-            (std_m > 30.0, Quality.LOST, within),
-            (turn_std_rad > self._kind.aligned_rad, Quality.DEGRADED, "heading not known yet"),
-            (std_m > 5.0, Quality.DEGRADED, within),
-            (tracker is Quality.DEGRADED, Quality.DEGRADED, "the unit's tracker is unsure"),
-        )
-        return next(((quality, why) for holds, quality, why in causes if holds), (Quality.GOOD, ""))

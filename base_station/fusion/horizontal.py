@@ -102,7 +102,11 @@ class HorizontalFilter:
             self._stale = True
 
     def expect_drift(self, std_radps: float) -> None:
-        """How fast the unit's own heading may drift, before anything is known of it."""
+        """How fast the unit's own heading may drift, before anything is known of it.  A unit that
+        turns out worse than it was taken for has a drift that is less known.
+        """
+        if self._bank is None and std_radps > self._drift_std_radps:
+            self._filter.P[_DRIFT, _DRIFT] += std_radps**2 - self._drift_std_radps**2
         self._drift_std_radps = std_radps
 
     def begin(

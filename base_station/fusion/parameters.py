@@ -34,6 +34,8 @@ class Parameters:
     gate: float = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
     linear_rad: float = 0.2  # heading standard deviation from which one hypothesis will do
     aligned_rad: float = 0.35  # and from which the heading is called known
+    unsure_m: float = 5.0  # standard deviation of a place that is called degraded
+    lost_m: float = 30.0  # and lost
     height_std_floor_m: float = 5.0
     fastest_mps: float = 12.0
     unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path

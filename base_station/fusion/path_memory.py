@@ -1,4 +1,4 @@
-"""The last stretch of a unit's own path, to look up where it was when a late fix was valid."""
+"""A unit's own path of late, to look up where it was when a fix that comes late was valid."""
 
 from __future__ import annotations
 
@@ -7,44 +7,82 @@ from bisect import bisect_left
 import msgspec
 
 from shared.clock import NS_PER_S
+from shared.messages import Position
 
-KEPT_NS = 60 * NS_PER_S
+KEPT_NS = 30 * 60 * NS_PER_S
 STEP_NS = NS_PER_S // 5
+DENSE_NS = 60 * NS_PER_S  # of it every step, of what is older one in
+COARSE_NS = 2 * NS_PER_S
+NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known
+
+
+class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
+    """In the unit's own frame."""
+
+    t_ns: int
+    north_m: float
+    east_m: float
+    distance_m: float
 
 
 class PathMemory(msgspec.Struct):
-    """Own-frame north and east of the last minute, in the unit's monotonic time."""
+    """The last half hour, in the unit's monotonic time; finer in the last minute."""
 
-    t_ns: list[int] = msgspec.field(default_factory=list)
-    north_m: list[float] = msgspec.field(default_factory=list)
-    east_m: list[float] = msgspec.field(default_factory=list)
+    points: list[OwnPlace] = msgspec.field(default_factory=list)
 
-    def note(self, t_ns: int, north_m: float, east_m: float) -> None:
+    def note(self, position: Position) -> None:
         """Points come in order; where they come too fast, the newest replaces its neighbour."""
-        if len(self.t_ns) > 1 and t_ns - self.t_ns[-2] < STEP_NS:
-            self.t_ns[-1], self.north_m[-1], self.east_m[-1] = t_ns, north_m, east_m
+        points, point = self.points, _point(position)
+        if len(points) > 1 and point.t_ns - points[-2].t_ns < STEP_NS:
+            points[-1] = point
             return
-        self.t_ns.append(t_ns)
-        self.north_m.append(north_m)
-        self.east_m.append(east_m)
-        if t_ns - self.t_ns[0] > 2 * KEPT_NS:
-            old = bisect_left(self.t_ns, t_ns - KEPT_NS)
-            del self.t_ns[:old], self.north_m[:old], self.east_m[:old]
+        points.append(point)
+        if len(points) % 300 == 0:
+            self._thin(point.t_ns)
 
-    def at(self, t_ns: int) -> tuple[float, float] | str:
-        """North and east then (after the last point: there), or why that cannot be told."""
-        if not self.t_ns:
-            return 0.0, 0.0
-        after = bisect_left(self.t_ns, t_ns)
-        if after == len(self.t_ns):
-            return self.north_m[-1], self.east_m[-1]
-        if after == 0:
-            if t_ns < self.t_ns[0] and self.t_ns[-1] - t_ns > KEPT_NS:
-                return "too old"
-            return self.north_m[0], self.east_m[0]
-        t0_ns, t1_ns = self.t_ns[after - 1], self.t_ns[after]
-        part = (t_ns - t0_ns) / (t1_ns - t0_ns)
-        return (
-            self.north_m[after - 1] + part * (self.north_m[after] - self.north_m[after - 1]),
-            self.east_m[after - 1] + part * (self.east_m[after] - self.east_m[after - 1]),
+    def fill(self, position: Position) -> None:
+        """A point that came late, where none is near."""
+        point = _point(position)
+        at = self._after(point.t_ns)
+        near = self.points[max(at - 1, 0) : at + 1]
+        if near and all(abs(one.t_ns - point.t_ns) >= STEP_NS for one in near):
+            self.points.insert(at, point)
+
+    def at(self, t_ns: int) -> OwnPlace | str:
+        """The place then (after the last point: there), or why that cannot be told."""
+        points = self.points
+        if not points:
+            return OwnPlace(t_ns, 0.0, 0.0, 0.0)
+        at = self._after(t_ns)
+        if at == len(points):
+            return points[-1]
+        after = points[at]
+        if at == 0:
+            return after if after.t_ns - t_ns < NEAR_NS else "too old"
+        before = points[at - 1]
+        if min(t_ns - before.t_ns, after.t_ns - t_ns) > NEAR_NS:
+            return "the path at its time is not known"
+        part = (t_ns - before.t_ns) / (after.t_ns - before.t_ns)
+        return OwnPlace(
+            t_ns,
+            before.north_m + part * (after.north_m - before.north_m),
+            before.east_m + part * (after.east_m - before.east_m),
+            before.distance_m + part * (after.distance_m - before.distance_m),
         )
+
+    def _after(self, t_ns: int) -> int:
+        return bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
+
+    def _thin(self, now_ns: int) -> None:
+        kept: list[OwnPlace] = []
+        for point in self.points:
+            age_ns = now_ns - point.t_ns
+            step_ns = COARSE_NS if age_ns > DENSE_NS else 0
+            if age_ns < KEPT_NS and (not kept or point.t_ns - kept[-1].t_ns >= step_ns):
+                kept.append(point)
+        self.points = kept
+
+
+def _point(position: Position) -> OwnPlace:
+    t_ns = position.header.t_mono_ns
+    return OwnPlace(t_ns, position.north_m, position.east_m, position.distance_m)

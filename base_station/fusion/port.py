@@ -125,6 +125,10 @@ class Fuser(Protocol):
         """
         ...
 
+    def remember(self, position: Position) -> None:
+        """An earlier position of the own path that came late: fixes of that time can be used."""
+        ...
+
     def save(self) -> bytes:
         """All of its state; restored, it goes on with the very same numbers."""
         ...

@@ -26,8 +26,8 @@ THROUGH_WALL = 0.02  # what is left of a guess's weight
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
-SHAKEN_M = 0.06  # and how far their places are shaken
-FLOOR_VAR_M2 = 0.15**2  # of any place: people do not walk on lines
+SHAKEN_M = 0.05  # and how far their places are shaken
+FLOOR_VAR_M2 = 0.05**2  # of any place: people do not walk on lines
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
 MEMORY = 1.0 / 30.0  # of that mean, a move
 

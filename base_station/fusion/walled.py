@@ -76,12 +76,23 @@ class WalledFilter:
     def is_walled(self) -> bool:
         return self._cloud is not None
 
-    def outside_m(self) -> float:
-        """Distance to the building, negative inside; far where no plan is known."""
+    def outside_m(self, north_m: float = 0.0, east_m: float = 0.0) -> float:
+        """Distance to the building before this much of own path was walked, negative inside; far
+        where no plan is known.
+        """
         if self._grid is None:
             return math.inf
         mean, _ = self.moments()
-        return -self._grid.plan.depth_m(float(mean[0]), float(mean[1]))
+        c, s = float(mean[2]), float(mean[3])
+        at_north_m = float(mean[0]) - c * north_m + s * east_m
+        at_east_m = float(mean[1]) - s * north_m - c * east_m
+        return -self._grid.plan.depth_m(at_north_m, at_east_m)
+
+    @property
+    def drift_std_radps(self) -> float:
+        """Of what is known of the own heading's drift rate."""
+        _, covariance = self.moments()
+        return math.sqrt(max(float(covariance[6, 6]), 0.0))
 
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (7,) and covariance (7, 7) of the state of ``HorizontalFilter``."""
