@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from shared.clock import NS_PER_S
 
-LEAST_BYTES, MOST_BYTES = 1024, 65_536
+LEAST_BYTES, MOST_BYTES = 1024, 524_288  # the most is 10,000 messages a second
 _WANTED_NS = NS_PER_S // 2  # of one answer
 
 

@@ -224,7 +224,7 @@ def _report(
         repeated=recorded.repeated,
         positions_sent=sum(map(len, positions.values())),
         positions_shown=len(shown),
-        latency=_latency(shown),
+        latency=latency_of(shown),
         track_points_due=recorded.track_points_due,
         track_points=recorded.track_points,
         console_gaps=console.gaps,
@@ -232,7 +232,7 @@ def _report(
         onlookers=onlookers[0],
         slow=onlookers[1],
         problems=console.problems,
-        bare_latency=_latency(steady.latencies_ms),
+        bare_latency=latency_of(steady.latencies_ms),
         bare_lost=steady.sent - steady.received,
         bare_flood_hz=flood.rate_hz,
         cores=psutil.cpu_count() or 1,
@@ -247,7 +247,7 @@ def _wait_heard(units: list[BenchUnit]) -> None:
         time.sleep(0.05)
 
 
-def _latency(values_ms: list[float] | tuple[float, ...]) -> Latency:
+def latency_of(values_ms: list[float] | tuple[float, ...]) -> Latency:
     if not values_ms:
         return Latency(0, float("nan"), float("nan"), float("nan"))
     p50, p99, highest = np.percentile(values_ms, (50.0, 99.0, 100.0))
