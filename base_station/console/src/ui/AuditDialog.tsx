@@ -64,7 +64,7 @@ function said(detail: string): string {
   if (!detail.startsWith("{")) return detail;
   const values = Object.entries(JSON.parse(detail) as Record<string, unknown>);
   return values
-    .filter(([, value]) => value !== "" && value !== false && value !== 0)
+    .filter(([, value]) => value !== "" && value !== false && value !== 0 && value !== null)
     .map(([name, value]) => `${name.replaceAll("_", " ")}: ${String(value)}`)
     .join(", ");
 }
