@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator
 
-from edge.spool import Spool
+from edge.spool import EVERYTHING, RAW, URGENT, Spool
 from shared.channels import ROOT
 from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalEntry, JournalIndex
+from shared.sequence_set import Run
 
 logger = logging.getLogger(__name__)
 
@@ -16,10 +17,11 @@ _MAX_MESSAGES = 10_000
 _REPLY_BYTES = 16_384
 _TOTAL_BYTES = 1_048_576
 _ENTRY_OVERHEAD_BYTES = 24
+_WORTHS = {"range": EVERYTHING, "urgent": URGENT, "raw": RAW}
 
 
 class JournalServer:
-    """Serves ``index``, ``urgent``, ``range`` and ``acknowledge`` under
+    """Serves ``index``, ``urgent``, ``raw``, ``range`` and ``acknowledge`` under
     ``muster/v1/{unit}/journal/``.
     """
 
@@ -39,8 +41,8 @@ class JournalServer:
             match key.removeprefix(self._prefix + "/"):
                 case "index":
                     yield JournalIndex(self._spool.boots()).to_bytes()
-                case "range" | "urgent" as what:
-                    yield from self._range(values, urgent_only=what == "urgent")
+                case "range" | "urgent" | "raw" as what:
+                    yield from self._range(values, what)
                 case "acknowledge":
                     self._spool.acknowledge(int(values["epoch"]), int(values["to"]))
                     yield JournalIndex(self._spool.boots()).to_bytes()
@@ -51,7 +53,7 @@ class JournalServer:
         except StoreError as error:
             logger.error("the journal cannot answer: %s", error)
 
-    def _range(self, values: dict[str, str], *, urgent_only: bool) -> Iterator[bytes]:
+    def _range(self, values: dict[str, str], what: str) -> Iterator[bytes]:
         boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
         if not self._spool.has_boot(boot_id):
             return  # of another machine under this name: it may have what this one has not
@@ -62,7 +64,7 @@ class JournalServer:
         bytes_left = int(values.get("total", _TOTAL_BYTES))
         entries: list[JournalEntry] = []
         size = 0
-        kept = self._spool.read(boot_id, first, last, urgent_only=urgent_only)
+        kept = self._spool.read(boot_id, first, last, _WORTHS[what])
         for count, entry in enumerate(kept, start=1):
             entries.append(entry)
             entry_bytes = len(entry.payload) + _ENTRY_OVERHEAD_BYTES
@@ -70,10 +72,14 @@ class JournalServer:
             bytes_left -= entry_bytes
             ends = count >= most or bytes_left <= 0
             if ends or size >= reply_bytes:
-                chunk = JournalChunk(boot_id, first, entry.seq, tuple(entries), urgent_only)
-                yield chunk.to_bytes()
+                yield _chunk(what, boot_id, Run(first, entry.seq), entries)
                 first, entries, size = entry.seq + 1, [], 0
             if ends:
                 return
         if first <= last:
-            yield JournalChunk(boot_id, first, last, tuple(entries), urgent_only).to_bytes()
+            yield _chunk(what, boot_id, Run(first, last), entries)
+
+
+def _chunk(what: str, boot_id: int, run: Run, entries: list[JournalEntry]) -> bytes:
+    urgent_only, raw_only = what == "urgent", what == "raw"
+    return JournalChunk(boot_id, *run, tuple(entries), urgent_only, raw_only).to_bytes()

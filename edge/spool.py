@@ -39,6 +39,7 @@ CREATE TABLE IF NOT EXISTS message (
 ) WITHOUT ROWID;
 """
 _RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = tuple(range(4))
+EVERYTHING, URGENT, RAW = _WORTHS, (_ALERT,), (_RAW,)
 _ROWS_FREED_AT_ONCE = 50
 # What SQLite says of a file that is no journal, in whole or in part.
 _DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
@@ -97,9 +98,11 @@ class Spool:
                 self._make_room()
 
     def read(
-        self, boot_id: int, from_seq: int, to_seq: int, *, urgent_only: bool = False
+        self, boot_id: int, from_seq: int, to_seq: int, worths: Sequence[int] = EVERYTHING
     ) -> Iterator[JournalEntry]:
         """What is kept of these sequence numbers, in order; both ends belong to the range.
+
+        Of all, or of ``URGENT`` or ``RAW`` messages only.
 
         Reads while it is iterated, beside the writer.
         """
@@ -111,7 +114,7 @@ class Spool:
                     "seq BETWEEN ? AND ? ORDER BY seq",
                     (worth, boot_id, from_seq, to_seq),
                 )
-                for worth in ((_ALERT,) if urgent_only else _WORTHS)
+                for worth in worths
             ]
             for row in heapq.merge(*parts, key=itemgetter(0)):
                 yield JournalEntry(*row)

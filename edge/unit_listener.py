@@ -7,24 +7,28 @@ newest first, and counted: the tracker sees a hole in time and says so.
 from __future__ import annotations
 
 import logging
+import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from threading import Condition, Event
 
 from edge.raw_stream import sensor_of
 from edge.samples import SensorDescription
 from shared.bus import Bus
-from shared.channels import DESCRIPTION, IMU, NO_TRACKER
+from shared.channels import DESCRIPTION, IMU, NO_TRACKER, raw_journal_key
 from shared.codec import decode
 from shared.errors import BusError, WireError
-from shared.messages import RawImu, UnitDescription
+from shared.messages import JournalChunk, RawImu, UnitDescription
 
 logger = logging.getLogger(__name__)
 
 _KEPT = 4096  # messages: some minutes
 _RETRY_S = 1.0
 _LOOK_S = 0.1
+_FETCH_BYTES = 32_768  # a question; at 100 kbit/s it takes three seconds
+_FETCH_TIMEOUT_S = 5.0
+_FETCH_PATIENCE_S = 15.0  # in all: the wearer's place is not known meanwhile
 
 
 class UnitListener:
@@ -37,6 +41,7 @@ class UnitListener:
         self._waiting: deque[RawImu] = deque()
         self._descriptions: dict[int, UnitDescription] = {}  # by boot; the newest few
         self._declared = ExitStack()
+        self._bus: Bus | None = None
         self.dropped = 0  # messages that came faster than they were taken
         self.not_understood = 0
 
@@ -52,6 +57,7 @@ class UnitListener:
                 told = True
                 stop.wait(_RETRY_S)
                 continue
+            self._bus = bus
             self._declared.callback(bus.close)
             for channel, handler in ((DESCRIPTION, self._describe), (IMU, self._put)):
                 self._declared.callback(bus.subscribe(channel.key(self.unit_id), handler).close)
@@ -79,6 +85,26 @@ class UnitListener:
             if not self._waiting or self._waiting[0].header.boot_id != boot_id:
                 return None
             return self._waiting.popleft()
+
+    def fetch(self, boot_id: int, after_seq: int, before_seq: int) -> Iterator[RawImu]:
+        """What the unit's journal has of the raw stream between two numbers, in order; ends where
+        the unit does not answer, or not in time.
+        """
+        end_s = time.monotonic() + _FETCH_PATIENCE_S
+        first = after_seq + 1
+        while first < before_seq and self._bus is not None and time.monotonic() < end_s:
+            question = f"epoch={boot_id};from={first};to={before_seq - 1};total={_FETCH_BYTES}"
+            selector = f"{raw_journal_key(self.unit_id)}?{question}"
+            asked_from = first
+            for reply in self._bus.query(selector, b"", _FETCH_TIMEOUT_S):
+                chunk = JournalChunk.from_bytes(reply)
+                for entry in chunk.entries:
+                    raw = decode(IMU, entry.payload)
+                    assert isinstance(raw, RawImu)
+                    yield raw
+                first = chunk.to_seq + 1
+            if first == asked_from:
+                return
 
     def has_restarted(self, boot_id: int) -> bool:
         """What comes next is of another boot than this."""

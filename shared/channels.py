@@ -150,6 +150,16 @@ def alive_key(unit_id: str) -> str:
     return f"{ROOT}/{unit_id}/alive"
 
 
+def journal_keys(unit_id: str) -> str:
+    """The key expression under which a unit answers for its journal."""
+    return f"{ROOT}/{unit_id}/journal/**"
+
+
+def raw_journal_key(unit_id: str) -> str:
+    """The key under which raw samples are fetched from a unit's journal."""
+    return f"{ROOT}/{unit_id}/journal/raw"
+
+
 def clock_key(unit_id: str) -> str:
     """The key under which a unit asks for the station's time."""
     return f"{ROOT}/{unit_id}/clock"

@@ -20,6 +20,8 @@ from shared.channels import (
     Direction,
     alive_key,
     clock_key,
+    journal_keys,
+    raw_journal_key,
     tracker_id,
 )
 from shared.enrolment import Holder
@@ -108,10 +110,15 @@ def _own_rules(entry: Entry) -> list[dict[str, Any]]:
 
 
 def _tracking_rules(entry: Entry) -> list[dict[str, Any]]:
-    """It hears the raw stream of its unit, and speaks under its own key only."""
+    """It hears the raw stream of its unit and fetches what it missed of it; it speaks under its
+    own key only.
+    """
     raw = [channel.key(entry.name) for channel in (IMU, DESCRIPTION)]
-    name = entry.common_name
+    name, lost = entry.common_name, raw_journal_key(entry.name)
     return [
+        _rule(f"{name}-fetches", ["ingress"], ["query"], [lost]),
+        _rule(f"{name}-is-given", ["egress"], ["reply"], [lost]),
+        _rule(f"{name}-knows", ["egress"], ["declare_queryable"], [journal_keys(entry.name)]),
         _rule(f"{name}-follows", ["ingress"], ["declare_subscriber"], raw),
         _rule(f"{name}-hears", ["egress"], ["put"], raw),
     ]

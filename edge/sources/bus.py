@@ -11,11 +11,13 @@ from edge.samples import SensorBatch, SensorDescription
 from edge.sources.port import Outage
 from edge.unit_listener import UnitListener
 from shared.channels import validate_unit_id
-from shared.errors import RecordingError
+from shared.errors import BusError, RecordingError, WireError
+from shared.messages import RawImu
 
 logger = logging.getLogger(__name__)
 
 _LOOK_S = 0.1
+_HOLE_NS = 45_000_000  # a message has 50 ms of samples
 
 
 class BusSource:
@@ -31,6 +33,8 @@ class BusSource:
         self._boot: tuple[int, SensorDescription] | None = None
         self._closed = Event()
         self._last_seq = 0
+        self._last_ns: int | None = None  # of the last sample
+        self.fetched = 0  # messages that the radio lost, out of the unit's journal
         self.late = 0  # messages that came after later ones, left out
 
     def follow(self, listener: UnitListener, stop: Event) -> bool:
@@ -62,8 +66,27 @@ class BusSource:
             elif raw.header.seq <= self._last_seq:
                 self.late += 1
             else:
-                self._last_seq = raw.header.seq
-                yield batch_of((raw,))
+                yield from self._missed(listener, raw)
+                yield self._taken(raw)
+
+    def _missed(self, listener: UnitListener, raw: RawImu) -> Iterator[SensorBatch]:
+        """What the radio lost before this message, out of the unit's journal."""
+        if self._last_ns is None or raw.header.seq == self._last_seq + 1:
+            return
+        if int(raw.t_ns[0]) - self._last_ns <= _HOLE_NS:
+            return
+        fetched = 0
+        try:
+            for missed in listener.fetch(raw.header.boot_id, self._last_seq, raw.header.seq):
+                fetched += 1
+                yield self._taken(missed)
+        except (BusError, WireError) as error:
+            logger.warning("what was missed of %s cannot be fetched: %s", self.unit_id, error)
+        self.fetched += fetched
+
+    def _taken(self, raw: RawImu) -> SensorBatch:
+        self._last_seq, self._last_ns = raw.header.seq, int(raw.t_ns[-1])
+        return batch_of((raw,))
 
     def close(self) -> None:
         self._closed.set()

@@ -28,6 +28,7 @@ class JournalChunk(msgspec.Struct, frozen=True):
     to_seq: int
     entries: tuple[JournalEntry, ...]
     urgent_only: bool = False
+    raw_only: bool = False  # the same, of raw samples
 
     def to_bytes(self) -> bytes:
         wire = journal_pb2.JournalChunk(
@@ -35,6 +36,7 @@ class JournalChunk(msgspec.Struct, frozen=True):
             from_seq=self.from_seq,
             to_seq=self.to_seq,
             urgent_only=self.urgent_only,
+            raw_only=self.raw_only,
         )
         for entry in self.entries:
             wire.entries.add(seq=entry.seq, suffix=entry.suffix, payload=entry.payload)
@@ -56,6 +58,7 @@ class JournalChunk(msgspec.Struct, frozen=True):
                 JournalEntry(entry.seq, entry.suffix, entry.payload) for entry in wire.entries
             ),
             urgent_only=wire.urgent_only,
+            raw_only=wire.raw_only,
         )
 
 

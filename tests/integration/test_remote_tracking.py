@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from threading import Event
 
 import msgspec
 import pytest
 
+from edge.journal_server import JournalServer
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, batch_of
 from edge.raw_uplink import RawUplink
 from edge.samples import SensorBatch
 from edge.sources import open_source
 from edge.sources.bus import BusSource
+from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
 from edge.unit_listener import UnitListener
@@ -76,9 +79,18 @@ class Air:
             channel = channel_of(message)
             self._unit.publish(channel.key(U), encode(message), channel.qos)
 
+    def keep(self, folder: Path, messages: Iterable[Message]) -> None:
+        """The unit has them in its journal, and answers for them."""
+        spool = Spool(folder / "journal.sqlite", lambda: 7, 0, 10**9)
+        spool.append(
+            [Journaled(one.header.seq, channel_of(one), 0, encode(one)) for one in messages]
+        )
+        server = JournalServer(U, spool)
+        self._unit.serve(server.key_expression, server.replies)
+
     def track(self) -> list[Position]:
         """What the agent computes for one run of the unit that has ended."""
-        source = BusSource(U)
+        self.source = source = BusSource(U)
         assert source.follow(self.listener, Event())
         said = run(pipeline(tracker_id(U), "eskf", boot_id=9), source.batches())
         return positions(said)
@@ -140,6 +152,49 @@ def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
     doubted = [p for p in found if Reason.SAMPLE_GAP in p.reasons]
     assert doubted
     assert all(p.header.t_mono_ns >= lost[0].header.t_mono_ns - NS_PER_S for p in doubted)
+
+
+@pytest.mark.parametrize("lost", [slice(50, 51), slice(100, 400)])
+def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
+    air: Air, tmp_path: Path, lost: slice
+) -> None:
+    said = weak_unit()
+    raw = [message for message in said if isinstance(message, RawImu)]
+    air.keep(tmp_path, said)
+    missed = {id(message) for message in raw[lost]}
+    air.send(message for message in said if id(message) not in missed)
+    air.send(end_of_run())
+    itself = positions(run(pipeline(U, "eskf"), batches()))
+    assert contents(air.track()) == contents(itself)
+    assert air.source.fetched == len(missed)
+
+
+def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, tmp_path: Path) -> None:
+    said = weak_unit()
+    raw = [message for message in said if isinstance(message, RawImu)]
+    air.keep(tmp_path, said)
+    late = raw[100:110]
+    for message in said:
+        if not any(message is one for one in late):
+            air.send((message,))
+        if message is raw[130]:
+            air.send(late)
+    air.send(end_of_run())
+    itself = positions(run(pipeline(U, "eskf"), batches()))
+    assert contents(air.track()) == contents(itself)
+    assert (air.source.fetched, air.source.late) == (10, 10)
+
+
+def test_what_the_journal_has_given_up_stays_a_hole(air: Air, tmp_path: Path) -> None:
+    said = weak_unit()
+    raw = [message for message in said if isinstance(message, RawImu)]
+    lost = raw[200:240]
+    kept = [message for message in said if not any(message is one for one in lost)]
+    air.keep(tmp_path, kept)
+    air.send(kept)
+    air.send(end_of_run())
+    assert any(Reason.SAMPLE_GAP in p.reasons for p in air.track())
+    assert air.source.fetched == 0
 
 
 def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:

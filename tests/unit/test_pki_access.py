@@ -16,6 +16,7 @@ from shared.channels import (
     Direction,
     alive_key,
     clock_key,
+    raw_journal_key,
     tracker_id,
 )
 from shared.enrolment import Holder
@@ -112,6 +113,9 @@ def test_a_tracking_agent_is_a_unit_of_its_own_that_hears_the_raw_stream_of_anot
     readable = {f"muster/v1/{name}/**", COMMAND.key(EVERY_UNIT)} | raw
     assert allowed(rules, name, "ingress", "declare_subscriber") == readable
     assert allowed(rules, name, "egress", "put") == readable
+    asked = {raw_journal_key("bert"), clock_key(name)}
+    assert allowed(rules, name, "ingress", "query") == asked
+    assert allowed(rules, name, "egress", "reply") == asked
 
 
 def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:
