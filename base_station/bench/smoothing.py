@@ -45,8 +45,8 @@ class SmoothingReport:
     live_ce95_m: dict[str, dict[str, float]]
     smoothed_ce95_m: dict[str, dict[str, float]]
     held_95: dict[str, dict[str, float]]  # the smoothed trail's stated region held the truth
-    pin_before_m: float  # mean error of the trail around a pin, without it
-    pin_after_m: float  # and with it
+    pin_before_m: dict[str, float]  # mean error of the trail around a pin, without it
+    pin_after_m: dict[str, float]  # and with it
     hour_s: float  # CPU time of smoothing ten units that walked for an hour
     pin_solve_s: float  # and of solving one of them again with a pin
 
@@ -112,7 +112,7 @@ class SmoothingScores:
     def __init__(self, smoother: Smoother) -> None:
         self._smoother = smoother
         self._errors: dict[str, dict[str, _Errors]] = {}
-        self._pins: list[tuple[float, float]] = []
+        self._pins: dict[str, list[tuple[float, float]]] = {}
 
     def note(
         self,
@@ -136,10 +136,11 @@ class SmoothingScores:
                 one.live.append(live[rows])
                 one.smoothed.append(errors[rows])
                 one.held.append(held[rows])
-            self._pins.append(self._pin_gain(truth, evidence[str(number)], rng))
+            gain = self._pin_gain(truth, evidence[str(number)], rng)
+            self._pins.setdefault(way, []).append(gain)
 
     def report(self, seed: int) -> SmoothingReport:
-        pins = np.array(self._pins)
+        pins = {way: np.array(gains) for way, gains in self._pins.items()}
         hour_s, pin_solve_s = _times(self._smoother, seed)
         return SmoothingReport(
             smoother=self._smoother.name,
@@ -148,8 +149,8 @@ class SmoothingScores:
             live_ce95_m=self._each(lambda one: _ce95_m(one.live)),
             smoothed_ce95_m=self._each(lambda one: _ce95_m(one.smoothed)),
             held_95=self._each(lambda one: float(np.concatenate(one.held).mean())),
-            pin_before_m=float(pins[:, 0].mean()),
-            pin_after_m=float(pins[:, 1].mean()),
+            pin_before_m={way: float(gains[:, 0].mean()) for way, gains in pins.items()},
+            pin_after_m={way: float(gains[:, 1].mean()) for way, gains in pins.items()},
             hour_s=hour_s,
             pin_solve_s=pin_solve_s,
         )
@@ -197,12 +198,13 @@ def tables_of(report: SmoothingReport) -> list[Table]:
     figures = Table(title="Pins and times")
     for heading in ("", "measured", "to reach"):
         figures.add_column(heading, justify="left" if not heading else "right")
-    gain = report.pin_after_m / report.pin_before_m
-    figures.add_row(
-        "trail around a pin, without and with it",
-        f"{report.pin_before_m:.2f} m, {report.pin_after_m:.2f} m ({gain:.2f})",
-        "0.50",
-    )
+    for way, before_m in report.pin_before_m.items():
+        after_m = report.pin_after_m[way]
+        figures.add_row(
+            f"trail around a pin, without and with it, {way}",
+            f"{before_m:.2f} m, {after_m:.2f} m ({after_m / before_m:.2f})",
+            "0.50",
+        )
     figures.add_row(f"smoothing {UNITS} units of an hour", f"{report.hour_s:.2f} s", "5 s")
     figures.add_row("one pin, an hour's path solved again", f"{report.pin_solve_s:.2f} s", "0.5 s")
     return [errors, figures]

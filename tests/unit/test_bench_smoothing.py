@@ -33,7 +33,7 @@ def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScore
     report = scores.report(seed=1)
     live, smoothed = report.live_mean_m[WITHOUT], report.smoothed_mean_m[WITHOUT]
     assert smoothed["inside"] < live["inside"]
-    assert report.pin_after_m < report.pin_before_m
+    assert report.pin_after_m[WITHOUT] < report.pin_before_m[WITHOUT]
     assert 0.5 < report.held_95[WITHOUT]["inside"] <= 1.0
     assert report.hour_s > 0.0
     assert len(tables_of(report)) == 2

@@ -45,7 +45,7 @@ class WalkNoise:
     wander_s: float = 30.0
     fix_tail: float = 2.4  # standard deviations from which a fix counts less (Cauchy)
     shown_every_s: float = 10.0  # of what the live estimate knew by itself
-    shown_wander_s: float = 20.0  # and erred alike for so long
+    shown_wander_s: float = 60.0  # and erred alike for so long
 
 
 @dataclass(frozen=True)
@@ -203,6 +203,19 @@ def add_shown(
     tail = np.sqrt(1.0 + (apart / (n.fix_tail * std)) ** 2) if belief.aligned.any() else 1.0
     repeats = np.sqrt(2.0 * n.shown_wander_s / n.shown_every_s)
     add_places(equations, base + STATES * knot, since, path.shown_m[rows], std * repeats * tail)
+
+
+def shown_floor_m(path: PathArrays, rows: Ints | None, n: WalkNoise) -> Floats:
+    """What the trail is known to at best, point by point, where it rests on the live estimate: a
+    plan that is drawn half a metre off is off all the time.
+    """
+    if rows is None or not len(rows):
+        return np.zeros(len(path))
+    after = np.searchsorted(path.t_ns[rows], path.t_ns).clip(0, len(rows) - 1)
+    before = np.maximum(after - 1, 0)
+    gaps_s = [np.abs(path.t_ns - path.t_ns[rows[one]]) * NS_TO_S for one in (before, after)]
+    near = np.minimum(*gaps_s) <= 2.0 * n.shown_every_s
+    return np.where(near, path.shown_std_m, 0.0)
 
 
 def add_seen(equations: Equations, base: int, chain: Chain, places: Sequence[PlaceSeen]) -> None:

@@ -42,7 +42,7 @@ def solve_heights(
         diagonal[row] += 1.0 / PLACE_DOWN_STD_M**2
         right[row] += (place.down_m - path.down_m[row]) / PLACE_DOWN_STD_M**2
     banded = np.vstack((np.concatenate(([0.0], -1.0 / grown)), diagonal))
-    shift = solveh_banded(banded, right)
+    shift = solveh_banded(banded[-len(path) :], right)  # a single point has nothing beside it
     variance = _variances(diagonal, -1.0 / grown)
     return path.down_m + shift, np.sqrt(variance), (float(shift[-1]), float(np.sqrt(variance[-1])))
 

@@ -29,6 +29,7 @@ from base_station.fusion.smoother.chain import (
     add_shown,
     choose_shown,
     place_of,
+    shown_floor_m,
 )
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.heights import solve_heights
@@ -318,15 +319,17 @@ class _Graph:
         knot = np.searchsorted(chain.knots, np.arange(len(path)), side="left")
         std_north = np.sqrt(covariance[:, 0, 0])
         std_east = np.sqrt(covariance[:, 1, 1])
+        correlation = (covariance[:, 0, 1] / (std_north * std_east))[knot]
+        floor_m = shown_floor_m(path, self._shown.get(unit_id), self._kind.noise)
         down, down_std, shift = solve_heights(path, self._used[unit_id])
         return SmoothedPath(
             t_ns=path.t_ns,
             north_m=place[:, 0],
             east_m=place[:, 1],
             down_m=down,
-            std_north_m=std_north[knot],
-            std_east_m=std_east[knot],
-            correlation_ne=(covariance[:, 0, 1] / (std_north * std_east))[knot],
+            std_north_m=np.maximum(std_north[knot], floor_m),
+            std_east_m=np.maximum(std_east[knot], floor_m),
+            correlation_ne=correlation * (std_north[knot] >= floor_m) * (std_east[knot] >= floor_m),
             std_down_m=down_std,
             turn_rad=np.arctan2(turn[:, 1], turn[:, 0]),
             present=Present(belief.x[-1].tolist(), spreads[-1].tolist(), *shift),
