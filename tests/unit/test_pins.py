@@ -20,7 +20,7 @@ from shared.messages.pins import (
 from shared.messages.station import CloseIncident, OpenIncident, SetPlan
 from tests.live_station import make_pipeline
 from tests.square_walk import Walk, truth
-from tests.station_script import START_NS
+from tests.station_script import START_NS, Script
 
 PLAN = (
     b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
@@ -46,6 +46,18 @@ def test_a_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
     assert now_m > 5.0
     assert walk.now_off_m("FF-01") < 1.0
     assert walk.worst_m("FF-01") < 0.5 * before_m
+
+
+def test_a_pin_with_a_floor_holds_a_path_of_a_single_point() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(SetPlan(PLAN))
+    script.position("FF-01", 0.0, 0.0)
+    script.act(SetPin("p1", "FF-01", 0, 3.0, 4.0, 1.0, 1, None, 0.35, ""))
+    fused = script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    assert (fused.north_m, fused.east_m) == pytest.approx((3.0, 4.0), abs=0.1)
+    assert fused.floor == 1
 
 
 def test_what_comes_after_a_pin_goes_on_from_it(walk: Walk) -> None:
