@@ -20,10 +20,9 @@ class ConsoleClient:
     """A logged-in session with one station."""
 
     def __init__(self, address: str, username: str, password: str) -> None:
-        self._http = httpx.Client(
-            base_url=f"{address}/api/v1", headers={"Origin": address}, timeout=_TIMEOUT_S
-        )
-        self._call("POST", "/login", json={"username": username, "password": password})
+        self._http = httpx.Client(timeout=_TIMEOUT_S)
+        self._login = {"username": username, "password": password}
+        self.move_to(address)
 
     def __enter__(self) -> Self:
         return self
@@ -35,6 +34,12 @@ class ConsoleClient:
         trace: TracebackType | None,
     ) -> None:
         self._http.close()
+
+    def move_to(self, address: str) -> None:
+        """Log in at this station; another one knows the same people."""
+        self._http.base_url = httpx.URL(f"{address}/api/v1")
+        self._http.headers["Origin"] = address
+        self._call("POST", "/login", json=self._login)
 
     def prepare(self, crew: Crew, plan_geojson: bytes, incident_name: str) -> str:
         """Set site, plan and people, open an incident; its id."""

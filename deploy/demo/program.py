@@ -17,10 +17,10 @@ from rich.console import Console
 
 from deploy.demo.console_client import ConsoleClient
 from deploy.demo.crew import Crew, read_crew
-from deploy.demo.processes import Child, Children, wait_for_line
+from deploy.demo.processes import Child, Children
+from deploy.demo.stations import Site, Stations
 from shared.errors import UserError
 
-_STATION_PATIENCE_S = 60.0
 _WATCH_EVERY_S = 0.5
 _ROLL_CALL_AT_S = 55.0  # the commander asks once, when somebody is down already
 _ENGINE = -29.4, -9.6  # north and east of the plan's origin: where crew.toml has them begin
@@ -45,6 +45,9 @@ def demo(
     ] = None,
     http_port: Annotated[int | None, typer.Option(help="Port of the console.")] = None,
     bus_port: Annotated[int | None, typer.Option(help="Port of the bus.")] = None,
+    standby: Annotated[
+        bool, typer.Option("--standby", help="A second station, which takes over from the first.")
+    ] = False,
 ) -> None:
     """Run a base station and five responders on this machine until Ctrl-C."""
     stop = Event()
@@ -54,8 +57,13 @@ def demo(
     address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
     bus = f"tls/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
     crew = read_crew(recording or _recorded_walk())
+    sites = [Site("first", folder / "station", bus, address)]
+    if standby:
+        other = f"http://127.0.0.1:{_free_port(0)}"
+        sites.append(Site("second", folder / "standby", f"tls/127.0.0.1:{_free_port(0)}", other))
     with Children(folder / "output") as children:
-        _Demo(children, folder, address, bus, crew, headless).run(stop, for_s)
+        stations = Stations(children, folder, tuple(sites))
+        _Demo(children, folder, stations, crew, headless).run(stop, for_s)
 
 
 class _Demo:
@@ -65,40 +73,38 @@ class _Demo:
         self,
         children: Children,
         folder: Path,
-        address: str,
-        bus: str,
+        stations: Stations,
         crew: Crew,
         headless: bool,
     ) -> None:
         self._children = children
         self._folder = folder
-        self._address = address
-        self._bus = bus
+        self._stations = stations
         self._crew = crew
         self._headless = headless
-        self._station_data = folder / "station"
         self._screen = Console(highlight=False, soft_wrap=True)
 
     def run(self, stop: Event, for_s: float | None) -> None:
         enrolments = self._enrol_units()
         self._screen.print("Starting the base station ...")
-        username, password = self._start_station()
-        with ConsoleClient(self._address, username, password) as console:
+        username, password = self._stations.start()
+        site = self._stations.leading()
+        with ConsoleClient(site.address, username, password) as console:
             plan = self._children.run("plan", ("edge", "plan"))
             incident = console.prepare(self._crew, plan, f"Demo {datetime.now(UTC):%H:%M} UTC")
             self._start_agents(console, enrolments)
             self._screen.print(
-                f"\n  console   [bold]{self._address}[/]\n"
+                f"\n  console   [bold]{site.address}[/]\n"
                 f"  login     [bold]{username}[/]  password  [bold]{password}[/]\n"
                 f"  data      {self._folder}\n"
             )
+            self._tell_of_standby()
             self._screen.print("Ctrl-C ends everything." if for_s is None else "")
             self._watch(console, stop, for_s)
             heard = self._summarise(console)
             console.close_incident(incident)
-        self._screen.print(
-            f"To replay it: ./muster base replay {incident} --data {self._station_data}"
-        )
+            log = self._stations.leading().data
+        self._screen.print(f"To replay it: ./muster base replay {incident} --data {log}")
         missing = sorted({responder.unit for responder in self._crew.responder}.difference(heard))
         if missing and not stop.is_set():
             raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
@@ -106,9 +112,8 @@ class _Demo:
     def _enrol_units(self) -> list[Path]:
         """Make the station's authority and, for each unit, the file that is carried to it."""
         self._screen.print("Enrolling the units ...")
-        host, _, port = self._bus.removeprefix("tls/").rpartition(":")
-        data = ("--data", str(self._station_data))
-        self._children.run("pki", ("pki", "init", *data, "--host", host, "--port", port))
+        self._stations.enrol()
+        data = ("--data", str(self._stations.data))
         enrolments = []
         for responder in self._crew.responder:
             enrolments.append(self._folder / f"{responder.unit}.enrolment.toml")
@@ -116,17 +121,13 @@ class _Demo:
             self._children.run(f"enrol-{responder.unit}", ("pki", "enroll", responder.unit, *flags))
         return enrolments
 
-    def _start_station(self) -> tuple[str, str]:
-        data, http = self._station_data, self._address.removeprefix("http://")
-        station = self._children.start(
-            "station",
-            ("base", "serve", "--data", str(data), "--listen", self._bus, "--http", http),
-        )
-        wait_for_line(station, "ready", _STATION_PATIENCE_S)
-        login = dict(
-            line.split(": ", 1) for line in (data / "first-login.txt").read_text().splitlines()
-        )
-        return login["username"], login["password"]
+    def _tell_of_standby(self) -> None:
+        first, *others = self._stations.sites
+        for other in others:
+            self._screen.print(
+                f"  standby   [bold]{other.address}[/], the same login\n\n"
+                f"`kill -9 {self._stations.process_id(first)}` to see it take over."
+            )
 
     def _start_agents(self, console: ConsoleClient, enrolments: Sequence[Path]) -> None:
         data = str(self._folder / "units")
@@ -154,15 +155,20 @@ class _Demo:
             for child in self._children.dead():
                 if child.name not in mourned:
                     mourned.add(child.name)
-                    self._mourn(child)
+                    self._mourn(child, console)
             if not self._headless and self._screen.is_terminal:
                 self._screen.print(self._status_line(console, elapsed_s), end="\r")
         self._screen.print()
 
-    def _mourn(self, child: Child) -> None:
-        if child.name == "station":
-            raise UserError(f"the base station has ended:\n{child.last_words()}")
-        if child.exit_code == 0:
+    def _mourn(self, child: Child, console: ConsoleClient) -> None:
+        if child.name in {site.data.name for site in self._stations.sites}:
+            if not self._stations.alive():
+                raise UserError(f"the base station has ended:\n{child.last_words()}")
+            self._screen.print(f"{child.name} has ended ...")
+            leading = self._stations.leading()
+            console.move_to(leading.address)
+            self._screen.print(f"{leading.data.name} leads: [bold]{leading.address}[/]")
+        elif child.exit_code == 0:
             self._screen.print(f"{child.name} has come to the end of its walk")
         else:
             self._screen.print(f"{child.name} has ended unasked:\n{child.last_words()}")
