@@ -20,6 +20,7 @@ from rich.table import Table
 from base_station.bench.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
 from base_station.bench.console import Console, latencies_ms
 from base_station.bench.onlookers import Onlookers, Seen
+from base_station.bench.recording import recording_hz
 from base_station.bench.station import (
     Membership,
     Recorded,
@@ -36,6 +37,8 @@ _STEADY_S = 5.0
 _FLOOD_S = 2.0
 _LATENCY_P99_MS = 300.0  # to reach
 _CPU_SHARE = 1.0  # to reach
+_RECORDED = 200_000  # messages
+_RECORDING_HZ = 150_000  # to reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,7 @@ class BusReport:
     bare_latency: Latency
     bare_lost: int
     bare_flood_hz: float
+    recording_hz: float  # a second of processor time
     cores: int
 
 
@@ -235,6 +239,7 @@ def _report(
         bare_latency=latency_of(steady.latencies_ms),
         bare_lost=steady.sent - steady.received,
         bare_flood_hz=flood.rate_hz,
+        recording_hz=recording_hz(_RECORDED),
         cores=psutil.cpu_count() or 1,
     )
 
@@ -280,6 +285,7 @@ def _table(report: BusReport) -> Table:
         ("bare Zenoh p50, p99", f"{bare.p50_ms:.2f}, {bare.p99_ms:.2f} ms", ""),
         ("bare Zenoh lost", f"{report.bare_lost:,}", ""),
         ("bare Zenoh flood of 200 B", f"{report.bare_flood_hz:,.0f} /s", ""),
+        ("recording alone, of one core", f"{report.recording_hz:,.0f} /s", f"{_RECORDING_HZ:,} /s"),
     ]
     rows += _onlookers("onlookers", report.onlookers) + _onlookers("slow consoles", report.slow)
     for row in rows:

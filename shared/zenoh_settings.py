@@ -1,0 +1,136 @@
+"""The ends of the bus, and how Zenoh is set for each; the settings were found by trying."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shared.tls import TlsIdentity
+
+# A lost link is noticed after the lease; each side's setting decides how fast the other notices.
+_LEASE_MS = 3000
+_KEEP_ALIVES_A_LEASE = 4
+_RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
+# Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
+# in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
+_ROUTER_QUEUES = {
+    "control": 2,
+    "real_time": 4,
+    "interactive_high": 2,
+    "interactive_low": 2,
+    "data_high": 2,
+    "data": 16,
+    "data_low": 2,
+    "background": 2,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class StationEndpoint:
+    """The router.  With ``tls``, which is mutual, the endpoints begin with ``tls/``.
+
+    ``access_control``: Zenoh's section of that name, read once, when the bus is opened.
+    """
+
+    listen: tuple[str, ...] = ("tcp/0.0.0.0:7447",)
+    tls: TlsIdentity | None = None
+    access_control: Mapping[str, Any] | None = None
+    links: tuple[str, ...] = ()  # other stations' routers, which it joins
+
+
+@dataclass(frozen=True, slots=True)
+class UnitEndpoint:
+    """A unit of one station: opens without a link, connects when the station is there."""
+
+    connect: tuple[str, ...]
+    tls: TlsIdentity | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ClientEndpoint:
+    """A station beside its router, or an onlooker: opening waits for the router.
+
+    Once open, it finds a router that was away by itself.  It is a client because without
+    gossip a router passes nothing from peer to peer.
+    """
+
+    connect: tuple[str, ...]
+    tls: TlsIdentity | None = None
+    patience_s: float = 10.0
+
+
+Endpoint = StationEndpoint | UnitEndpoint | ClientEndpoint
+
+
+def settings_of(endpoint: Endpoint) -> dict[str, Any]:
+    """Zenoh's configuration."""
+    link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
+    if isinstance(endpoint, StationEndpoint):
+        link["tx"]["queue"] = {"size": _ROUTER_QUEUES}
+    if endpoint.tls is not None:
+        link["protocols"] = ["tls"]
+        link["tls"] = _tls_settings(endpoint.tls, _tls_roles(endpoint))
+    return {
+        # With gossip, units link to each other and go round the station's access rules.
+        "scouting": {
+            "multicast": {"enabled": False},
+            "gossip": {"enabled": False},
+            "delay": 0,  # nobody is scouted for: do not wait half a second for them
+        },
+        "transport": {"link": link, "shared_memory": {"enabled": False}},
+    } | _role_settings(endpoint)
+
+
+def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
+    if isinstance(endpoint, StationEndpoint):
+        settings = {
+            "mode": "router",
+            "listen": {"endpoints": list(endpoint.listen)},
+            "timestamping": {"enabled": True},
+        }
+        if endpoint.access_control is not None:
+            settings["access_control"] = dict(endpoint.access_control)
+        if endpoint.links:
+            settings["connect"] = {
+                "endpoints": list(endpoint.links),
+                "timeout_ms": -1,
+                "exit_on_failure": False,
+                "retry": _RETRY,
+            }
+        return settings
+    patience_s = endpoint.patience_s if isinstance(endpoint, ClientEndpoint) else None
+    return {
+        "mode": "peer" if patience_s is None else "client",
+        "listen": {"endpoints": []},
+        "connect": {
+            "endpoints": list(endpoint.connect),
+            "timeout_ms": -1 if patience_s is None else round(patience_s * 1000),
+            "exit_on_failure": patience_s is not None,
+            "retry": _RETRY,
+        },
+    }
+
+
+def _tls_roles(endpoint: Endpoint) -> tuple[str, ...]:
+    if not isinstance(endpoint, StationEndpoint):
+        return ("connect",)
+    return ("listen", "connect") if endpoint.links else ("listen",)
+
+
+def _tls_settings(identity: TlsIdentity, roles: Iterable[str]) -> dict[str, Any]:
+    """Inline rather than as paths: an enrolment is one file, and its key is on disk once."""
+    certificate = base64.b64encode(identity.certificate).decode()
+    private_key = base64.b64encode(identity.private_key).decode()
+    own: dict[str, str] = {}
+    for role in roles:
+        own |= {
+            f"{role}_certificate_base64": certificate,
+            f"{role}_private_key_base64": private_key,
+        }
+    return own | {
+        "root_ca_certificate_base64": base64.b64encode(identity.authority).decode(),
+        "enable_mtls": True,
+        "close_link_on_expiration": True,
+    }
