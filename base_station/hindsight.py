@@ -17,9 +17,9 @@ from base_station.db.models import Incident
 from base_station.db.records import TrackSample
 from base_station.db.smoothed import SmoothedTracks
 from base_station.fusion.path_history import NO_FLOOR, RESTART, PathArrays
-from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution, Tie
+from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
-from base_station.pinning import evidence_of_all
+from base_station.pinning import evidence_of_all, ties_of
 from base_station.playback import Archive, Playback
 from shared.clock import Clock
 from shared.quality import Quality
@@ -110,12 +110,7 @@ class Hindsight:
         with self._working:
             until_ns = incident.closed_ns or self._clock.utc_ns()
             state = self._state_at(until_ns, on_progress)
-            ties = [
-                Tie(pin.pin_id, pin.unit_id, pin.other_id, pin.t_ns, pin.std_m)
-                for pin in state.pins.values()
-                if pin.kind == "meeting"
-            ]
-            solution = self._smoother.smooth(evidence_of_all(state), ties)
+            solution = self._smoother.smooth(evidence_of_all(state), ties_of(state))
             on_progress(1.0)
             return Known(state, solution)
 

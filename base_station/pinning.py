@@ -18,6 +18,7 @@ from base_station.fusion.smoother.port import (
     SmoothedPath,
     Smoother,
     Solution,
+    Tie,
     UnitEvidence,
     Verdict,
 )
@@ -27,6 +28,7 @@ from base_station.pins import Beacon, Pin, PinVerdict
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
+SUREST_M = 0.05  # nobody knows a place better
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
 
 
@@ -114,6 +116,20 @@ def evidence_of_all(state: StationState) -> Mapping[str, UnitEvidence]:
     return found
 
 
+def ties_of(state: StationState) -> list[Tie]:
+    """Meetings of units whose paths both reach them."""
+    ties = []
+    for pin in state.pins.values():
+        paths = [state.paths.get(one) for one in (pin.unit_id, pin.other_id)]
+        reached = [path for path in paths if path is not None and path.begin_ns is not None]
+        if pin.kind == "meeting" and len(reached) == 2:
+            times = [_time_of(path, pin) for path in reached]
+            if not any(isinstance(t_ns, str) for t_ns in times):
+                std_m = max(pin.std_m, SUREST_M)
+                ties.append(Tie(pin.pin_id, pin.unit_id, pin.other_id, pin.t_ns, std_m))
+    return ties
+
+
 def _floors(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
     """As they were said then, where the height is still that; else by the plan."""
     floors: list[int | None] = []
@@ -166,7 +182,7 @@ def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | s
         t_ns=t_ns,
         north_m=at.north_m,
         east_m=at.east_m,
-        std_m=math.hypot(pin.std_m, beacon.std_m) if beacon is not None else pin.std_m,
+        std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
         down_m=down_m,
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,

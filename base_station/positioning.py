@@ -309,12 +309,15 @@ def _as_message(
 
 
 def _is_outside(state: StationState, unit: UnitState) -> bool:
-    """Whether its barometer feels the weather, and no doors and fans of the building."""
-    fused = unit.fused
-    if fused is None:
+    """Whether its barometer feels the weather, and no doors and fans of the building; no pin may
+    matter for that, or what is without pins would not be what it would be.
+    """
+    fused, history = unit.fused, state.paths.get(unit.unit_id)
+    shown_m = None if history is None else history.shown_m
+    if fused is None or shown_m is None:
         return False
     if state.plan is not None and state.plan.outlines:
-        return state.plan.depth_m(fused.north_m, fused.east_m) < -OUTSIDE_M
+        return state.plan.depth_m(*shown_m) < -OUTSIDE_M
     return fused.since_gps_s is not None and fused.since_gps_s < OUTSIDE_FIX_S
 
 

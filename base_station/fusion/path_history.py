@@ -122,6 +122,13 @@ class PathHistory(msgspec.Struct):
         return self.points[-1].t_ns if self.points else None
 
     @property
+    def shown_m(self) -> tuple[float, float] | None:
+        """North and east as last estimated without any pin."""
+        if not self.points:
+            return None
+        return self.points[-1].shown_north_mm * 1e-3, self.points[-1].shown_east_mm * 1e-3
+
+    @property
     def is_awaited(self) -> bool:
         """The path has come to where a pin waits for it."""
         return self.awaited_ns is not None and (self.end_ns or 0) >= self.awaited_ns
