@@ -1,0 +1,136 @@
+"""Floors under weather, doors and fans: pressure that nobody climbed for moves nobody."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.fusion.height import HeightFilter
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.port import AirHeight
+from base_station.fusion.weather import Barometers, Weather
+from shared.clock import NS_PER_S
+from shared.geo import pressure_pa_at
+from shared.messages import Position
+
+STOREYS_DOWN_M = (0.0, -3.2, -6.4, -9.6)
+SITE_M = 120.0
+PA_PER_M = pressure_pa_at(SITE_M + 1.0) - pressure_pa_at(SITE_M)
+
+
+def down_of(added_pa: float, down_m: float = 0.0) -> float:
+    """What a barometer takes for its height above the site, negative."""
+    return down_m - added_pa / PA_PER_M
+
+
+@pytest.fixture
+def position(make_position: Callable[..., Position]) -> Position:
+    return make_position()
+
+
+class Wearer:
+    """Walks a metre a second; a climb takes as many seconds as it has steps of 0.2 m."""
+
+    def __init__(self) -> None:
+        self.height = HeightFilter(Parameters())
+        self.height.begin(0.0, 0.2)
+        self.t_s = 0
+        self.rng = np.random.default_rng(1)
+        self.true_down_m = 0.0
+
+    def second(self, added_pa: float, *, climbs_m: float = 0.0, referenced: bool = False) -> None:
+        self.t_s += 1
+        self.true_down_m -= climbs_m
+        self.height.climb(-climbs_m, 1.0)
+        if self.height.walked_level:
+            self.height.rest_on(())
+        noise_m = float(self.rng.normal(0.0, 0.15))
+        air_m = down_of(added_pa, self.true_down_m) + 5.0 + noise_m
+        self.height.feel(AirHeight(self.t_s * NS_PER_S, air_m, referenced))
+
+    @property
+    def off_m(self) -> float:
+        return abs(self.height.down_m - self.true_down_m)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_350_pa_of_weather_in_an_hour_move_nobody_a_floor(sign: float) -> None:
+    """Without any reference, and without a plan's storeys to hold on to: 29 m of pressure."""
+    wearer, worst_m = Wearer(), 0.0
+    for second in range(3600):
+        wearer.second(sign * 350.0 * second / 3600.0)
+        worst_m = max(worst_m, wearer.off_m)
+    assert abs(down_of(350.0)) > 25.0
+    assert worst_m < 1.0
+
+
+def test_a_fan_that_is_started_is_no_stair() -> None:
+    for step_pa in (-60.0, -30.0, 30.0, 60.0):
+        wearer = Wearer()
+        for second in range(300):
+            wearer.second(step_pa if second > 120 else 0.0, referenced=True)
+        assert wearer.off_m < 0.5
+        assert math.sqrt(wearer.height.variance_m2) < 1.0
+
+
+def test_stairs_are_climbed_with_the_fan_on() -> None:
+    wearer = Wearer()
+    for second in range(200):
+        climbs_m = 0.2 if 100 <= second < 116 else 0.0
+        wearer.second(-30.0 if second > 50 else 0.0, climbs_m=climbs_m, referenced=True)
+    assert wearer.height.down_m == pytest.approx(-3.2, abs=0.4)
+
+
+def test_on_the_level_inside_people_are_on_a_storey() -> None:
+    height = HeightFilter(Parameters())
+    height.begin(-2.8, 0.5)
+    height.climb(0.0, 10.0)
+    assert height.walked_level
+    height.rest_on(STOREYS_DOWN_M)
+    assert height.down_m == pytest.approx(-3.2, abs=0.15)
+
+
+def test_half_way_between_two_storeys_neither_is_taken() -> None:
+    height = HeightFilter(Parameters())
+    height.begin(-1.6, 0.5)
+    height.climb(0.0, 10.0)
+    height.rest_on(STOREYS_DOWN_M)
+    assert height.down_m == pytest.approx(-1.6)
+
+
+def test_the_weather_is_told_by_whoever_stays_and_nobody_moves_by_joining() -> None:
+    weather = Weather()
+    for second in range(600):
+        rise_m = 0.01 * second
+        weather.note("one", second * NS_PER_S, SITE_M + 7.0 + rise_m, 0.0)
+        if second > 300:
+            weather.note("other", second * NS_PER_S, SITE_M - 40.0 + rise_m, 0.0)
+    assert weather.rise_m == pytest.approx(6.0, abs=0.2)
+    assert weather.is_known(605 * NS_PER_S)
+    assert not weather.is_known(700 * NS_PER_S)
+
+
+def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
+    barometers = Barometers()
+    barometers.refer_to("REF", 0.0)
+    for second in range(300):
+        added_pa = second * 350.0 / 3600.0
+        t_ns = second * NS_PER_S
+        for unit_id, extra_pa in (("REF", 0.0), ("FF-01", 25.0)):
+            pressure_pa = pressure_pa_at(SITE_M) + added_pa + extra_pa
+            said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
+            air = barometers.hear(unit_id, t_ns, said, is_outside=True)
+    assert air is not None
+    assert air.referenced
+    first = down_of(25.0) - SITE_M
+    assert air.down_m == pytest.approx(first, abs=0.3)
+
+
+def test_a_pressure_that_cannot_be_is_left_alone(position: Position) -> None:
+    for pressure_pa in (None, 0.5, 1e6, math.nan):
+        said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
+        assert Barometers().hear("FF-01", 0, said, is_outside=True) is None

@@ -1,0 +1,63 @@
+"""A plan's walls hold people: simulated incidents with and without the plan."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from base_station.bench.fusion import Person, Run, Timing, draw_incident, fuse
+from base_station.bench.incident_scores import CHI2_95_2DOF
+from base_station.fusion import FUSERS
+from base_station.fusion.port import FuserKind
+
+PEOPLE = 3
+
+
+@pytest.fixture(scope="module")
+def people() -> list[Person]:
+    return draw_incident(np.random.default_rng(11))[:PEOPLE]
+
+
+@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
+def kind(request: pytest.FixtureRequest) -> FuserKind:
+    found: FuserKind = request.param
+    return found
+
+
+def errors_m(person: Person, run: Run) -> np.ndarray:
+    return np.linalg.norm(run.places_m - person.truth.place_m[:, :2], axis=1)
+
+
+def test_with_the_plan_ten_minutes_inside_cost_nothing(
+    kind: FuserKind, people: list[Person]
+) -> None:
+    """Without it the heading's drift turns the path; with it the region is small and holds."""
+    for person in people:
+        truth = person.truth
+        inside = (truth.t_s > truth.goes_in_s + 60.0) & (truth.t_s < truth.comes_out_s)
+        walled = fuse(kind, person, Timing(), with_plan=True)
+        assert np.percentile(errors_m(person, walled)[inside], 95) < 3.0
+        assert np.mean(walled.normalised2[inside] < CHI2_95_2DOF) > 0.85
+        assert np.mean(np.array(walled.floors)[inside] == _storeys(person)[inside]) > 0.9
+
+
+def test_a_plan_of_another_building_is_given_up(kind: FuserKind, people: list[Person]) -> None:
+    """Its walls stand in the way move after move; then the path alone is believed again."""
+    person = people[0]
+    other = draw_incident(np.random.default_rng(12))[0].building
+    wrong = dataclasses.replace(person, building=other)
+    truth = person.truth
+    late = (truth.t_s > truth.goes_in_s + 300.0) & (truth.t_s < truth.comes_out_s)
+    plain = fuse(kind, person, Timing(), with_plan=False)
+    misled = fuse(kind, wrong, Timing(), with_plan=True)
+    assert np.median(errors_m(person, misled)[late]) < 15.0 + np.median(
+        errors_m(person, plain)[late]
+    )
+    again = truth.t_s > truth.comes_out_s + 60.0
+    assert np.median(errors_m(person, misled)[again]) < 4.0
+
+
+def _storeys(person: Person) -> np.ndarray:
+    return np.rint(-person.truth.place_m[:, 2] / person.building.storey_m)

@@ -1,0 +1,118 @@
+"""The station's pipeline with a plan: floors, the weather's reference, who is not heard, and
+fixes out of a journal.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.events import Refused
+from base_station.views import StationFacts, snapshot
+from edge.simulation.building import plan_path
+from shared.channels import GPS, backfilled_key
+from shared.codec import encode
+from shared.geo import pressure_pa_at
+from shared.messages import FixType, FusedPosition, GpsFix
+from shared.messages.station import SetAnchor, SetPlan, SetReference, SetStart
+from tests.station_script import Script
+
+U = "FF-01"
+CORRIDOR_NORTH_M, CORRIDOR_EAST_M = 7.0, 12.0
+SITE_M = 50.0
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    script.act(SetPlan(plan_path().read_bytes()))
+    script.act(SetStart(U, CORRIDOR_NORTH_M, CORRIDOR_EAST_M, 0.0, 0.0, 0.2, 0.05))
+    return script
+
+
+def test_a_floor_comes_with_its_probability(script: Script) -> None:
+    script.position(U, 0.0, 0.0)
+    on_floor = script.fused[-1]
+    assert on_floor.floor == 0
+    assert on_floor.floor_probability is not None
+    assert on_floor.floor_probability > 0.95
+    script.position(U, 0.0, 0.0, down_m=-1.6)
+    between = script.fused[-1].floor_probability
+    assert between is not None
+    assert between < 0.7
+
+
+def test_only_a_registered_unit_can_be_the_reference(script: Script) -> None:
+    outputs = script.act(SetReference("FF-99", 0.0))
+    assert isinstance(outputs[0], Refused)
+    assert script.act(SetReference(U, math.nan)) != []
+    assert script.pipeline.state.barometers.reference_id is None
+    script.act(SetReference(U, -1.0))
+    assert script.pipeline.state.barometers.reference_id == U
+    script.act(SetReference("", 0.0))
+    assert script.pipeline.state.barometers.reference_id is None
+
+
+def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
+    """350 Pa in an hour, here in ten minutes of it; the reference stands at the station."""
+    script.register("REF")
+    script.act(SetReference("REF", 0.0))
+
+    def each_second() -> None:
+        pressure_pa = pressure_pa_at(SITE_M) + 350.0 * script.now_s / 3600.0
+        script.position("REF", 0.0, 0.0, pressure_pa=pressure_pa)
+        script.position(U, 0.0, 0.0, pressure_pa=pressure_pa - 40.0)
+
+    script.wait(600, each_second)
+    ours = [fused for fused in script.fused if fused.unit_id == U]
+    assert {fused.floor for fused in ours} == {0}
+    assert abs(ours[-1].down_m) < 0.5
+
+
+def test_who_is_not_heard_is_within_walls(script: Script) -> None:
+    script.wait(3, lambda: script.position(U, 0.0, 0.0))
+    assert script.pipeline.state.units[U].reach == ()
+    script.wait(20)
+    state = script.pipeline.state
+    view = snapshot(state, 1, StationFacts(), lambda _: None).units[0].position
+    assert view is not None
+    widths = [math.dist(point, (CORRIDOR_EAST_M, CORRIDOR_NORTH_M)) for point in view.reach]
+    assert max(widths) > 9.0, "along the corridor"
+    assert min(widths) < view.ellipse_minor_m / 2.0, "the walls"
+    script.wait(1, lambda: script.position(U, 0.0, 0.0))
+    assert state.units[U].reach == ()
+
+
+def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) -> None:
+    """The unit begins 6 m from where people think; its fixes of the silent minute come late."""
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.act(SetStart(U, -60.0, 0.0, 0.0, 0.0, 10.0, 0.05))
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    late = []
+    for second in range(60):
+        script.now_s += 1.0
+        script.position(U, float(second), 0.0)
+        lat_deg, lon_deg, height_m = anchor.to_geodetic(-60.0 + second, 6.0, 0.0)
+        late.append(
+            GpsFix(
+                header=script.header(U),
+                fix_type=FixType.THREE_D,
+                lat_deg=lat_deg,
+                lon_deg=lon_deg,
+                height_m=height_m,
+                horizontal_std_m=2.0,
+                vertical_std_m=4.0,
+                satellites=9,
+                speed_mps=0.0,
+                course_rad=0.0,
+            )
+        )
+    assert script.fused[-1].east_m == pytest.approx(0.0, abs=0.5)
+    for fix in late:
+        outputs = script.record(backfilled_key(U, GPS.suffix), encode(fix))
+        assert any(isinstance(output, FusedPosition) for output in outputs)
+    assert script.fused[-1].east_m == pytest.approx(6.0, abs=2.0)
+    assert script.record(backfilled_key(U, GPS.suffix), encode(late[0])) == [], "a second copy"
