@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from base_station.standby.places import Place
+from base_station.standby.places import BEGINNING, Place
 from base_station.standby.words import Beat, Role
 from shared.clock import NS_PER_S
 
@@ -83,6 +83,8 @@ class Election:
     def _alone(self, me: Me, now_ns: int) -> Decision:
         if self.role == "standby":
             return "lead" if self._has_witness(now_ns) else "stay"
+        if me.place == BEGINNING and not me.preferred:
+            return "stay"  # made to follow: a log of its own would keep it from that for ever
         patience_ns = self._lease_ns if me.preferred else 2 * self._lease_ns
         return "lead" if now_ns - self._since_ns >= patience_ns else "stay"
 

@@ -25,6 +25,7 @@ _TIMEOUT_S = 3.0
 _AGAIN_S = 0.2
 _SETTLE_S = 0.02  # what is written in quick succession goes to the disk together
 _SAY_S = 0.5
+_BACKLOG = 1000  # so many events at once are no longer the last moment's
 
 
 class Leader(NamedTuple):
@@ -122,7 +123,7 @@ class Follower:
             batch = self._ask(leader, f"records?t={place.t_ns};n={place.events}", Batch)
             if batch is None or not self._deliver(leader, batch):
                 return
-            self.in_step = self.delivered >= history.place
+            self.in_step = self.delivered >= history.place and len(batch.records) < _BACKLOG
 
     def _deliver(self, leader: Leader, batch: Batch) -> bool:
         with self._delivering:

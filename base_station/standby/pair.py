@@ -18,7 +18,7 @@ from base_station.feed import LogFeed, SteadyClock
 from base_station.standby.confirming import OtherCopy
 from base_station.standby.election import Election, Me
 from base_station.standby.following import Follower, Leader
-from base_station.standby.places import Place
+from base_station.standby.places import BEGINNING, Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
@@ -289,6 +289,10 @@ class Pair:
             found.append(
                 f"Neither {other.station} nor any unit is heard: this station is probably cut off. "
                 "It takes over as soon as it hears a unit, or by hand"
+            )
+        elif self.followed() is None and self._around.log.place == BEGINNING:
+            found.append(
+                "No active station is heard, and this new standby has nothing yet: it waits"
             )
         elif self.followed() is None:
             found.append("No active station is heard: this one takes over in some seconds")

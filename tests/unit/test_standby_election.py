@@ -49,6 +49,14 @@ def test_alone_it_leads_after_a_while(preferred: bool, waits_s: float) -> None:
     assert site.decide(0.1) == "lead"
 
 
+def test_a_new_standby_with_an_empty_log_leads_nobody() -> None:
+    site = Site(preferred=False)
+    site.me = site.me._replace(place=BEGINNING, term=0)
+    assert site.decide(100 * LEASE_S) == "stay"
+    site.me = site.me._replace(preferred=True)  # the first start of all
+    assert site.decide() == "lead"
+
+
 def test_where_another_one_leads_it_follows_whatever_it_had() -> None:
     site = Site(preferred=True)
     site.hear("active", term=1, place=BEGINNING)
