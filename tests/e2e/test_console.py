@@ -212,7 +212,10 @@ def test_a_pin_is_set_with_a_click_and_removed(page: Page, card: Locator) -> Non
     expect(form).to_have_count(0, timeout=SOON_MS)
     (pin,) = page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())")
     assert (pin["unit_id"], pin["std_m"], pin["by"]) == (UNIT, 2.0, "admin")
-    page.evaluate(f"fetch('/api/v1/pins/{pin['pin_id']}', {{method: 'DELETE'}})")
+    page.get_by_text("Pins 1").click()
+    page.get_by_role("button", name=f"{NAME} here").click()
+    form.get_by_role("button", name="Remove pin").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
     assert page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())") == []
 
 

@@ -37,7 +37,9 @@ export function PinPanel({ picture, unitId, pin }: Props) {
   };
   return (
     <form class="tool-panel" aria-label={`Pin: ${name}`} onSubmit={send}>
-      <h3>{name} was here</h3>
+      <h3>
+        {pin?.kind === "meeting" ? `${name} met ${nameOf(picture, pin.other_id)}` : `${name} was here`}
+      </h3>
       {pin !== null && <Verdict pin={pin} />}
       {!fixed && (
         <>

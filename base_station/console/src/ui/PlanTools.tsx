@@ -5,6 +5,7 @@ import { loadingKinds, shownKinds, toggle, type TrailKind } from "../plan/pastTr
 import { putDown, take, tool } from "../plan/tools";
 import { AnchorPanel } from "./AnchorPanel";
 import { BeaconPanel } from "./BeaconPanel";
+import { PinList } from "./PinList";
 import { MeetingPanel, PinPanel, StartPanel } from "./PinPanel";
 
 /** What can be done on the plan, and the panel of what is being done. */
@@ -23,6 +24,7 @@ export function PlanTools({ picture }: { picture: Picture }) {
       <div class="plan-tools">
         {now === null && <Buttons />}
         <Trails />
+        <PinList picture={picture} />
       </div>
       {now !== null && mayAct.value && <Panel picture={picture} />}
     </>
