@@ -74,6 +74,7 @@ from shared.messages import STATION_ID
 
 Announce = Callable[[str], None]
 _BY_COMMAND = "muster base forget"  # in the audit
+_BY_OTHER_STATION = "the other station"
 _log = logging.getLogger(__name__)
 
 
@@ -143,6 +144,9 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
                 on_people=roster.read_again,
                 on_lead=lambda: _announce_first_login(accounts, folder.first_login, announce),
                 start_again=start_again,
+                forget=lambda what: _forget_too(
+                    Forgetter(recorder, store, checkpoints, records, steady), what
+                ),
             ),
         )
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
@@ -373,6 +377,17 @@ def _start_drive(
     begin(drive.place, pipeline.state)
     drive.start()
     return drive
+
+
+def _forget_too(forgetter: Forgetter, what: str) -> None:
+    """The active station has forgotten this, and its log is this one's.  What is to go from memory
+    comes as actions of that log.
+    """
+    kind, _, one = what.partition(" ")
+    try:
+        (forgetter.person if kind == "person" else forgetter.incident)(_BY_OTHER_STATION, one)
+    except UserError as error:
+        _log.info("nothing to forget here: %s", error)
 
 
 def _side(config: StationConfig, parts: Parts) -> Side:

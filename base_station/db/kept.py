@@ -93,12 +93,16 @@ class KeptTables:
             )
             return [_row(entry) for entry in entries]
 
-    def add_audit(self, rows: Sequence[Row]) -> None:
-        """Those that are not there yet."""
-        if not rows:
-            return
+    def add_audit(self, rows: Sequence[Row]) -> list[Row]:
+        """Add those that are not there yet, and give them."""
+        ids = [row["entry_id"] for row in rows]
         with self._store.write() as session:
-            session.execute(insert(AuditEntry).on_conflict_do_nothing(), list(rows))
+            known = select(AuditEntry.entry_id).where(AuditEntry.entry_id.in_(ids))
+            there = set(session.scalars(known))
+            new = [row for row in rows if row["entry_id"] not in there]
+            if new:
+                session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
+        return new
 
     def _copy_sessions(self, session: Session, rows: tuple[Row, ...]) -> None:
         there = {row["token_hash"] for row in rows}

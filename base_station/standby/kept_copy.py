@@ -25,6 +25,7 @@ logger = logging.getLogger(__name__)
 _LOOK_EVERY_S = 1.0
 _TIMEOUT_S = 5.0
 _AUDIT_ENTRIES = 500
+_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting says it
 
 
 class KeptServer:
@@ -77,12 +78,14 @@ class KeptCopy:
         leader: Callable[[], str | None],
         other: Callable[[], str | None],
         on_people: Callable[[], None],
+        on_forgotten: Callable[[str], None],
         on_dropped: Callable[[str], None],
     ) -> None:
         """``leader``: whom to copy from, where that is another; ``other``: whose audit to add.
 
-        ``on_people`` is told when people or photos may have changed, ``on_dropped`` in a sentence
-        of what was only here.
+        ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
+        or an incident ("person ID") that the active station has forgotten, ``on_dropped`` in a
+        sentence of what was only here.
         """
         self._bus = bus
         self._tables = tables
@@ -90,6 +93,7 @@ class KeptCopy:
         self._leader = leader
         self._other = other
         self._on_people = on_people
+        self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
         self._known = self._known_enrolled = b""
         self._audit_ns = 0
@@ -133,7 +137,10 @@ class KeptCopy:
     def _add_audit(self, other: str) -> None:
         answer = self._ask(other, "audit", str(self._audit_ns).encode())
         entries = [] if answer is None else unpack(answer, list[Row])
-        self._tables.add_audit(entries)
+        new = self._tables.add_audit(entries)
+        for entry in new if self._leader() is not None else ():
+            if entry["action"] in _FORGOTTEN:
+                self._on_forgotten(str(entry["detail"]).partition(":")[0])
         if entries:
             newest_ns = int(entries[-1]["t_ns"])
             # Of entries of one time some may not have come.

@@ -44,6 +44,7 @@ class Parts:
     on_people: Callable[[], None]  # people or photos may have changed
     on_lead: Callable[[], None]
     start_again: Callable[[Place | None], None]
+    forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
 
 
 class HearingFeed(Feed, Protocol):
@@ -186,6 +187,7 @@ class OneOfTwo:
             leader=pair.followed,
             other=pair.other_there,
             on_people=parts.on_people,
+            on_forgotten=parts.forget,
             on_dropped=lambda said: parts.records.audit(STATION_ID, "AccountsCopied", said),
         )
         merging = Merging(

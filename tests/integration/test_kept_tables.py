@@ -93,6 +93,8 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
     active.roster.set_photo(person.person_id, b"jpeg", "hash")
     active.records.audit("ada", "LoggedIn", "there")
     standby.records.audit("bob", "LoggedIn", "here")
+    active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
+    forgotten: list[str] = []
     router = MemoryRouter()
     server = KeptServer("active", router.attach_station(), active.tables, active.pki)
     copying = KeptCopy(
@@ -102,6 +104,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
         leader=lambda: "active",
         other=lambda: "active",
         on_people=standby.roster.read_again,
+        on_forgotten=forgotten.append,
         on_dropped=lambda _: None,
     )
     copying.start()
@@ -109,6 +112,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
         until(lambda: standby.roster.photo(person.person_id) == (b"jpeg", "hash"))
         assert standby.roster.photo_url(person.person_id) is not None
         until(lambda: {e.by for e in standby.records.audit_entries(2**62, 9)} == {"ada", "bob"})
+        until(lambda: forgotten == ["person p9"])
         until(lambda: standby.pki.registry().entries == active.pki.registry().entries)
         active.pki.revoke("FF-01")
         until(lambda: any(entry.revoked for entry in standby.pki.registry().entries))
@@ -116,6 +120,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
         until(lambda: standby.roster.photo(person.person_id) == (b"other", "hash 2"))
         active.roster.remove_person(person.person_id)
         until(lambda: not standby.roster.people())
+        assert forgotten == ["person p9"]
     finally:
         copying.close()
         server.close()
