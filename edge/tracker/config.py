@@ -115,6 +115,7 @@ class EskfConfig(NamedTuple):
     start_accel_bias_std_mps2: float = 0.14
     start_lever_std_m: float = 0.1
     drift_std: float = 8e-5  # rad of heading for each unit of excursion
+    turn_scale_std: float = 0.002  # of what the foot turns about the vertical
     excursion_per_force: float = 0.4  # rad for each m/s
     start_tilt_std_rad: float = 0.014
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows

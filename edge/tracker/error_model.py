@@ -5,13 +5,15 @@ attitude (rad, small rotation in NED axes: ``R_true = (1 + [a x]) R``), turn (ra
 bias (rad/s, sensor axes), accelerometer bias (m/s^2, sensor axes), lever (m, sensor axes)
 from the point about which the foot rolls in stance to the sensor, drift (rad for each unit
 of excursion), and what
-a kelvin adds to the gyroscope bias (rad/s/K, sensor axes).
+a kelvin adds to the gyroscope bias (rad/s/K, sensor axes), turn scale.
 
 The turn is the part of the heading's error that has turned the whole walk with it.  It grows
 by the drift times the foot's excursion: what scale, misalignment and sensitivity to force
 leave of a stride is as systematic as the stride, and without it the stated heading would
-grow like the root of the time instead of the time.  A walk turned as a whole looks the same
-to every stance, so the turn enters the position alone and only a compass can tell it.
+grow like the root of the time instead of the time.  It also grows by the turn's scale (rad
+for each rad) where the foot turns about the vertical, for good: ten times around in a
+stairwell.  A walk turned as a whole looks the same to every stance, so the turn enters the
+position alone and only a compass can tell it.
 Formulas: Sola, "Quaternion kinematics for the error-state Kalman filter", 2017,
 chapter 7 (global angular error).
 """
@@ -32,7 +34,8 @@ ACCEL_BIAS = 13
 LEVER = 16
 DRIFT = 19
 GYRO_WARMTH = 20
-SIZE = 23
+TURN_SCALE = 23
+SIZE = 24
 HEADING = SIZE  # stands for what a compass measures: the sum of ATTITUDE + 2 and TURN
 
 
@@ -41,11 +44,13 @@ def transition_matrix(
     moved_n_m: Floats,
     force_n_mps2: Floats,
     excursion: float,
+    yawed_rad: float,
     dt_s: float,
 ) -> Floats:
-    """Return the dense transition (23, 23) of one interval; ``propagate`` applies the same.
+    """Return the dense transition (24, 24) of one interval; ``propagate`` applies the same.
 
-    ``moved_n_m`` (2,) is how far the foot moved, ``excursion`` its excursion (see filter).
+    ``moved_n_m`` (2,) is how far the foot moved, ``excursion`` its excursion (see filter),
+    ``yawed_rad`` how far it turned clockwise seen from above.
     """
     x, y, z = force_n_mps2
     matrix = np.eye(SIZE)
@@ -56,6 +61,7 @@ def transition_matrix(
     matrix[0, TURN] = -moved_n_m[1]
     matrix[1, TURN] = moved_n_m[0]
     matrix[TURN, DRIFT] = excursion
+    matrix[TURN, TURN_SCALE] = yawed_rad
     return matrix
 
 
@@ -66,9 +72,10 @@ def propagate(
     moved_n_m: Floats,
     force_n_mps2: Floats,
     excursion: float,
+    yawed_rad: float,
     dt_s: float,
 ) -> None:
-    """Replace ``covariance`` P (23, 23) by ``F P F'``, using what is zero and one in F."""
+    """Replace ``covariance`` P (24, 24) by ``F P F'``, using what is zero and one in F."""
     fx = dt_s * force_n_mps2[0]
     fy = dt_s * force_n_mps2[1]
     fz = dt_s * force_n_mps2[2]
@@ -91,7 +98,7 @@ def propagate(
         p[6, j] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
         p[7, j] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
         p[8, j] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
-        p[TURN, j] = turn + excursion * p[DRIFT, j]
+        p[TURN, j] = turn + excursion * p[DRIFT, j] + yawed_rad * p[TURN_SCALE, j]
     # Columns: P = M F'; the lower triangle is the mirror.
     for i in range(TURN + 1):
         row = p[i]
@@ -109,7 +116,7 @@ def propagate(
         row[6] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
         row[7] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
         row[8] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
-        row[TURN] = turn + excursion * row[DRIFT]
+        row[TURN] = turn + excursion * row[DRIFT] + yawed_rad * row[TURN_SCALE]
     for i in range(TURN + 1):
         for j in range(i + 1, SIZE):
             p[j, i] = p[i, j]
@@ -140,8 +147,8 @@ def update_one(
     """Use one scalar measurement of error number ``index``.
 
     ``residual`` is measured minus predicted for the state before any of this
-    instant's updates; ``error`` (23,) gathers the correction.  ``gain`` (23,)
-    leaves as the Kalman gain; ``column`` (23,) is scratch.  Returns the innovation
+    instant's updates; ``error`` (24,) gathers the correction.  ``gain`` (24,)
+    leaves as the Kalman gain; ``column`` (24,) is scratch.  Returns the innovation
     and its inverse variance.
     """
     for i in range(SIZE):

@@ -20,6 +20,7 @@ from edge.tracker.error_model import (
     LEVER,
     POSITION,
     SIZE,
+    TURN_SCALE,
     VELOCITY,
     propagate,
 )
@@ -83,6 +84,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
         state.covariance[LEVER + i, LEVER + i] = config.start_lever_std_m**2
         state.covariance[GYRO_WARMTH + i, GYRO_WARMTH + i] = config.gyro_bias_per_k_std_radps**2
     state.covariance[DRIFT, DRIFT] = config.drift_std**2
+    state.covariance[TURN_SCALE, TURN_SCALE] = config.turn_scale_std**2
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
     state.covariance[ATTITUDE + 1, ATTITUDE + 1] = tilt_std_rad**2
@@ -120,11 +122,20 @@ def _predict(
         state.angle_rad,
     )
     excursion = _excursion(state, dt_s, config)
+    yawed_rad = _yawed_rad(state, dt_s)
     moved_n_m = ring[slot].moved_n_m
     for i in range(2):
         moved_n_m[i] = dt_s * state.velocity_n_mps[i]
-    propagate(state.covariance, state.rotation_nb, moved_n_m, state.force_n_mps2, excursion, dt_s)
-    turn_walk(state, state.drift * excursion)
+    propagate(
+        state.covariance,
+        state.rotation_nb,
+        moved_n_m,
+        state.force_n_mps2,
+        excursion,
+        yawed_rad,
+        dt_s,
+    )
+    turn_walk(state, state.drift * excursion + state.turn_scale * yawed_rad)
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
@@ -148,6 +159,7 @@ def _predict(
         )
     ring[slot].interval_s = dt_s
     ring[slot].excursion = excursion
+    ring[slot].yawed_rad = yawed_rad
     for i in range(3):
         ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
         for j in range(3):
@@ -166,6 +178,15 @@ def _excursion(state: FilterState, dt_s: float, config: EskfConfig) -> float:
         turned += state.gyro_radps[i] ** 2
         off += (state.accel_mps2[i] - state.rest_force_mps2[i]) ** 2
     return float(dt_s * (math.sqrt(turned) + config.excursion_per_force * math.sqrt(off)))
+
+
+@njit()
+def _yawed_rad(state: FilterState, dt_s: float) -> float:
+    """Return how far the foot turned about the vertical, clockwise seen from above."""
+    rate_radps = 0.0
+    for i in range(3):
+        rate_radps += state.rotation_nb[2, i] * state.gyro_radps[i]
+    return float(dt_s * rate_radps)
 
 
 @njit()

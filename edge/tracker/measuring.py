@@ -20,6 +20,7 @@ from edge.tracker.error_model import (
     POSITION,
     SIZE,
     TURN,
+    TURN_SCALE,
     VELOCITY,
     update_heading,
     update_one,
@@ -113,6 +114,7 @@ def end_updates(state: FilterState) -> None:
         state.lever_b_m[i] += error[LEVER + i]
         state.gyro_bias_per_k[i] += error[GYRO_WARMTH + i]
     state.drift += error[DRIFT]
+    state.turn_scale += error[TURN_SCALE]
     rotate_navigation(
         state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
     )

@@ -22,6 +22,7 @@ from edge.tracker.error_model import (
     LEVER,
     SIZE,
     TURN,
+    TURN_SCALE,
     VELOCITY,
 )
 from edge.tracker.state import Ring
@@ -91,6 +92,7 @@ def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
             adjoint[i] = 0.0
         return
     adjoint[DRIFT] += ring[slot].excursion * adjoint[TURN]
+    adjoint[TURN_SCALE] += ring[slot].yawed_rad * adjoint[TURN]
     moved_n_m = ring[slot].moved_n_m
     adjoint[TURN] += moved_n_m[0] * adjoint[1] - moved_n_m[1] * adjoint[0]
     fx = dt_s * ring[slot].force_n_mps2[0]

@@ -59,6 +59,7 @@ RING = np.dtype(
         ("force_n_mps2", np.float64, 3),  # over that interval
         ("moved_n_m", np.float64, 2),
         ("excursion", np.float64),
+        ("yawed_rad", np.float64),  # clockwise seen from above
         ("warmed_k", np.float64),  # step of the temperature that the biases took
         ("rotation_nb", np.float64, (3, 3)),  # at its end
         ("lever_row", np.float64, (3, 3)),  # how the lever enters the velocity updates
@@ -133,6 +134,7 @@ FILTER = np.dtype(
         ("accel_bias_mps2", np.float64, 3),
         ("lever_b_m", np.float64, 3),  # from the point the foot rolls about to the sensor
         ("drift", np.float64),  # rad of heading for each unit of excursion
+        ("turn_scale", np.float64),  # rad of heading for each rad turned about the vertical
         ("rest_force_mps2", np.float64, 3),  # sensor axes, where the gyroscope bias was learned
         ("gyro_bias_per_k", np.float64, 3),
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model

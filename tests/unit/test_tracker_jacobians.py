@@ -15,6 +15,7 @@ from edge.tracker.error_model import (
     POSITION,
     SIZE,
     TURN,
+    TURN_SCALE,
     VELOCITY,
     heading_variance,
     propagate,
@@ -51,6 +52,7 @@ def _random_state(seed):
         "gyro": 3.0 * noise.standard_normal(3),
         "turn": 0.0,
         "drift": 0.0,
+        "turn_scale": 0.0,
     }
 
 
@@ -62,6 +64,7 @@ def _perturbed(state, error):
         "velocity": state["velocity"] + error[VELOCITY : VELOCITY + 3],
         "turn": state["turn"] + error[TURN],
         "drift": state["drift"] + error[DRIFT],
+        "turn_scale": state["turn_scale"] + error[TURN_SCALE],
         "quaternion": quaternion,
         "gyro_bias": state["gyro_bias"] + error[GYRO_BIAS : GYRO_BIAS + 3],
         "accel_bias": state["accel_bias"] + error[ACCEL_BIAS : ACCEL_BIAS + 3],
@@ -80,8 +83,9 @@ def _advanced(state):
     moved = DT_S * velocity
     position += np.cross([0.0, 0.0, state["turn"]], moved)
     excursion = DT_S * np.linalg.norm(state["gyro"])
-    turn = state["turn"] + state["drift"] * excursion
-    return position, velocity, quaternion, turn, (rotation, moved, force, excursion)
+    yawed_rad = 0.3 * excursion
+    turn = state["turn"] + state["drift"] * excursion + state["turn_scale"] * yawed_rad
+    return position, velocity, quaternion, turn, (rotation, moved, force, excursion, yawed_rad)
 
 
 def _attitude_error(quaternion_true, quaternion):

@@ -16,6 +16,7 @@ from edge.tracker.error_model import (
     GYRO_WARMTH,
     LEVER,
     SIZE,
+    TURN_SCALE,
     VELOCITY,
 )
 from edge.tracker.eskf import EskfTracker
@@ -45,6 +46,7 @@ def start(ring):
     std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start_accel_bias_std_mps2
     std[LEVER : LEVER + 3] = CONFIG.start_lever_std_m
     std[DRIFT] = CONFIG.drift_std
+    std[TURN_SCALE] = CONFIG.turn_scale_std
     std[GYRO_WARMTH : GYRO_WARMTH + 3] = CONFIG.gyro_bias_per_k_std_radps
     return PlainFilter(rotation, np.diag(std**2), CONFIG)
 
@@ -73,6 +75,7 @@ def test_both_come_to_the_same_state():
                 means["gyro_radps"],
                 ring[k]["interval_s"],
                 ring[k]["excursion"],
+                ring[k]["yawed_rad"],
                 (means["accel_bend_var"], means["gyro_bend_var"]),
             )
         if ring[k]["stationary"]:
