@@ -197,7 +197,7 @@ class Positioning:
         if floor is not None and state.plan is not None:
             sure = state.plan.sureness(floor, estimate.down_m, estimate.std_down_m)
         message = _as_message(estimate, unit, self._kind.name, floor, header)
-        return msgspec.structs.replace(message, floor_probability=sure)
+        return message if sure is None else msgspec.structs.replace(message, floor_probability=sure)
 
     def _fuser(self, unit: UnitState) -> Fuser:
         fuser = self._fusers.get(unit.unit_id)

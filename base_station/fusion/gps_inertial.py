@@ -17,7 +17,7 @@ from base_station.floor_grid import FloorGrid
 from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
-from base_station.fusion.horizontal import HorizontalFilter
+from base_station.fusion.horizontal import HorizontalFilter, turn_of
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import OwnPlace, PathMemory
@@ -178,9 +178,11 @@ class GpsInertialFuser:
             return None
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        place = self._horizontal.place_before(0.0, 0.0)
+        mean, covariance = self._horizontal.moments()
+        place = mean[:2], covariance[:2, :2]
         height = self._height.down_m, self._height.variance_m2
-        return self._estimate_at(t_mono_ns, last.heading_rad if last else 0.0, place, height)
+        heading_rad = last.heading_rad if last else 0.0
+        return self._estimate_at(t_mono_ns, heading_rad, place, height, turn_of(mean, covariance))
 
     def remember(self, position: Position) -> None:
         last = self._memory.last
@@ -207,6 +209,7 @@ class GpsInertialFuser:
             position.heading_rad,
             (place_m, place_var_m2),
             (height_m, height_var_m2),
+            self._horizontal.turn(),
         )
 
     def _estimate_at(
@@ -215,13 +218,15 @@ class GpsInertialFuser:
         own_heading_rad: float,
         place: tuple[Floats, Floats],
         height: tuple[float, float],
+        turn: tuple[float, float],
     ) -> Estimate:
-        """``place`` and ``height`` each with its variance."""
+        """``place`` and ``height`` each with its variance, ``turn`` with its deviation."""
         memory = self._memory
         place_m, variances = place
-        std_north_m, std_east_m = math.sqrt(variances[0, 0]), math.sqrt(variances[1, 1])
+        (var_north_m2, var_ne_m2), (_, var_east_m2) = variances.tolist()
+        std_north_m, std_east_m = math.sqrt(var_north_m2), math.sqrt(var_east_m2)
         product = std_north_m * std_east_m
-        turn_rad, turn_std_rad = self._horizontal.turn()
+        turn_rad, turn_std_rad = turn
         since_s = None
         if memory.fix_t_mono_ns is not None:
             since_s = max(0.0, (t_mono_ns - memory.fix_t_mono_ns) / NS_PER_S)
@@ -238,7 +243,7 @@ class GpsInertialFuser:
             std_north_m=std_north_m,
             std_east_m=std_east_m,
             std_down_m=math.sqrt(height[1]),
-            correlation_ne=float(variances[0, 1]) / product if product > 0.0 else 0.0,
+            correlation_ne=var_ne_m2 / product if product > 0.0 else 0.0,
             heading_rad=(turn_rad + own_heading_rad) % (2.0 * math.pi),
             heading_std_rad=turn_std_rad,
             quality=quality,

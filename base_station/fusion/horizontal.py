@@ -32,6 +32,8 @@ REOPEN = 1.5  # times the width at which one hypothesis was enough
 _STATES = 7
 _PLACE_AND_SLOW = [0, 1, 4, 5]
 _DRIFT = 6
+_STAY = np.eye(_STATES)
+_STAY.setflags(write=False)
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
@@ -157,18 +159,21 @@ class HorizontalFilter:
         cosine, sine = math.cos(drifted_rad), math.sin(drifted_rad)
         c, s = float(state[2]), float(state[3])
         c, s = cosine * c - sine * s, sine * c + cosine * s
-        move = np.eye(_STATES)
+        move = _STAY.copy()
         move[0, 2:4] = north_m, -east_m
         move[1, 2:4] = east_m, north_m
         move[2, 2:4] = cosine, -sine
         move[3, 2:4] = sine, cosine
         move[2, _DRIFT], move[3, _DRIFT] = -s * moving_s, c * moving_s
-        noise = np.zeros((_STATES, _STATES))
-        noise[0, 0] = noise[1, 1] = place_var_m2
-        noise[2, 2], noise[3, 3] = turn_var * s * s, turn_var * c * c
-        noise[2, 3] = noise[3, 2] = -turn_var * c * s
-        noise[_DRIFT, _DRIFT] = self._wander_var * moving_s
-        self._filter.P = move @ covariance @ move.T + noise
+        moved = move @ covariance @ move.T
+        moved[0, 0] += place_var_m2
+        moved[1, 1] += place_var_m2
+        moved[2, 2] += turn_var * s * s
+        moved[3, 3] += turn_var * c * c
+        moved[2, 3] -= turn_var * c * s
+        moved[3, 2] -= turn_var * c * s
+        moved[_DRIFT, _DRIFT] += self._wander_var * moving_s
+        self._filter.P = moved
         state[0] += c * north_m - s * east_m
         state[1] += s * north_m + c * east_m
         state[2], state[3] = c, s
