@@ -61,6 +61,7 @@ def _forgetter(station: Services) -> Forgetter:
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
+    station.settle()  # what still is to be stored would be stored afterwards
     return station.forgetter
 
 
