@@ -23,8 +23,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 STATES = 5
 UNKNOWN_M = 1e4
-SHOWN_SURER = 0.7  # standard deviations, of the live estimate by the graph's
-SHOWN_GATE2 = 9.0
 NS_TO_S = 1e-9
 
 
@@ -44,8 +42,6 @@ class WalkNoise:
     wander_part: float = 0.7  # of a fix's variance that wanders slowly
     wander_s: float = 30.0
     fix_tail: float = 2.4  # standard deviations from which a fix counts less (Cauchy)
-    shown_every_s: float = 10.0  # of what the live estimate knew by itself
-    shown_wander_s: float = 60.0  # and erred alike for so long
 
 
 @dataclass(frozen=True)
@@ -170,52 +166,6 @@ def add_fixes(equations: Equations, base: int, chain: Chain, belief: Belief, n: 
         apart = np.linalg.norm(place_of(belief.x[knot], since) - place, axis=1)
         spread = spread * np.sqrt(1.0 + (apart / (n.fix_tail * std)) ** 2)
     add_places(equations, base + STATES * knot, since, place, spread)
-
-
-def choose_shown(chain: Chain, belief: Belief, spreads: Floats, n: WalkNoise) -> Ints:
-    """Rows of the path where the live estimate knew better than the graph does, as it does where
-    walls hold somebody, and does not contradict it.
-    """
-    path = chain.path
-    knot = np.minimum(np.searchsorted(chain.knots, np.arange(len(path))), len(chain) - 1)
-    near = knot - (chain.knots[knot] > np.arange(len(path)))
-    apart = path.shown_m - place_of(belief.x[near], path.own_m - chain.own_m[near])
-    std = np.sqrt(np.trace(spreads[:, :2, :2], axis1=1, axis2=2) / 2.0)[knot]
-    known = (path.shown_std_m > 0.0) & (path.shown_std_m < SHOWN_SURER * std)
-    agrees = (apart**2).sum(axis=1) < SHOWN_GATE2 * (std**2 + path.shown_std_m**2)
-    rows: list[int] = []
-    for row in np.flatnonzero(known & agrees):
-        if not rows or (path.t_ns[row] - path.t_ns[rows[-1]]) * NS_TO_S >= n.shown_every_s:
-            rows.append(int(row))
-    return np.array(rows, dtype=np.int64)
-
-
-def add_shown(
-    equations: Equations, base: int, chain: Chain, belief: Belief, rows: Ints, n: WalkNoise
-) -> None:
-    """Where the live estimate knew better: its errors last, so that many tell little more."""
-    if not len(rows):
-        return
-    path = chain.path
-    knot, since = chain.at(path.t_ns[rows])
-    apart = np.linalg.norm(place_of(belief.x[knot], since) - path.shown_m[rows], axis=1)
-    std = path.shown_std_m[rows]
-    tail = np.sqrt(1.0 + (apart / (n.fix_tail * std)) ** 2) if belief.aligned.any() else 1.0
-    repeats = np.sqrt(2.0 * n.shown_wander_s / n.shown_every_s)
-    add_places(equations, base + STATES * knot, since, path.shown_m[rows], std * repeats * tail)
-
-
-def shown_floor_m(path: PathArrays, rows: Ints | None, n: WalkNoise) -> Floats:
-    """What the trail is known to at best, point by point, where it rests on the live estimate: a
-    plan that is drawn half a metre off is off all the time.
-    """
-    if rows is None or not len(rows):
-        return np.zeros(len(path))
-    after = np.searchsorted(path.t_ns[rows], path.t_ns).clip(0, len(rows) - 1)
-    before = np.maximum(after - 1, 0)
-    gaps_s = [np.abs(path.t_ns - path.t_ns[rows[one]]) * NS_TO_S for one in (before, after)]
-    near = np.minimum(*gaps_s) <= 2.0 * n.shown_every_s
-    return np.where(near, path.shown_std_m, 0.0)
 
 
 def add_seen(equations: Equations, base: int, chain: Chain, places: Sequence[PlaceSeen]) -> None:

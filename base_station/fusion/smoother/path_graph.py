@@ -26,13 +26,12 @@ from base_station.fusion.smoother.chain import (
     add_path,
     add_places,
     add_seen,
-    add_shown,
-    choose_shown,
     place_of,
-    shown_floor_m,
 )
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.heights import solve_heights
+from base_station.fusion.smoother.links import Link, Places, add_link, told_by_links
+from base_station.fusion.smoother.live_estimates import add_shown, choose_shown, shown_floor_m
 from base_station.fusion.smoother.marginals import chain_covariances
 from base_station.fusion.smoother.port import (
     PlaceSeen,
@@ -42,10 +41,13 @@ from base_station.fusion.smoother.port import (
     UnitEvidence,
     Verdict,
 )
-from base_station.fusion.smoother.revisits import Crossing, find_crossings
+from base_station.fusion.smoother.revisits import find_crossings
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+TIE_TAIL = 3.0  # standard deviations from which a meeting counts less
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,10 @@ class _Graph:
         self._unknowns = count
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
         self._shown: dict[str, Ints] = {}
-        self._crossings: list[Crossing] = []
+        self._links = [
+            Link((tie.unit_id, tie.t_ns), (tie.other_id, tie.t_ns), tie.std_m, TIE_TAIL)
+            for tie in self._ties
+        ]
         self._verdicts: dict[str, Verdict] = {}
         self._used: dict[str, list[PlaceSeen]] = {one: [] for one in units}
         self._normal = self._relax()
@@ -127,12 +132,14 @@ class _Graph:
             add_seen(equations, base, chain, self._used[unit_id])
             if unit_id in self._shown:
                 shown = self._shown[unit_id]
-                add_shown(equations, base, chain, belief, shown, self._kind.noise)
-        for tie in self._ties if with_links else ():
-            self._add_tie(equations, tie)
-        for crossing in self._crossings if with_links else ():
-            self._add_crossing(equations, crossing)
+                add_shown(equations, base, chain, belief, shown)
+        for link in self._links if with_links else ():
+            add_link(equations, link, self._places)
         return equations.normal()
+
+    @property
+    def _places(self) -> Places:
+        return Places(self._chains, self._bases, self._beliefs)
 
     def _take(self, x: Floats) -> float:
         """Believe a solution; gives how far the furthest knot moved."""
@@ -211,7 +218,7 @@ class _Graph:
         spreads = self._spreads()
         for unit_id, chain in self._chains.items():
             belief = self._beliefs[unit_id]
-            rows = choose_shown(chain, belief, spreads[unit_id], self._kind.noise)
+            rows = choose_shown(chain, belief, spreads[unit_id])
             if len(rows):
                 self._shown[unit_id] = rows
         if self._shown:
@@ -224,35 +231,13 @@ class _Graph:
         distances: Floats = np.hypot(apart[:, 0], apart[:, 1])
         return distances
 
-    # ---- what units and places tell of each other
-
-    def _add_tie(self, equations: Equations, tie: Tie) -> None:
-        ends = [self._end(tie.unit_id, tie.t_ns), self._end(tie.other_id, tie.t_ns)]
-        apart_m = float(np.linalg.norm(ends[0][2] - ends[1][2]))
-        std = tie.std_m * np.sqrt(1.0 + (apart_m / (3.0 * tie.std_m)) ** 2)
-        _add_link(equations, ends[0][:2], ends[1][:2], std)
-
-    def _add_crossing(self, equations: Equations, crossing: Crossing) -> None:
-        ends = [self._end(*end) for end in (crossing.one, crossing.other)]
-        std = crossing.std_m * self._tail(crossing)
-        _add_link(equations, ends[0][:2], ends[1][:2], std)
-
-    def _tail(self, crossing: Crossing) -> float:
-        """How much less a crossing counts that does not fit."""
-        apart = self._end(*crossing.one)[2] - self._end(*crossing.other)[2]
-        fit = float(np.linalg.norm(apart)) / (2.0 * crossing.std_m)
-        return float(np.sqrt(1.0 + fit**2))
-
-    def _end(self, unit_id: str, t_ns: int) -> tuple[int, Floats, Floats]:
-        """Column of the knot, own path since it, and the place now believed."""
-        knot, since = self._chains[unit_id].at(np.array([t_ns], dtype=np.int64))
-        place = place_of(self._beliefs[unit_id].x[knot], since)[0]
-        return self._bases[unit_id] + STATES * int(knot[0]), since[0], place
+    # ---- what trails tell of each other
 
     def close_loops(self) -> None:
         """Where trails lead through the same narrow place again, they are drawn together."""
-        self._crossings = find_crossings(self._chains, self._beliefs, self._spreads())
-        if self._crossings:
+        crossings = find_crossings(self._chains, self._beliefs, self._spreads())
+        if crossings:
+            self._links += crossings
             self._normal = self._relax()
 
     # ---- what comes of it
@@ -262,50 +247,25 @@ class _Graph:
         for unit_id, used in self._used.items():
             if used:
                 self._judge_used(unit_id, used)
-        for tie in self._ties:
-            apart_m = float(
-                np.linalg.norm(
-                    self._end(tie.unit_id, tie.t_ns)[2] - self._end(tie.other_id, tie.t_ns)[2]
-                )
-            )
+        for tie, link in zip(self._ties, self._links, strict=False):
+            apart_m = self._places.apart_m(link)
             sigmas = apart_m / tie.std_m
             self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
         paths = {unit_id: self._smoothed(unit_id, spreads[unit_id]) for unit_id in self._units}
         return Solution(paths, self._verdicts)
 
     def _spreads(self) -> dict[str, Floats]:
-        """Covariances of all knots (k, 5, 5) by unit.
-
-        Of what links trails, each end is told by the other no better than that is known without
-        it.
-        """
+        """Covariances of all knots (k, 5, 5) by unit."""
         information = self._equations(with_links=False).information
-        spreads, blocks = {}, {}
+        blocks = {}
         for unit_id, base in self._bases.items():
             own = slice(base, base + STATES * len(self._chains[unit_id]))
             blocks[unit_id] = information[own, own].tocsc()
-            spreads[unit_id] = chain_covariances(blocks[unit_id], STATES)
-        if not self._crossings:
+        spreads = {one: chain_covariances(block, STATES) for one, block in blocks.items()}
+        if not self._links:
             return spreads
-        told: dict[str, list[tuple[int, Floats]]] = {unit_id: [] for unit_id in self._units}
-        for crossing in self._crossings:
-            std = crossing.std_m * self._tail(crossing)
-            for one, other in (
-                (crossing.one, crossing.other),
-                (crossing.other, crossing.one),
-            ):
-                knot = self._knot(*other)
-                noise = spreads[other[0]][knot, :2, :2] + std**2 * np.eye(2)
-                told[one[0]].append(
-                    (self._knot(*one), np.asarray(np.linalg.inv(noise), np.float64))
-                )
-        return {
-            unit_id: chain_covariances(blocks[unit_id], STATES, told[unit_id])
-            for unit_id in self._units
-        }
-
-    def _knot(self, unit_id: str, t_ns: int) -> int:
-        return int(self._chains[unit_id].at(np.array([t_ns], dtype=np.int64))[0][0])
+        told = told_by_links(self._links, self._places, spreads)
+        return {one: chain_covariances(block, STATES, told[one]) for one, block in blocks.items()}
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         for place, apart_m in zip(used, self._residuals_m(unit_id, used), strict=True):
@@ -320,7 +280,7 @@ class _Graph:
         std_north = np.sqrt(covariance[:, 0, 0])
         std_east = np.sqrt(covariance[:, 1, 1])
         correlation = (covariance[:, 0, 1] / (std_north * std_east))[knot]
-        floor_m = shown_floor_m(path, self._shown.get(unit_id), self._kind.noise)
+        floor_m = shown_floor_m(path, self._shown.get(unit_id))
         down, down_std, shift = solve_heights(path, self._used[unit_id])
         return SmoothedPath(
             t_ns=path.t_ns,
@@ -352,24 +312,6 @@ def _between_knots(chain: Chain, x: Floats) -> tuple[Floats, Floats]:
     back = place_of(x[after], own - chain.own_m[after])
     turn = (1.0 - part) * x[before, 2:4] + part * x[after, 2:4]
     return (1.0 - part) * forth + part * back, turn
-
-
-def _add_link(
-    equations: Equations, one: tuple[int, Floats], other: tuple[int, Floats], std_m: float
-) -> None:
-    """Two places of paths are the same."""
-    (a, since_a), (b, since_b) = one, other
-    a_, b_ = np.array([a]), np.array([b])
-    equations.add(
-        std_m, 0.0,
-        (a_, 1.0), (a_ + 2, since_a[0]), (a_ + 3, -since_a[1]),
-        (b_, -1.0), (b_ + 2, -since_b[0]), (b_ + 3, since_b[1]),
-    )  # fmt: skip
-    equations.add(
-        std_m, 0.0,
-        (a_ + 1, 1.0), (a_ + 2, since_a[1]), (a_ + 3, since_a[0]),
-        (b_ + 1, -1.0), (b_ + 2, -since_b[1]), (b_ + 3, -since_b[0]),
-    )  # fmt: skip
 
 
 def _refused(

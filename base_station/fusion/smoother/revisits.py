@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.smoother.chain import Belief, Chain, place_of
+from base_station.fusion.smoother.links import Link
 
 Floats = NDArray[np.float64]
 
@@ -25,15 +26,7 @@ SURE_M = 6.0  # both ends are known at least this well, or it may be other stair
 GATE2 = 9.2  # chi-square of two degrees, 99 %
 LINKS = 3  # of each end, to the nearest ones in the list before it
 STD_M = 1.0
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """Two units (or one, twice) at these times were at the same place."""
-
-    one: tuple[str, int]
-    other: tuple[str, int]
-    std_m: float
+TAIL = 2.0
 
 
 @dataclass(frozen=True)
@@ -48,7 +41,7 @@ class _End:
 
 def find_crossings(
     chains: Mapping[str, Chain], beliefs: Mapping[str, Belief], spreads: Mapping[str, Floats]
-) -> list[Crossing]:
+) -> list[Link]:
     ends: list[_End] = []
     for unit_id, chain in chains.items():
         path, belief = chain.path, beliefs[unit_id]
@@ -60,12 +53,12 @@ def find_crossings(
                     place = place_of(belief.x[knot], since)[0]
                     down_m = float(path.down_m[row])
                     ends.append(_End(unit_id, int(path.t_ns[row]), place, down_m, is_top, spread))
-    crossings: list[Crossing] = []
+    crossings: list[Link] = []
     for number, end in enumerate(ends):
         alike = [other for other in ends[:number] if _may_be_same(end, other)]
         alike.sort(key=lambda other: float(np.linalg.norm(other.place_m - end.place_m)))
         crossings += [
-            Crossing((end.unit_id, end.t_ns), (other.unit_id, other.t_ns), STD_M)
+            Link((end.unit_id, end.t_ns), (other.unit_id, other.t_ns), STD_M, TAIL)
             for other in alike[:LINKS]
         ]
     return crossings

@@ -1,0 +1,74 @@
+"""What live estimates knew better than the graph does: where walls hold somebody.
+
+The graph knows no walls.  Where the estimate that was shown is surer than the graph, which has the
+whole past and future, it can only have that from the plan.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.path_history import PathArrays
+from base_station.fusion.smoother.chain import (
+    NS_TO_S,
+    STATES,
+    Belief,
+    Chain,
+    add_places,
+    place_of,
+)
+from base_station.fusion.smoother.equations import Equations
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SURER = 0.7  # standard deviations, of the live estimate by the graph's
+GATE2 = 9.0
+EVERY_S = 10.0  # one is taken this often
+WANDER_S = 60.0  # and they err alike for so long
+TAIL = 2.4  # standard deviations from which one counts less
+
+
+def choose_shown(chain: Chain, belief: Belief, spreads: Floats) -> Ints:
+    """Rows of the path where the live estimate knew better than the graph does, as it does where
+    walls hold somebody, and does not contradict it.
+    """
+    path = chain.path
+    knot = np.minimum(np.searchsorted(chain.knots, np.arange(len(path))), len(chain) - 1)
+    near = knot - (chain.knots[knot] > np.arange(len(path)))
+    apart = path.shown_m - place_of(belief.x[near], path.own_m - chain.own_m[near])
+    std = np.sqrt(np.trace(spreads[:, :2, :2], axis1=1, axis2=2) / 2.0)[knot]
+    known = (path.shown_std_m > 0.0) & (path.shown_std_m < SURER * std)
+    agrees = (apart**2).sum(axis=1) < GATE2 * (std**2 + path.shown_std_m**2)
+    rows: list[int] = []
+    for row in np.flatnonzero(known & agrees):
+        if not rows or (path.t_ns[row] - path.t_ns[rows[-1]]) * NS_TO_S >= EVERY_S:
+            rows.append(int(row))
+    return np.array(rows, dtype=np.int64)
+
+
+def add_shown(equations: Equations, base: int, chain: Chain, belief: Belief, rows: Ints) -> None:
+    """Where the live estimate knew better: its errors last, so that many tell little more."""
+    if not len(rows):
+        return
+    path = chain.path
+    knot, since = chain.at(path.t_ns[rows])
+    apart = np.linalg.norm(place_of(belief.x[knot], since) - path.shown_m[rows], axis=1)
+    std = path.shown_std_m[rows]
+    tail = np.sqrt(1.0 + (apart / (TAIL * std)) ** 2) if belief.aligned.any() else 1.0
+    repeats = np.sqrt(2.0 * WANDER_S / EVERY_S)
+    add_places(equations, base + STATES * knot, since, path.shown_m[rows], std * repeats * tail)
+
+
+def shown_floor_m(path: PathArrays, rows: Ints | None) -> Floats:
+    """What the trail is known to at best, point by point, where it rests on the live estimate: a
+    plan that is drawn half a metre off is off all the time.
+    """
+    if rows is None or not len(rows):
+        return np.zeros(len(path))
+    after = np.searchsorted(path.t_ns[rows], path.t_ns).clip(0, len(rows) - 1)
+    before = np.maximum(after - 1, 0)
+    gaps_s = [np.abs(path.t_ns - path.t_ns[rows[one]]) * NS_TO_S for one in (before, after)]
+    near = np.minimum(*gaps_s) <= 2.0 * EVERY_S
+    return np.where(near, path.shown_std_m, 0.0)
