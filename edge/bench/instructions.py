@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
+from threading import Timer
 from typing import Annotated, Any
 
 import numpy as np
@@ -31,7 +32,7 @@ from shared.errors import UserError
 WALK = "square-60m?seed=0"
 LENGTHS = (2_000, 6_000)  # samples: ten seconds and thirty, most of it walking
 _PLAIN = ("env", "NUMBA_CPU_NAME=generic", "NUMBA_CPU_FEATURES=", "PYTHONHASHSEED=0")
-_ENDS_IN_S = 30.0
+_LONGEST_S = 240.0
 _CONTROL = "callgrind_control"
 
 
@@ -94,20 +95,27 @@ def _counts(probe: tuple[str, ...], out: Path) -> list[int]:
 def _probing(command: tuple[str, ...]) -> Iterator[subprocess.Popen[str]]:
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as process:
+        # Were nothing cached, valgrind would compile for hours.
+        late = Timer(_LONGEST_S, process.kill)
+        late.start()
         try:
             _hear(process, "ready")
             yield process
             assert process.stdin is not None
             process.stdin.close()
-            process.wait(_ENDS_IN_S)
+            process.wait()
         finally:
+            late.cancel()
             process.kill()
 
 
 def _track(process: subprocess.Popen[str], count: int) -> None:
     assert process.stdin is not None
-    process.stdin.write(f"{count}\n")
-    process.stdin.flush()
+    try:
+        process.stdin.write(f"{count}\n")
+        process.stdin.flush()
+    except BrokenPipeError:
+        raise CannotCountError("the counted process ended") from None
     _hear(process, "done")
 
 
@@ -115,13 +123,21 @@ def _hear(process: subprocess.Popen[str], word: str) -> None:
     assert process.stdout is not None
     said = process.stdout.readline().strip()
     if said != word:
-        raise CannotCountError(f"the counted process said '{said}' instead of '{word}'")
+        raise CannotCountError(
+            f"the counted process said '{said}' instead of '{word}'"
+            if said
+            else "the counted process ended, or took too long"
+        )
 
 
 def _control(process: subprocess.Popen[str], order: str) -> None:
     command = (_CONTROL, order, str(process.pid))
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
-    if done.returncode or "OK" not in done.stdout:
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
+        reached = done.returncode == 0 and "OK" in done.stdout
+    except subprocess.TimeoutExpired:
+        reached = False
+    if not reached:
         raise CannotCountError(f"{_CONTROL} cannot reach the counted process here")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from contextlib import nullcontext
 
+import numpy as np
 import pytest
 
 from edge.bench import instructions
@@ -33,3 +34,12 @@ def test_a_process_that_cannot_be_counted_is_a_reason_not_a_crash(monkeypatch, c
     monkeypatch.setattr(instructions, "_PLAIN", ("false",))
     bench_instructions()
     assert "skipped" in capsys.readouterr().out
+
+
+def test_a_process_that_takes_too_long_is_ended(monkeypatch, capsys):
+    monkeypatch.setattr(shutil, "which", lambda name: name)
+    monkeypatch.setattr(instructions, "_PLAIN", ("sh", "-c", "exec sleep 60"))
+    monkeypatch.setattr(instructions, "_LONGEST_S", 0.2)
+    monkeypatch.setattr(instructions, "_walk", lambda _: instructions.ImuBatch(*np.zeros((6, 1))))
+    bench_instructions()
+    assert "took too long" in capsys.readouterr().out
