@@ -151,6 +151,23 @@ def test_a_pin_that_contradicts_is_said_and_changes_nothing(smoother: Smoother) 
     assert verdict.sigmas > 4.0
 
 
+def test_walls_that_held_somebody_are_heeded_and_a_pin_overrules_them(smoother: Smoother) -> None:
+    """The live estimate was surer than the path alone can be; the second time, wrongly so."""
+    walk = a_walk(10)
+    plain = evidence_of(walk, 10, [(0.0, 40.0)])
+    sure = {"shown_std_m": np.full(len(plain.path), 0.3)}
+    truth = truth_at(walk, plain.path.t_ns)
+    right = replace(plain, path=replace(plain.path, shown_m=truth, **sure))
+    wrong = replace(plain, path=replace(plain.path, shown_m=truth + np.array([0.0, 3.0]), **sure))
+    pinned = replace(wrong, places=(pin_at(walk, 200.0),))
+    errors = {
+        name: errors_of(walk, smoother.solve({"a": evidence}).paths["a"])[-60:].mean()
+        for name, evidence in (("plain", plain), ("right", right), ("pinned", pinned))
+    }
+    assert errors["right"] < min(0.6, errors["plain"])
+    assert errors["pinned"] < 2.0
+
+
 def test_who_meets_somebody_well_known_is_well_known(smoother: Smoother) -> None:
     lost, known = a_walk(5), a_walk(6)
     meets = int(np.searchsorted(lost.t_s, 200.0))

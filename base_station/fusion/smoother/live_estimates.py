@@ -6,6 +6,8 @@ whole past and future, it can only have that from the plan.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,7 @@ from base_station.fusion.smoother.chain import (
     place_of,
 )
 from base_station.fusion.smoother.equations import Equations
+from base_station.fusion.smoother.port import PlaceSeen
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,9 +33,11 @@ WANDER_S = 60.0  # and they err alike for so long
 TAIL = 2.4  # standard deviations from which one counts less
 
 
-def choose_shown(chain: Chain, belief: Belief, spreads: Floats) -> Ints:
+def choose_shown(
+    chain: Chain, belief: Belief, spreads: Floats, places: Sequence[PlaceSeen]
+) -> Ints:
     """Rows of the path where the live estimate knew better than the graph does, as it does where
-    walls hold somebody, and does not contradict it.
+    walls hold somebody, and contradicts neither the graph nor a place that is used.
     """
     path = chain.path
     knot = np.minimum(np.searchsorted(chain.knots, np.arange(len(path))), len(chain) - 1)
@@ -42,10 +47,31 @@ def choose_shown(chain: Chain, belief: Belief, spreads: Floats) -> Ints:
     known = (path.shown_std_m > 0.0) & (path.shown_std_m < SURER * std)
     agrees = (apart**2).sum(axis=1) < GATE2 * (std**2 + path.shown_std_m**2)
     rows: list[int] = []
-    for row in np.flatnonzero(known & agrees):
+    for row in np.flatnonzero(known & agrees & ~_misled(path, places)):
         if not rows or (path.t_ns[row] - path.t_ns[rows[-1]]) * NS_TO_S >= EVERY_S:
             rows.append(int(row))
     return np.array(rows, dtype=np.int64)
+
+
+def _misled(path: PathArrays, places: Sequence[PlaceSeen]) -> NDArray[np.bool_]:
+    """Points from which a place that contradicts the live estimate is not parted by a fix or by a
+    place that agrees: walls held the wearer in the wrong room.
+    """
+    misled = np.zeros(len(path), dtype=bool)
+    for place in places:
+        row = int(np.searchsorted(path.t_ns, place.t_ns).clip(0, len(path) - 1))
+        apart = path.shown_m[row] - (place.north_m, place.east_m)
+        spread = place.std_m**2 + path.shown_std_m[row] ** 2
+        if float(apart @ apart) < GATE2 * spread:
+            continue
+        parting = np.sort(
+            np.concatenate((path.fix_t_ns, [other.t_ns for other in places if other is not place]))
+        )
+        after = int(np.searchsorted(parting, place.t_ns, side="right"))
+        begin = parting[after - 1] if after > 0 else -np.inf
+        end = parting[after] if after < len(parting) else np.inf
+        misled |= (path.t_ns >= begin) & (path.t_ns <= end)
+    return misled
 
 
 def add_shown(equations: Equations, base: int, chain: Chain, belief: Belief, rows: Ints) -> None:

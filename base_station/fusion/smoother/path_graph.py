@@ -218,7 +218,7 @@ class _Graph:
         spreads = self._spreads()
         for unit_id, chain in self._chains.items():
             belief = self._beliefs[unit_id]
-            rows = choose_shown(chain, belief, spreads[unit_id])
+            rows = choose_shown(chain, belief, spreads[unit_id], self._used[unit_id])
             if len(rows):
                 self._shown[unit_id] = rows
         if self._shown:
