@@ -77,11 +77,13 @@ class KeptCopy:
         pki: PkiFolder,
         leader: Callable[[], str | None],
         other: Callable[[], str | None],
+        caught_up: Callable[[], bool],
         on_people: Callable[[], None],
         on_forgotten: Callable[[str], None],
         on_dropped: Callable[[str], None],
     ) -> None:
-        """``leader``: whom to copy from, where that is another; ``other``: whose audit to add.
+        """``leader``: whom to copy from, where that is another; ``other``: whose audit to add,
+        when this station's log has ``caught_up``: what it tells to forget must be there.
 
         ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
         or an incident ("person ID") that the active station has forgotten, ``on_dropped`` in a
@@ -92,6 +94,7 @@ class KeptCopy:
         self._pki = pki
         self._leader = leader
         self._other = other
+        self._caught_up = caught_up
         self._on_people = on_people
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
@@ -114,8 +117,9 @@ class KeptCopy:
                 if leader is not None:
                     self._copy(leader)
                 if other is not None:
-                    self._add_audit(other)
                     self._take_enrolled(other)
+                if other is not None and self._caught_up():
+                    self._add_audit(other)
             except MusterError as error:
                 logger.warning("accounts cannot be copied from the other station: %s", error)
 

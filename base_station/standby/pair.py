@@ -103,6 +103,11 @@ class Pair:
     def leads(self) -> bool:
         return self._election.role == "active" and not self._ends
 
+    @property
+    def in_step(self) -> bool:
+        """This standby has what the active station has, but for the last moment."""
+        return self._follower.in_step
+
     def refusal(self) -> str | None:
         """Why nothing can be done here; None: this station leads."""
         if self.leads:
@@ -139,9 +144,7 @@ class Pair:
     def view(self) -> StandbyView:
         other, now_ns = self._election.other, self._around.clock.monotonic_ns()
         there = other is not None and self._election.is_there(now_ns)
-        in_step = (
-            self.copy.is_there and not self.copy.is_behind if self.leads else self._follower.in_step
-        )
+        in_step = self.copy.is_there and not self.copy.is_behind if self.leads else self.in_step
         return StandbyView(
             station=self._config.name,
             role=self._election.role,
@@ -296,7 +299,7 @@ class Pair:
             )
         elif self.followed() is None:
             found.append("No active station is heard: this one takes over in some seconds")
-        elif not self._follower.in_step:
+        elif not self.in_step:
             found.append("This standby has not got everything of the active station yet")
         if self._follower.problem:
             found.append(self._follower.problem)

@@ -186,6 +186,7 @@ class OneOfTwo:
             parts.pki,
             leader=pair.followed,
             other=pair.other_there,
+            caught_up=lambda: pair.leads or pair.in_step,
             on_people=parts.on_people,
             on_forgotten=parts.forget,
             on_dropped=lambda said: parts.records.audit(STATION_ID, "AccountsCopied", said),

@@ -20,11 +20,12 @@ from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from shared.bus_memory import MemoryRouter
-from shared.channels import ALARM, EVENT, FUSED, POSITION, TICK, backfilled_key
+from shared.channels import ALARM, EVENT, FUSED, OPERATOR, POSITION, TICK, backfilled_key
 from shared.clock import ManualClock, SystemClock
+from shared.codec import encode
 from shared.errors import StoreError
-from shared.messages import STATION_ID
-from shared.messages.station import Action, CloseIncident, TakeOver
+from shared.messages import STATION_ID, Header, OperatorAction
+from shared.messages.station import Action, CloseIncident, ForgetWearers, TakeOver
 from tests.live_station import until
 
 Record = tuple[int, str, bytes]
@@ -91,6 +92,16 @@ def test_what_is_no_longer_at_hand_is_said_to_be_on_the_disk_only(
     later.begin(log.place, T0, ())
     assert later.behind(BEGINNING, 10**6) is None
     assert later.behind(log.place, 10**6) == []
+
+
+def test_nothing_stays_in_memory_of_who_is_to_be_forgotten(
+    recorder: Recorder, log: SharedLog
+) -> None:
+    written(recorder, log, events(3))
+    forget = OperatorAction(Header(STATION_ID, 1, 1, 5), "x", "ada", ForgetWearers("u"))
+    log.write(T0 + 9, OPERATOR.key(STATION_ID), encode(forget))
+    assert log.behind(Place(T0, 1), 10**6) is None
+    assert log.behind(log.place, 10**6) == []
 
 
 class Pairing:
