@@ -22,6 +22,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from base_station.bench import smoothing
+from base_station.bench.fusion_recorded import print_recorded
 from base_station.bench.incident_bound import ENGINE_STD_M, bound_m2, draw_errors_m
 from base_station.bench.incident_building import SteelBuilding, draw_building
 from base_station.bench.incident_people import PEOPLE, Truth, live_through
@@ -84,6 +85,12 @@ class FusionReport:
 def bench_fusion(
     incidents: Annotated[int, typer.Option(min=1, help="Simulated, of six people each.")] = 10,
     seed: Annotated[int, typer.Option(help="Of the first one.")] = 1,
+    walks: Annotated[
+        Path | None, typer.Option(help="Recorded trials with truth, instead; needs --tracks.")
+    ] = None,
+    tracks: Annotated[
+        Path | None, typer.Option(help="Their tracks: TRIAL.csv as muster track writes them.")
+    ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", help="Also write the figures to this file.")
     ] = None,
@@ -91,6 +98,9 @@ def bench_fusion(
     """Error and honesty of the fused position over simulated incidents, beside satellite fixes
     alone, the unit's own path alone, and switching between them.
     """
+    if walks is not None and tracks is not None:
+        print_recorded(FUSERS[0], walks, tracks)
+        return
     report = measure(FUSERS[0], incidents, seed)
     Console().print(_errors_table(report))
     Console().print(_held_table(report))

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from base_station.bench.fusion import Person, Run, Timing, draw_incident, fuse
+from base_station.bench.fusion import Floats, Person, Run, Timing, draw_incident, fuse
 from base_station.bench.incident_scores import CHI2_95_2DOF
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
@@ -26,8 +26,8 @@ def kind(request: pytest.FixtureRequest) -> FuserKind:
     return found
 
 
-def errors_m(person: Person, run: Run) -> np.ndarray:
-    return np.linalg.norm(run.places_m - person.truth.place_m[:, :2], axis=1)
+def errors_m(person: Person, run: Run) -> Floats:
+    return np.asarray(np.linalg.norm(run.places_m - person.truth.place_m[:, :2], axis=1))
 
 
 def test_with_the_plan_ten_minutes_inside_cost_nothing(
@@ -59,5 +59,5 @@ def test_a_plan_of_another_building_is_given_up(kind: FuserKind, people: list[Pe
     assert np.median(errors_m(person, misled)[again]) < 4.0
 
 
-def _storeys(person: Person) -> np.ndarray:
-    return np.rint(-person.truth.place_m[:, 2] / person.building.storey_m)
+def _storeys(person: Person) -> Floats:
+    return np.asarray(np.rint(-person.truth.place_m[:, 2] / person.building.storey_m))

@@ -32,6 +32,10 @@ def script() -> Script:
     return script
 
 
+def reference(script: Script) -> str | None:
+    return script.pipeline.state.barometers.reference_id
+
+
 def test_a_floor_comes_with_its_probability(script: Script) -> None:
     script.position(U, 0.0, 0.0)
     on_floor = script.fused[-1]
@@ -48,11 +52,11 @@ def test_only_a_registered_unit_can_be_the_reference(script: Script) -> None:
     outputs = script.act(SetReference("FF-99", 0.0))
     assert isinstance(outputs[0], Refused)
     assert script.act(SetReference(U, math.nan)) != []
-    assert script.pipeline.state.barometers.reference_id is None
+    assert reference(script) is None
     script.act(SetReference(U, -1.0))
-    assert script.pipeline.state.barometers.reference_id == U
+    assert reference(script) == U
     script.act(SetReference("", 0.0))
-    assert script.pipeline.state.barometers.reference_id is None
+    assert reference(script) is None
 
 
 def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
