@@ -70,6 +70,11 @@ def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: f
         beacon.north_m, beacon.east_m = north + north_m, east + east_m
 
 
+def has_pins(state: StationState, unit_id: str) -> bool:
+    """Whether any pin is about this unit's past."""
+    return any(unit_id in units_of(pin) for pin in state.pins.values())
+
+
 def units_of(pin: Pin) -> set[str]:
     """Whose past a pin is about."""
     return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}

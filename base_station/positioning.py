@@ -16,7 +16,7 @@ from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Sta
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
-from base_station.pin_book import reframe_pins
+from base_station.pin_book import has_pins, reframe_pins
 from base_station.pinned import PinnedUnits
 from base_station.plan import Plan, Ring
 from base_station.roaming import RADII_95, roamed_m
@@ -80,13 +80,14 @@ class Positioning:
         if air is not None:
             self._fuser(unit).feel(air)
         history = state.paths.setdefault(unit.unit_id, PathHistory())
+        begins = history.begin_ns is None
         history.note(position, t_ns, bool(reason))
         pinned = self._pinned.get(unit.unit_id)
         if pinned is not None:
             pinned.advance(position)
             if air is not None:
                 pinned.feel(air)
-        if history.is_awaited:
+        if history.is_awaited or (begins and has_pins(state, unit.unit_id)):
             return self.solve_pins(state, [unit.unit_id])
         return []
 
