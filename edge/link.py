@@ -63,6 +63,7 @@ class Link:
         self._failure_told = False
         self._heard_told: bool | None = None
         self._looks_unheard = 0
+        self._closing: Thread | None = None  # of the bus before
         self._away = False  # the link was lost: it makes no sense to try until it may be back
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
@@ -92,6 +93,8 @@ class Link:
             self._ended = True
             self._changed.notify_all()
         self._thread.join()
+        if self._closing is not None:
+            self._closing.join()
 
     def _run(self) -> None:
         while True:
@@ -107,20 +110,26 @@ class Link:
 
     def _hold(self) -> bool:
         """Keep the link up for as long as it is wanted; False when it cannot be opened."""
-        with ExitStack() as declared:
-            try:
-                bus = self._station.open_bus()
-                declared.callback(bus.close)
-                self._declare(bus, declared)
-            except BusError as error:
-                if not self._failure_told:
-                    logger.warning("%s; trying again every second", error)
-                self._failure_told = True
-                return False
-            self._failure_told = False
-            self._bus = bus
-            declared.callback(self._forget_bus)
-            self._watch(bus)
+        declared = ExitStack()
+        try:
+            bus = self._station.open_bus()
+            declared.callback(bus.close)
+            self._declare(bus, declared)
+        except BusError as error:
+            declared.close()
+            if not self._failure_told:
+                logger.warning("%s; trying again every second", error)
+            self._failure_told = True
+            return False
+        self._failure_told = False
+        self._bus = bus
+        self._watch(bus)
+        self._forget_bus()
+        if self._away:  # closing what leads nowhere may take seconds, in which the link may be back
+            self._closing = Thread(target=declared.close, name="link-closing", daemon=True)
+            self._closing.start()
+        else:
+            declared.close()
         return True
 
     def _watch(self, bus: Bus) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Callable, Iterable
 from queue import SimpleQueue
 from threading import Thread
@@ -29,6 +30,8 @@ from shared.zenoh_settings import (
 )
 
 __all__ = ["ClientEndpoint", "Endpoint", "StationEndpoint", "UnitEndpoint", "ZenohBus"]
+
+logger = logging.getLogger(__name__)
 
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
 
@@ -136,8 +139,10 @@ class ZenohBus:
             zenoh.handlers.Callback(take, drop=lambda: on_reply(None), indirect=False),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            # The replies travel as the query did.
+            # The replies travel as the query did.  Whoever asks what is urgent does not wait.
+            congestion_control=zenoh.CongestionControl.DROP
+            if urgent
+            else zenoh.CongestionControl.BLOCK,
             priority=zenoh.Priority.REAL_TIME if urgent else zenoh.Priority.BACKGROUND,
             timeout=timeout_s,
             payload=payload,
@@ -160,7 +165,10 @@ class ZenohBus:
         return bool(getattr(status, "matching", False))  # the stub says bool; it is an object
 
     def close(self) -> None:
-        self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub leaves it open
+        try:
+            self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub leaves it open
+        except zenoh.ZError as error:  # it waits for a link that leads nowhere, but not for ever
+            logger.debug("closing the bus: %s", error)
 
     def _require_open(self) -> None:
         if self._session.is_closed():
