@@ -68,6 +68,10 @@ class StationProcess:
         processes = (self._usage, *self._usage.children(recursive=True))
         return sum(float(process.memory_info().rss) for process in processes) / 1e6
 
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
     def stop(self) -> int:
         """In order; its exit code."""
         self._process.send_signal(signal.SIGINT)
@@ -130,7 +134,7 @@ def station_process(
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
     with (
-        (data / _SAID).open("w") as said,
+        (data / _SAID).open("a") as said,
         subprocess.Popen(
             [*inside, sys.executable, "-c", command, *arguments],
             stdout=subprocess.PIPE,

@@ -9,15 +9,18 @@ from contextlib import ExitStack, closing
 
 import pytest
 
-from base_station.bench.faults import FAULTS, Fault, Site, site
+from base_station.bench.faults import suffer
 from base_station.bench.forwarder import Conditions
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
+from base_station.bench.site import MessageId, Site, site
+from base_station.bench.troubles import FAULTS, BadLink, Clone, Fault
 from shared.errors import BusError
+from shared.messages import AlarmState
 
 SEED = 5
 PORT = 5000
 # The others are for `muster bench faults`.
-SHORT = [fault for fault in FAULTS if not fault.slow]
+SHORT = [fault for fault in FAULTS if not fault.is_long]
 PATIENCE_S = 90.0
 
 
@@ -75,8 +78,8 @@ def datagrams() -> Iterator[Datagrams]:
 
 @pytest.fixture(scope="module")
 def running(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    with ExitStack() as ended:
-        yield ended.enter_context(site(tmp_path_factory.mktemp("site"), SEED, ended))
+    with site(tmp_path_factory.mktemp("site"), SEED) as one:
+        yield one
 
 
 def test_a_clean_link_brings_all_in_order(datagrams: Datagrams) -> None:
@@ -115,11 +118,25 @@ def test_a_thin_link_carries_its_rate_and_throws_away_what_it_cannot_queue(
 
 @pytest.mark.parametrize("fault", SHORT, ids=lambda fault: fault.name)
 def test_every_message_is_in_the_log_once(running: Site, fault: Fault) -> None:
-    report = running.suffer(fault, PATIENCE_S)
-    assert report.sent > fault.seconds * 5  # positions alone
+    before = running.said()
+    report = suffer(running, fault, PATIENCE_S)
     assert (report.lost, report.duplicates) == (0, 0)
     assert report.heard_s is not None
     assert report.complete_s is not None
-    assert report.alerts > 0
-    if fault.link.dark and fault.seconds > 3.0:  # the kernel may bring what a short one held up
-        assert report.fetched > 0
+    match fault:
+        case BadLink():
+            assert report.sent > fault.seconds * 5  # positions alone
+            assert report.alerts > 0
+            if fault.link.dark and fault.seconds > 3.0:  # the kernel brings what a short one held
+                assert_alerts_come_first(running, before)
+        case Clone():
+            changes = running.alarms("cloned-unit")
+            assert changes[0].state is AlarmState.RAISED
+
+
+def assert_alerts_come_first(running: Site, before: set[MessageId]) -> None:
+    """Of what was fetched."""
+    fetched = [one for one in running.logged() if not one.live and one.message not in before]
+    assert len(fetched) > 20
+    alerts = [number for number, one in enumerate(fetched) if one.alert]
+    assert not alerts or alerts[0] < len(fetched) / 10
