@@ -78,7 +78,9 @@ def fuse_recorded(kind: FuserKind, tracked: list[Tracked], draws: int = DRAWS) -
             held = np.array(fused.normalised2) < CHI2_95_2DOF
             scores.held_with += held[begin:cut].tolist()
             scores.held_after += held[cut:].tolist()
-            alone_m, switching_m = _peers(walk, Receiver(np.random.default_rng(draw)), cut, rng)
+            again = np.random.default_rng(100 * number + draw)
+            turned(recorded, again)
+            alone_m, switching_m = _peers(walk, Receiver(again), cut, rng)
             scores.note("fixes alone", alone_m[begin:cut], alone_m[cut:])
             scores.note("switching", switching_m[begin:cut], switching_m[cut:])
     return scores
