@@ -9,8 +9,11 @@ import pytest
 
 from base_station.bench.fusion import Floats, Person, Run, Timing, draw_incident, fuse
 from base_station.bench.incident_scores import CHI2_95_2DOF
+from base_station.bench.incident_sensors import position_of
+from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
-from base_station.fusion.port import FuserKind
+from base_station.fusion.port import FuserKind, Start
+from base_station.plan import read_plan
 
 PEOPLE = 3
 
@@ -57,6 +60,28 @@ def test_a_plan_of_another_building_is_given_up(kind: FuserKind, people: list[Pe
     )
     again = truth.t_s > truth.comes_out_s + 60.0
     assert np.median(errors_m(person, misled)[again]) < 4.0
+
+
+def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
+    kind: FuserKind, people: list[Person]
+) -> None:
+    person = people[1]
+    grid = FloorGrid.of(read_plan(person.building.geojson()))
+    straight = kind.new()
+    straight.consider(grid)
+    north_m, east_m = person.truth.place_m[0, :2]
+    straight.start(Start(north_m, east_m, 0.0, person.own.turn_rad, 0.5, 0.1))
+    half, end = 300, 500
+    for row in range(half):
+        straight.advance(position_of(person.truth, person.own, person.pressures_pa, row))
+    restored = kind.restore(straight.save())
+    restored.consider(grid)
+    for row in range(half, end):
+        position = position_of(person.truth, person.own, person.pressures_pa, row)
+        straight.advance(position)
+        restored.advance(position)
+        assert restored.estimate() == straight.estimate()
+    assert restored.save() == straight.save()
 
 
 def _storeys(person: Person) -> Floats:
