@@ -25,6 +25,7 @@ from shared.channels import (
     POSITION,
     Qos,
     alive_key,
+    clock_key,
     tracker_id,
 )
 from shared.enrolment import Enrolment, Holder
@@ -218,6 +219,29 @@ def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(s
     assert alive_key("anna") not in site.alive
     assert list(site.station.query("muster/v1/anna/journal/range", b"", QUIET_S)) == []
     token.close()
+
+
+def test_a_tracking_agent_fetches_raw_samples_of_its_unit_and_nothing_else(site: Site) -> None:
+    members = {name: site.pki.enroll(name) for name in ("anna", "bert")}
+    enrolment = site.pki.enroll("anna", Holder.TRACKER)
+    site.open()
+    for name, member in members.items():
+        site.unit(member).serve(f"muster/v1/{name}/journal/**", lambda key, *_: [key.encode()])
+    ears = site.join(ClientEndpoint(enrolment.connect, enrolment.identity))
+    raw = "muster/v1/anna/journal/raw"
+    until(lambda: list(ears.query(f"{raw}?epoch=1", b"", 5.0)) == [raw.encode()], "raw samples")
+    for other in ("muster/v1/anna/journal/range", "muster/v1/bert/journal/raw"):
+        assert list(ears.query(other, b"", QUIET_S)) == []
+
+
+def test_a_unit_is_told_the_time_under_its_own_key_only(site: Site) -> None:
+    anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
+    site.open()
+    site.station.serve(clock_key("*"), lambda *_: [b"the time"])
+    unit, other = site.unit(anna), site.unit(bert)
+    other.serve(clock_key("anna"), lambda *_: [b"a wrong time"])
+    until(lambda: list(unit.query(clock_key("anna"), b"", 5.0)) == [b"the time"], "the time")
+    assert list(unit.query(clock_key("bert"), b"", QUIET_S)) == []
 
 
 def test_a_certificate_of_the_authority_without_an_entry_can_do_nothing(site: Site) -> None:
