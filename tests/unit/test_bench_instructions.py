@@ -10,6 +10,7 @@ import pytest
 
 from edge.bench import instructions
 from edge.bench.instructions import bench_instructions, count_instructions
+from edge.samples import ImuBatch
 
 
 def test_without_valgrind_it_says_so_and_goes_on(monkeypatch, capsys):
@@ -40,6 +41,6 @@ def test_a_process_that_takes_too_long_is_ended(monkeypatch, capsys):
     monkeypatch.setattr(shutil, "which", lambda name: name)
     monkeypatch.setattr(instructions, "_PLAIN", ("sh", "-c", "exec sleep 60"))
     monkeypatch.setattr(instructions, "_LONGEST_S", 0.2)
-    monkeypatch.setattr(instructions, "_walk", lambda _: instructions.ImuBatch(*np.zeros((6, 1))))
+    monkeypatch.setattr(instructions, "_walk", lambda _: ImuBatch(*np.zeros((6, 1))))
     bench_instructions()
     assert "took too long" in capsys.readouterr().out
