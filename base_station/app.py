@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from base_station import collector
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -95,6 +96,7 @@ class _Again(NamedTuple):
 
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    collector.relax()
     while (again := _run_once(config, announce)) is not None:
         if again.cut is not None:
             announce("what the other station does not have is set aside, and handed to it")
@@ -213,6 +215,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
+        collector.settle()
         asyncio.run(serve_until_stopped(server, announce, keep_house))
         return again[0] if again else None
 

@@ -18,6 +18,7 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
+from base_station import collector
 from base_station.bench.compressed import CompressedStation, compressed_station
 from base_station.bench.units import unit_names
 
@@ -37,7 +38,7 @@ class ThroughputReport:
     per_core_hz: float
     times_real: float  # how much faster than time goes by, on this machine now
     memory_mb: tuple[float, ...]  # once a minute of the station's time, the first at the start
-    memory_slope_mb_per_minute: float  # over the second half
+    memory_slope_mb_per_minute: float  # over the last third: by then trails are full
     console_messages: int
 
 
@@ -63,12 +64,14 @@ def bench_station(
 def measure(
     units: int, rate_hz: float, minutes: float, consoles: int, progress: Progress
 ) -> ThroughputReport:
+    collector.relax()  # as the station does
     task = progress.add_task(f"{units} units", total=minutes)
     with (
         TemporaryDirectory(prefix="muster-bench-") as folder,
         compressed_station(Path(folder), unit_names(units), rate_hz, consoles) as station,
     ):
         station.run(_WARM_S)
+        collector.settle()
         messages, spent_s, began = station.messages, station.cpu_s(), time.perf_counter()
         memory_mb = [_memory_mb()]
         while (left := minutes - (len(memory_mb) - 1)) > 0.0:
@@ -105,8 +108,8 @@ def _memory_mb() -> float:
 
 
 def _slope(memory_mb: list[float]) -> float:
-    """Of the second half, by least squares; a whole run of less than four minutes tells nothing."""
-    late = memory_mb[len(memory_mb) // 2 :]
+    """Of the last third, by least squares; a run of a few minutes tells nothing."""
+    late = memory_mb[2 * len(memory_mb) // 3 :]
     if len(late) < 3:
         return float("nan")
     return float(np.polyfit(np.arange(len(late)), late, 1)[0])
@@ -128,7 +131,7 @@ def _table(report: ThroughputReport) -> Table:
         ("to consoles", f"{report.console_messages:,}", ""),
         ("memory at first, most, at last", _extremes(report.memory_mb), ""),
         (
-            "memory grows, second half",
+            "memory grows, last third",
             f"{report.memory_slope_mb_per_minute:.2f} MB/min",
             f"{_FLAT_MB_PER_MINUTE:.2f} MB/min",
         ),
