@@ -211,7 +211,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         )
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
         keep_house = _housekeeping(
-            recorder, records, EnrolledUnits(pki, gate, roster.registered_units), side
+            recorder, services, EnrolledUnits(pki, gate, roster.registered_units), side
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
@@ -351,14 +351,17 @@ def _open_store(
 
 
 def _housekeeping(
-    recorder: Recorder, records: Records, enrolled: EnrolledUnits, side: Side
+    recorder: Recorder, services: Services, enrolled: EnrolledUnits, side: Side
 ) -> Callable[[], None]:
+    records, hindsight = services.records, services.hindsight
     index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
 
     def keep_house() -> None:
         index.update(recorder.segments())
         if side.leads:
             enrolled.update()
+        if hindsight is not None:
+            hindsight.catch_up(records.incidents())
 
     return keep_house
 

@@ -6,8 +6,9 @@ makes trails of everything in it.  What it made of a closed incident is kept in 
 
 from __future__ import annotations
 
+import logging
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,11 +22,13 @@ from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.pinning import evidence_of_all, ties_of
 from base_station.playback import Archive, Playback
-from shared.clock import Clock
+from shared.clock import NS_PER_S, Clock
 from shared.quality import Quality
 
+_log = logging.getLogger(__name__)
 Progress = Callable[[float], None]
 Tracks = Mapping[str, Sequence[TrackSample]]
+LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 
@@ -58,6 +61,7 @@ class Hindsight:
         self._store = store
         self._clock = clock
         self._working = threading.Lock()
+        self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
 
     def smoothed(self, incident: Incident) -> Smoothed:
         """As it was made when the incident had closed; made now where it was not."""
@@ -79,6 +83,23 @@ class Hindsight:
         if incident.closed_ns is not None:
             self._store.put(made.incident_id, made.smoother, made.made_ns, made.tracks)
         return made
+
+    def catch_up(self, incidents: Iterable[Incident]) -> None:
+        """Smooth an incident that closed lately and was not smoothed yet, so that its trails are
+        there when somebody asks.
+        """
+        now_ns = self._clock.utc_ns()
+        for incident in incidents:
+            incident_id = incident.incident_id
+            lately = incident.closed_ns is not None and now_ns - incident.closed_ns < LATELY_NS
+            if not lately or incident_id in self._given_up or self._store.has(incident_id):
+                continue
+            try:
+                self.smooth(incident)
+            except Exception:  # noqa: BLE001  # the station goes on without these trails
+                _log.exception("the trails of %s cannot be smoothed", incident_id)
+                self._given_up.add(incident_id)
+            return
 
     def raw(self, incident: Incident) -> Tracks:
         """Each unit's own path, placed where each of its frames began and never corrected."""

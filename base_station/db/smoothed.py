@@ -45,6 +45,10 @@ class SmoothedTracks:
             if rows:
                 session.execute(insert(SmoothedPoint), rows)
 
+    def has(self, incident_id: str) -> bool:
+        with self._store.read() as session:
+            return session.get(SmoothedIncident, incident_id) is not None
+
     def of(self, incident_id: str) -> tuple[str, int, dict[str, list[TrackSample]]] | None:
         """Smoother, when it was made, and the trails by unit; None: not made yet."""
         with self._store.read() as session:

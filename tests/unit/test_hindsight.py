@@ -93,6 +93,19 @@ def test_what_was_made_is_not_made_again(past: Past) -> None:
     assert fractions[-1] == 1.0
 
 
+def test_what_closed_lately_is_smoothed_without_being_asked(
+    past: Past, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    past.kept.put("i1", "gone", 0, {})
+    past.hindsight.catch_up(past.records.incidents())
+    assert past.kept.of("i1") == ("gone", 0, {})
+    monkeypatch.setattr(past.kept, "has", lambda _: False)
+    past.hindsight.catch_up(past.records.incidents())
+    made = past.kept.of("i1")
+    assert made is not None
+    assert made[0] == SMOOTHERS[0].name
+
+
 def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
     raw = past.hindsight.raw(past.incident)["FF-01"]
     smoothed = past.hindsight.smoothed(past.incident).tracks["FF-01"]
