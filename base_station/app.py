@@ -215,7 +215,6 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
-        collector.settle()
         asyncio.run(serve_until_stopped(server, announce, keep_house))
         return again[0] if again else None
 

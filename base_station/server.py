@@ -13,6 +13,7 @@ from pathlib import Path
 import uvicorn
 from starlette.types import ASGIApp
 
+from base_station import collector
 from shared.errors import ConfigError
 
 _GRACE_S = 5
@@ -94,6 +95,7 @@ async def serve_until_stopped(
 
     ``housekeeping`` is called now and then, in a thread.
     """
+    collector.settle()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, server.stop)
