@@ -18,11 +18,11 @@ from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
 from base_station.fusion.horizontal import HorizontalFilter, turn_of
+from base_station.fusion.knowledge import Knowledge, estimate_of
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import OwnPlace, PathMemory
 from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
-from base_station.fusion.quality import Knowledge, judge
 from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
 from shared.clock import NS_PER_S
@@ -221,35 +221,18 @@ class GpsInertialFuser:
         turn: tuple[float, float],
     ) -> Estimate:
         """``place`` and ``height`` each with its variance, ``turn`` with its deviation."""
-        memory = self._memory
-        place_m, variances = place
-        (var_north_m2, var_ne_m2), (_, var_east_m2) = variances.tolist()
-        std_north_m, std_east_m = math.sqrt(var_north_m2), math.sqrt(var_east_m2)
-        product = std_north_m * std_east_m
-        turn_rad, turn_std_rad = turn
-        since_s = None
-        if memory.fix_t_mono_ns is not None:
-            since_s = max(0.0, (t_mono_ns - memory.fix_t_mono_ns) / NS_PER_S)
-        tracker = memory.last.quality if memory.last is not None else Quality.GOOD
+        last, fix_ns = self._memory.last, self._memory.fix_t_mono_ns
         knowledge = Knowledge(
-            math.hypot(std_north_m, std_east_m), turn_std_rad, tracker, memory.assumed
-        )
-        quality, reason = judge(self._kind, knowledge)
-        return Estimate(
             t_mono_ns=t_mono_ns,
-            north_m=float(place_m[0]),
-            east_m=float(place_m[1]),
-            down_m=height[0],
-            std_north_m=std_north_m,
-            std_east_m=std_east_m,
-            std_down_m=math.sqrt(height[1]),
-            correlation_ne=var_ne_m2 / product if product > 0.0 else 0.0,
-            heading_rad=(turn_rad + own_heading_rad) % (2.0 * math.pi),
-            heading_std_rad=turn_std_rad,
-            quality=quality,
-            quality_reason=reason,
-            since_gps_s=since_s,
+            place=place,
+            height=height,
+            turn=turn,
+            own_heading_rad=own_heading_rad,
+            tracker=last.quality if last is not None else Quality.GOOD,
+            assumed=self._memory.assumed,
+            since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
         )
+        return estimate_of(self._kind, knowledge)
 
     def _walk(self, stretch: Stretch) -> None:
         kind = self._kind

@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 
 GUESSES = 400
 MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
+UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
 THROUGH_WALL = 0.02  # what is left of a guess's weight
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
@@ -128,7 +129,7 @@ class WallCloud:
         guesses[:, :2] += self._turned(north_m, east_m)
         guesses[:, :2] += math.sqrt(noise[0] * way_m) * fresh[:, :2]
         self._moments = None
-        if floor is not None and grid.knows(floor):
+        if floor is not None and grid.knows(floor) and way_m < UNSEEN_M:
             climbs = abs(climbed_m) > CLIMBS * way_m
             self._weigh_walls(grid, floor, from_m, climbs)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -82,6 +83,30 @@ def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
         restored.advance(position)
         assert restored.estimate() == straight.estimate()
     assert restored.save() == straight.save()
+
+
+def test_a_gap_in_the_radio_is_not_taken_for_a_walk_through_walls(
+    kind: FuserKind, people: list[Person]
+) -> None:
+    """Half a minute is missing again and again; the way between is not a straight one."""
+    person = people[0]
+    fuser = kind.new()
+    fuser.consider(FloorGrid.of(read_plan(person.building.geojson())))
+    truth, off_m = person.truth, []
+    for row in range(len(truth.t_s)):
+        t_s = float(truth.t_s[row])
+        inside = truth.goes_in_s + 60.0 < t_s < truth.comes_out_s
+        if inside and t_s % 90.0 < 30.0:
+            continue
+        fuser.advance(position_of(truth, person.own, person.pressures_pa, row))
+        fix = person.fixes.get(row)
+        if fix is not None:
+            fuser.correct(fix)
+        estimate = fuser.estimate()
+        assert estimate is not None
+        if inside:
+            off_m.append(math.dist((estimate.north_m, estimate.east_m), truth.place_m[row, :2]))
+    assert np.percentile(off_m, 90) < 4.0
 
 
 def _storeys(person: Person) -> Floats:
