@@ -106,6 +106,15 @@ def test_a_gap_is_flagged_widens_the_uncertainty_and_heals():
     assert lost_m < 2.5 * std_m
 
 
+def test_a_gap_makes_no_heading_surer():
+    t_ns, accel, gyro = copy()
+    description = SensorDescription("clipping", 200.0, gyro_full_scale_radps=0.4)  # much doubt
+    first, stop = index(IN_STANCE), index(IN_STANCE + 0.2)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep], description)
+    assert rows.heading_std_rad[first] > rows.heading_std_rad[first - 1]
+
+
 def test_a_clock_that_jumps_ahead_is_a_gap():
     t_ns, accel, gyro = copy()
     k = index(IN_STANCE)
