@@ -28,6 +28,7 @@ FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is near
 FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
 CHUNK = 128
 MOST_POINTS = 14_400  # some four hours of walking; beyond it every other old one goes
+_MOST_MM = 2**31 - 1  # what a column holds
 
 Records = NDArray[np.void]
 Floats = NDArray[np.float64]
@@ -288,7 +289,7 @@ def _point_of(position: Position, t_ns: int) -> Point:
 
 
 def _mm(metres: float) -> int:
-    return max(-(2**31) + 1, min(2**31 - 1, round(metres * 1e3)))
+    return max(-_MOST_MM, min(_MOST_MM, round(metres * 1e3)))
 
 
 def _pack(points: list[Point]) -> Records:
@@ -300,8 +301,13 @@ def _move(
 ) -> None:
     cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
     north_mm, east_mm = rows[north].astype(float), rows[east].astype(float)
-    rows[north] = np.rint(cosine * north_mm - sine * east_mm + north_m * 1e3)
-    rows[east] = np.rint(sine * north_mm + cosine * east_mm + east_m * 1e3)
+    rows[north] = _saturated(cosine * north_mm - sine * east_mm + north_m * 1e3)
+    rows[east] = _saturated(sine * north_mm + cosine * east_mm + east_m * 1e3)
+
+
+def _saturated(millimetres: Floats) -> Floats:
+    """An anchor on the other side of the Earth moves everything farther than a number holds."""
+    return np.rint(np.clip(millimetres, -_MOST_MM, _MOST_MM))
 
 
 def _thinned(rows: Records) -> Records:

@@ -16,19 +16,24 @@ from shared.messages import (
     CommandReply,
     CommandState,
     EventKind,
+    OperatorAction,
 )
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
+    CheckIn,
     CloseIncident,
     ConfirmCommand,
+    ForgetWearers,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
     SendCommand,
+    SetAccountability,
     SetAnchor,
     SetPlan,
+    SetRest,
     SetStart,
     Unassign,
 )
@@ -121,6 +126,15 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
         st.sampled_from(list(CommandState)),
     ),
     st.builds(lambda u, i: lambda s: s.act(ConfirmCommand(i, u)), UNITS, COMMAND_IDS),
+    st.builds(
+        lambda u, c, e: lambda s: s.act(CheckIn(u, c, e)),
+        st.just("") | UNITS,
+        st.sampled_from(["", "red"]),
+        st.booleans(),
+    ),
+    st.builds(lambda p, w: lambda s: s.act(SetAccountability(p, w)), st.just(30.0) | ANY, ANY),
+    st.builds(lambda u, r: lambda s: s.act(SetRest(u, r)), UNITS, st.booleans()),
+    st.builds(lambda u: lambda s: s.act(ForgetWearers(u)), UNITS),
 )
 
 
@@ -195,3 +209,34 @@ def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) 
             if command.state_of(delivery) == "acknowledged":
                 by_wearer = (delivery.unit_id, command.command_id) in acknowledged
                 assert by_wearer or delivery.acknowledged_by == "chief"
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(DEEDS, max_size=60))
+def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
+    """Each deed that is no person's leaves everybody's check-in as it was."""
+    script = Script()
+    script.register("FF-01", "FF-02")
+    script.act(Assign("FF-01", "p1", "Ana", "red", ""))
+    script.act(OpenIncident("a", "a", 30.0, 60.0))
+    for deed in deeds:
+        script.now_s += 0.3
+        before = vouched(script)
+        replied = len(script.said(CommandReply))
+        acted = len(script.said(OperatorAction))
+        deed(script)
+        by_button = any(
+            reply.state is CommandState.ACKNOWLEDGED
+            for reply in script.said(CommandReply)[replied:]
+        )
+        if len(script.said(OperatorAction)) == acted and not by_button:
+            assert vouched(script) == before
+
+
+def vouched(script: Script) -> dict[str, tuple[int, str]]:
+    """When and by whom, of each unit on duty."""
+    return {
+        unit.unit_id: (unit.duty.checked_in_ns, unit.duty.checked_in_by)
+        for unit in script.pipeline.state.units.values()
+        if unit.duty is not None
+    }
