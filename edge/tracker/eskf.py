@@ -30,7 +30,7 @@ KEEP_OF_LAG = 0.66  # a release in swing keeps rows younger than this share of t
 
 
 class EskfTracker:
-    """Fifteen-state error-state filter for a sensor anywhere on the foot; see ``Tracker``."""
+    """Error-state filter (error_model.py) for a sensor anywhere on the foot; see ``Tracker``."""
 
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description
