@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
@@ -149,9 +150,10 @@ class StationDrive:
             self._save_checkpoint()
         self._settle()
         if now_ns >= due.delta_ns:
+            before_ns = time.thread_time_ns()
             self._tell()
-            told_ns = clock.monotonic_ns()
-            due.delta_ns = now_ns + max(DELTA_NS, (told_ns - now_ns) * DELTAS_SHARE)
+            spent_ns = time.thread_time_ns() - before_ns
+            due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
         while self._asked:
             self._asked.popleft()(self._picture.snapshot())
 
