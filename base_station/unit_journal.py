@@ -21,8 +21,9 @@ _INDEX_EVERY_NS = 30 * NS_PER_S
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
 _ENTRY_BYTES = 100.0  # of a message, as long as none has come
+_OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
 _PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
-_LEARN_SHARE = 0.2
+_LEARN_SHARE = 0.02
 
 
 class Held(NamedTuple):
@@ -129,7 +130,8 @@ class UnitJournal:
             boot.fetched.add_run(Run(chunk.from_seq, chunk.to_seq))
             self.gone += chunk.to_seq - chunk.from_seq + 1 - len(chunk.entries)
         for entry in chunk.entries:
-            self._entry_bytes += _LEARN_SHARE * (len(entry.payload) - self._entry_bytes)
+            entry_bytes = len(entry.payload) + _OVERHEAD_BYTES
+            self._entry_bytes += _LEARN_SHARE * (entry_bytes - self._entry_bytes)
         return chunk
 
     def end(self, question: Question, took_ns: int) -> None:
