@@ -28,7 +28,7 @@ OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsew
 CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
 SHAKEN_M = 0.05  # and how far their places are shaken
-FLOOR_VAR_M2 = 0.05**2  # of any place: people do not walk on lines
+FLOOR_VAR_M2 = 0.15**2  # of any place: people do not walk on lines, and plans lie a little aside
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
 MEMORY = 1.0 / 30.0  # of that mean, a move
 
