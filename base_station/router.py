@@ -8,13 +8,16 @@ keeps its session, its subscriptions and what it knows.
 from __future__ import annotations
 
 import logging
+import secrets
 import signal
+import socket
 import sys
 import time
 from contextlib import closing
 from pathlib import Path
 from threading import Event, Thread
 
+from base_station.config import host_and_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
@@ -27,6 +30,8 @@ READY = "router ready"
 FAILED = "router failed: "
 LINKS = "--links"  # between where it listens and whom it joins
 _LOOK_EVERY_S = 1.0
+_LOOKS_ALONE = 4  # at least, before a link to the other router is taken for lost
+_PROBE_S = 0.5
 _OPEN_ATTEMPTS = 10
 _ATTEMPT_EVERY_S = 0.3
 
@@ -62,12 +67,15 @@ class Router:
         self._endpoint = endpoint_of(data, listen, links)
         self._bus = _open(self._endpoint)
         self._told = ""
+        self._alone = 0  # looks in a row without a link to the other station's router
+        self._patience = _LOOKS_ALONE + secrets.randbelow(_LOOKS_ALONE)
 
     def refresh(self) -> None:
         """What cannot be read leaves the rules as they were, and says so once.
 
         Raises BusError when the port cannot be listened on again.
         """
+        self._link_again()
         if self._endpoint.tls is None:
             return
         try:
@@ -86,6 +94,19 @@ class Router:
 
     def close(self) -> None:
         self._bus.close()
+
+    def _link_again(self) -> None:
+        """Zenoh may give a link up for good when two routers open at once and each finds the other
+        half open.  Where the other one listens and there is no link, this one opens again; after
+        a while of its own, so that they do not meet like that another time.
+        """
+        there = not self._links or self._bus.is_linked() or not any(map(_listens, self._links))
+        self._alone = 0 if there else self._alone + 1
+        if self._alone >= self._patience:
+            logger.warning("no link to the other station's router, though it listens: open again")
+            self._alone = 0
+            self._bus.close()
+            self._bus = _open(self._endpoint)
 
 
 def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> int:
@@ -122,6 +143,15 @@ def _is_secure(listen: tuple[str, ...]) -> bool:
             "tcp/ only"
         )
     return all(secure)
+
+
+def _listens(endpoint: str) -> bool:
+    host, port = host_and_port(endpoint.partition("/")[2])
+    try:
+        socket.create_connection((host, port), _PROBE_S).close()
+    except OSError:
+        return False
+    return True
 
 
 def _open(endpoint: StationEndpoint) -> ZenohBus:
