@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 STATES = 5
 UNKNOWN_M = 1e4
+LEAST_WANDER_RADPS = 3e-7  # of the drift from knot to knot: less is an equation too stiff to solve
 NS_TO_S = 1e-9
 
 
@@ -147,7 +148,7 @@ def add_path(equations: Equations, base: int, chain: Chain, belief: Belief, n: W
         (here + 2, -east), (there + 2, -east), (here + 3, -north), (there + 3, -north),
     )  # fmt: skip
     _add_turning(equations, here, there, chain, belief, n)
-    wander = np.sqrt(n.drift_wander_radps**2 * chain.moving_s / 60.0 + 1e-16)
+    wander = np.sqrt(n.drift_wander_radps**2 * chain.moving_s / 60.0 + LEAST_WANDER_RADPS**2)
     equations.add(wander, 0.0, (there + 4, 1.0), (here + 4, -1.0))
 
 

@@ -14,6 +14,8 @@ from scipy.sparse import csc_matrix
 
 Floats = NDArray[np.float64]
 
+UNKNOWN_VAR = 1e8  # said of a knot where the numbers are too far apart to tell
+
 
 def chain_covariances(
     information: csc_matrix, states: int, told: Sequence[tuple[int, Floats]] = ()
@@ -29,14 +31,26 @@ def chain_covariances(
     gains = np.empty_like(beside)
     reduced = diagonal[0]
     for row in range(count):
-        inverses[row] = np.linalg.inv(reduced)
+        inverses[row] = _inverse(reduced)
         if row + 1 < count:
             gains[row] = inverses[row] @ beside[row]
             reduced = diagonal[row + 1] - beside[row].T @ gains[row]
+            reduced = 0.5 * (reduced + reduced.T)
     covariances = inverses
     for row in range(count - 2, -1, -1):
         covariances[row] += gains[row] @ covariances[row + 1] @ gains[row].T
+    variances = np.diagonal(covariances, axis1=1, axis2=2)
+    lost = ~(np.isfinite(variances) & (variances > 0.0)).all(axis=1)
+    covariances[lost] = UNKNOWN_VAR * np.eye(states)
     return covariances
+
+
+def _inverse(matrix: Floats) -> Floats:
+    """Of a positive definite matrix whose rows are of very different units."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1.0 / UNKNOWN_VAR))
+    scales = np.outer(scale, scale)
+    inverse: Floats = np.linalg.inv(matrix * scales) * scales
+    return inverse
 
 
 def _blocks(information: csc_matrix, count: int, states: int) -> tuple[Floats, Floats]:
