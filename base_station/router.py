@@ -10,18 +10,16 @@ from __future__ import annotations
 import logging
 import secrets
 import signal
-import socket
 import sys
 import time
 from contextlib import closing
 from pathlib import Path
 from threading import Event, Thread
 
-from base_station.config import host_and_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
-from shared.errors import ConfigError, MusterError, PortInUseError
+from shared.errors import BusError, ConfigError, MusterError, PortInUseError
 from shared.log import set_up_logging
 
 logger = logging.getLogger(__name__)
@@ -31,7 +29,7 @@ FAILED = "router failed: "
 LINKS = "--links"  # between where it listens and whom it joins
 _LOOK_EVERY_S = 1.0
 _LOOKS_ALONE = 4  # at least, before a link to the other router is taken for lost
-_PROBE_S = 0.5
+_PROBE_S = 1.0
 _OPEN_ATTEMPTS = 10
 _ATTEMPT_EVERY_S = 0.3
 
@@ -97,16 +95,26 @@ class Router:
 
     def _link_again(self) -> None:
         """Zenoh may give a link up for good when two routers open at once and each finds the other
-        half open.  Where the other one listens and there is no link, this one opens again; after
-        a while of its own, so that they do not meet like that another time.
+        half open.  Where the other one lets in others and there is no link, this one opens again;
+        after a while of its own, so that they do not meet like that another time.
         """
-        there = not self._links or self._bus.is_linked() or not any(map(_listens, self._links))
-        self._alone = 0 if there else self._alone + 1
+        linked = not self._links or self._bus.is_linked()
+        self._alone = 0 if linked else self._alone + 1
         if self._alone >= self._patience:
-            logger.warning("no link to the other station's router, though it listens: open again")
             self._alone = 0
+            if not self._other_lets_in():
+                return
+            logger.warning("no link to the other station's router, though it answers: open again")
             self._bus.close()
             self._bus = _open(self._endpoint)
+
+    def _other_lets_in(self) -> bool:
+        asking = ClientEndpoint(self._links, self._endpoint.tls, _PROBE_S)
+        try:
+            ZenohBus(asking).close()
+        except BusError:
+            return False
+        return True
 
 
 def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> int:
@@ -143,15 +151,6 @@ def _is_secure(listen: tuple[str, ...]) -> bool:
             "tcp/ only"
         )
     return all(secure)
-
-
-def _listens(endpoint: str) -> bool:
-    host, port = host_and_port(endpoint.partition("/")[2])
-    try:
-        socket.create_connection((host, port), _PROBE_S).close()
-    except OSError:
-        return False
-    return True
 
 
 def _open(endpoint: StationEndpoint) -> ZenohBus:

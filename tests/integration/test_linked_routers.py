@@ -1,0 +1,66 @@
+"""The routers of two stations: linked, and linked again where Zenoh has given up."""
+
+from __future__ import annotations
+
+import socket
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from base_station.router import Router
+from tests.station_command import free_port, wait_until
+
+LOOKS = 9  # more than a router waits before it opens again
+
+
+def endpoint() -> str:
+    return f"tcp/127.0.0.1:{free_port()}"
+
+
+def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
+    one, other = endpoint(), endpoint()
+    with (
+        closing(Router(tmp_path, (one,), (other,))) as first,
+        closing(Router(tmp_path, (other,), (one,))) as second,
+    ):
+        wait_until("they are linked", lambda: first._bus.is_linked() and second._bus.is_linked())
+        before = first._bus, second._bus
+        for _ in range(LOOKS):
+            first.refresh()
+            second.refresh()
+        assert (first._bus, second._bus) == before
+
+
+def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:
+    with closing(Router(tmp_path, (endpoint(),), (endpoint(),))) as router:
+        before = router._bus
+        for _ in range(LOOKS):
+            router.refresh()
+        assert router._bus is before
+
+
+def test_a_router_whose_other_one_hangs_stays_open_for_its_units(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listening:  # takes links and never answers
+        other = f"tcp/127.0.0.1:{listening.getsockname()[1]}"
+        with closing(Router(tmp_path, (endpoint(),), (other,))) as router:
+            before = router._bus
+            for _ in range(LOOKS):
+                router.refresh()
+            assert router._bus is before
+
+
+def test_a_router_opens_again_where_the_other_answers_and_there_is_no_link(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = endpoint()
+    with (
+        closing(Router(tmp_path, (other,))),
+        closing(Router(tmp_path, (endpoint(),), (other,))) as router,
+    ):
+        before = router._bus
+        monkeypatch.setattr(before, "is_linked", lambda: False)  # as if Zenoh had given up
+        for _ in range(LOOKS):
+            router.refresh()
+        assert router._bus is not before
+        wait_until("they are linked", router._bus.is_linked)
