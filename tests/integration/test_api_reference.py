@@ -1,0 +1,41 @@
+"""The reference barometer by way of the API: set, taken away, refused, and who may."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest_asyncio
+
+from base_station.db.accounts import Role
+from shared.clock import ManualClock
+from tests.station import DeskStation
+
+PATH = "/reference-barometer"
+
+
+@pytest_asyncio.fixture
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    yield station
+    station.close()
+
+
+async def test_a_reference_is_set_and_taken_away(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        assert (await commander.post("/units", json={"unit_id": "REF"})).status_code == 201
+        answer = await commander.put(PATH, json={"unit_id": "REF", "down_m": -1.0})
+        assert answer.status_code == 204, answer.text
+        assert (await commander.put(PATH, json={"unit_id": ""})).status_code == 204
+
+
+async def test_what_cannot_be_a_reference_is_refused(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        answer = await commander.put(PATH, json={"unit_id": "FF-99"})
+        assert answer.status_code == 404
+        assert "FF-99" in answer.text
+        assert (await commander.put(PATH, json={"unit_id": "*"})).status_code == 422
+    async with station.client(Role.VIEWER) as viewer:
+        assert (await viewer.put(PATH, json={"unit_id": ""})).status_code == 403
