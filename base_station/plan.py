@@ -23,6 +23,7 @@ from shared.errors import UserError
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
 FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
+LEAST_POINTS = 2  # of a line
 OUTLINE_HYSTERESIS_M = 1.5
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
@@ -134,6 +135,8 @@ def read_plan(geojson: bytes) -> Plan:
     lines = (*outlines, *(wall.line for wall in walls), *(one.ring for one in stairs))
     if not all(math.isfinite(value) for line in lines for point in line for value in point):
         raise UserError("the plan has a coordinate that is no number")
+    if any(len(line) < LEAST_POINTS for line in lines):
+        raise UserError("the plan has an outline, wall or stairs of fewer than two points")
     return Plan(geojson, tuple(storeys), outlines, walls, stairs)
 
 

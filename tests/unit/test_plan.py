@@ -86,3 +86,27 @@ def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> Non
 def test_a_plan_that_cannot_be_used_says_what_is_wrong(geojson: bytes, words: str) -> None:
     with pytest.raises(UserError, match=words):
         read_plan(geojson)
+
+
+@pytest.mark.parametrize("kind", ["wall", "outline", "stairs"])
+@pytest.mark.parametrize("points", [[], [[1.0, 2.0]]])
+def test_a_line_of_fewer_than_two_points_is_refused(kind: str, points: list[list[float]]) -> None:
+    feature = {
+        "type": "Feature",
+        "properties": {"kind": kind, "floor": 0},
+        "geometry": {"type": "LineString", "coordinates": points},
+    }
+    site = {"frame": "site-m", "floors": []}
+    plan = {"type": "FeatureCollection", "muster": site, "features": [feature]}
+    with pytest.raises(UserError, match="two points"):
+        read_plan(msgspec.json.encode(plan))
+
+
+def test_a_wall_that_is_no_number_is_refused() -> None:
+    plan = (
+        b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
+        b'{"kind":"wall","floor":0},"geometry":{"type":"LineString",'
+        b'"coordinates":[[0,0],[1e999,0]]}}]}'
+    )
+    with pytest.raises(UserError, match="out of range"):
+        read_plan(plan)
