@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
+from rich.box import SIMPLE
 from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
@@ -150,6 +151,8 @@ def _report(
 def table_of(reports: Sequence[FaultReport]) -> Table:
     table = Table(
         title="Faults",
+        box=SIMPLE,
+        padding=(0, 1, 0, 0),
         caption="heard: from the fault's end to the first live message, to reach "
         f"{_RECONNECT_S:.0f} s; complete: until all said before is in the log; alert: the worst, "
         "from being said, or from the fault's end, to being in the log; memory: the station's. "
@@ -158,7 +161,7 @@ def table_of(reports: Sequence[FaultReport]) -> Table:
     titles = ("sent", "arrived", "lost", "twice", "fetched", "heard", "complete", "alert")
     table.add_column("fault")
     for title in (*titles, "memory"):
-        table.add_column(title, justify="right", min_width=min(len(title), 8))
+        table.add_column(title, justify="right", no_wrap=True)
     for one in reports:
         counts = (one.sent, one.arrived, one.lost, one.duplicates, one.fetched)
         times_s = (one.heard_s, one.complete_s, one.alert_worst_s)
