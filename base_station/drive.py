@@ -134,10 +134,13 @@ class StationDrive:
         records = self._around.feed.take(max(wait_ns, 0) / NS_PER_S)
         follows = self._around.feed.follows
         for t_ns, key, payload in records:
-            if follows:
-                self._keeping.keep_and_step(t_ns, key, payload)
-            else:
-                self._hear(t_ns, key, payload)
+            try:
+                if follows:
+                    self._keeping.keep_and_step(t_ns, key, payload)
+                else:
+                    self._hear(t_ns, key, payload)
+            except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
+                self._watch.failed("drive", error)
         self._take_actions()
         now_ns = clock.monotonic_ns()
         if now_ns >= due.tick_ns:
@@ -233,6 +236,8 @@ class StationDrive:
             self._watch.note(
                 "checkpoint", f"The live state cannot be saved ({error}): free the disk"
             )
+        except Exception as error:  # noqa: BLE001  # the log has everything that matters
+            self._watch.failed("checkpoint", error)
 
     def _report_problems(self) -> None:
         """A part that fails, or is well again, is an event like any other."""

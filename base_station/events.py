@@ -12,7 +12,7 @@ import msgspec
 from shared.channels import Direction, is_backfilled, parse_key
 from shared.codec import decode
 from shared.errors import WireError
-from shared.messages import STATION_ID, AlarmChange, FusedPosition, Message
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, Header, Message
 
 
 class Received(msgspec.Struct, frozen=True):
@@ -72,6 +72,9 @@ Output = (
 
 
 DECODER_FAILED = "the decoder failed"
+# Differences of such times still have room in 64 bits, wherever they are kept.
+MONOTONIC_MOST_NS = 2**60  # 36 years of a unit's running
+UTC_MOST_NS = 2**62  # the year 2116
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
@@ -88,4 +91,10 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         return Rejected(
             t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
         )
+    if channel.direction is Direction.UP and not _makes_sense(message.header):
+        return Rejected(t_ns, key, f"the times of {speaker!r} make no sense")
     return Received(t_ns, unit_id, message, is_backfilled(key))
+
+
+def _makes_sense(header: Header) -> bool:
+    return abs(header.t_mono_ns) < MONOTONIC_MOST_NS and 0 <= header.t_utc_ns < UTC_MOST_NS

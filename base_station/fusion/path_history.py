@@ -7,6 +7,7 @@ is judged better later, goes on in the same history.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from dataclasses import dataclass
 
@@ -283,7 +284,7 @@ def _point_of(position: Position, t_ns: int) -> Point:
         north_mm=_mm(position.north_m),
         east_mm=_mm(position.east_m),
         std_mm=_mm(max(position.std_north_m, position.std_east_m)),
-        heading_e4=round(position.heading_rad * 1e4),
+        heading_e4=round(position.heading_rad % (2.0 * math.pi) * 1e4),  # whatever it says
         flags=0 if position.quality is Quality.GOOD else DOUBTFUL,
     )
 
