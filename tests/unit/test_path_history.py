@@ -11,6 +11,7 @@ import pytest
 
 from base_station.fusion.path_history import (
     BREAK,
+    CHUNK,
     DOUBTFUL,
     MOST_POINTS,
     RESTART,
@@ -95,6 +96,14 @@ def test_a_long_path_is_thinned_where_it_is_old(at: Callable[..., Position]) -> 
     assert arrays.moving_s.sum() == pytest.approx(MOST_POINTS + 3999)
     early, late = np.diff(arrays.t_ns[:100]).mean(), np.diff(arrays.t_ns[-100:]).mean()
     assert early > 1.5 * late
+
+
+def test_a_heading_of_many_turns_breaks_nothing(at: Callable[..., Position]) -> None:
+    history = PathHistory()
+    for second in range(3 * CHUNK):
+        position = at(second, float(second), heading_rad=math.tau * 60_000.0)
+        history.note(position, second * NS_PER_S, jumped=False)
+    assert len(history.packed) > 0
 
 
 def test_fixes_close_by_are_one(at: Callable[..., Position]) -> None:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
-import msgspec
 import pytest
 
 from base_station.events import MONOTONIC_MOST_NS, UTC_MOST_NS, Received, Rejected, event_of
-from base_station.fusion.path_history import CHUNK
 from shared.channels import TEMPERATURE
 from shared.codec import encode
 from shared.messages import Header, Temperature
-from shared.messages.station import RegisterUnit
-from tests.station_script import Script
 
 U = "FF-01"
 KEY = TEMPERATURE.key(U)
@@ -38,11 +32,3 @@ def test_times_that_no_clock_shows_are_kept_and_not_stepped(t_mono_ns: int, t_ut
 def test_usual_times_are() -> None:
     assert isinstance(said_at(10**15, 1_800_000_000 * 10**9), Received)
     assert isinstance(said_at(0, 0), Received)  # 0: the unit does not know UTC
-
-
-def test_a_heading_of_many_turns_does_not_break_the_path() -> None:
-    script = Script()
-    script.act(RegisterUnit(U, "one"))
-    for step in range(3 * CHUNK):
-        script.position(U, float(step), 0.0, heading_rad=math.tau * 60_000.0)
-    assert msgspec.msgpack.encode(script.pipeline.state)
