@@ -1,4 +1,5 @@
 /** The station's REST API, as far as the console uses it. */
+import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
@@ -280,6 +281,10 @@ export interface TrailsAnswer {
 
 export const trails = (incidentId: string, kind: string) =>
   call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
+
+/** Takes some seconds: the smoothed trails are worked out for it. */
+export const assessment = (incidentId: string) =>
+  call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);
 
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 

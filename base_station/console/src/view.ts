@@ -10,6 +10,7 @@ export const floor = signal<FloorChoice>("all");
 
 export type DialogName =
   | "incidents"
+  | "assessment"
   | "people"
   | "units"
   | "site"
@@ -24,6 +25,9 @@ export type DialogName =
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
+
+/** The incident that is assessed. */
+export const assessed = signal<{ incident_id: string; name: string } | null>(null);
 
 export const notice = signal<string | null>(null);
 

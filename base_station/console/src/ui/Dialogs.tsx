@@ -1,5 +1,6 @@
 import { dialog } from "../view";
 import { AccountDialog } from "./AccountDialog";
+import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
 import { HealthDialog } from "./HealthDialog";
@@ -14,6 +15,8 @@ export function Dialogs() {
   switch (dialog.value) {
     case "incidents":
       return <IncidentsDialog />;
+    case "assessment":
+      return <AssessmentDialog />;
     case "people":
       return <PeopleDialog />;
     case "units":

@@ -1,5 +1,6 @@
 import { attempt, live, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
+import { assessed, openDialog } from "../view";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
@@ -37,6 +38,7 @@ export function IncidentsDialog() {
             <th scope="col">Lasted</th>
             <th scope="col">Replay</th>
             <th scope="col">Tracks</th>
+            <th scope="col">Positions</th>
             {forgets && <th scope="col">Personal data</th>}
           </tr>
         </thead>
@@ -62,6 +64,15 @@ export function IncidentsDialog() {
               <td>
                 <Downloads incident={incident} />
               </td>
+              <td>
+                <button
+                  type="button"
+                  aria-label={`How good were the positions? ${incident.name}`}
+                  onClick={() => assess(incident)}
+                >
+                  How good were they?
+                </button>
+              </td>
               {forgets && (
                 <td>
                   {incident.closed_ms !== null && (
@@ -80,6 +91,11 @@ export function IncidentsDialog() {
       </table>
     </Dialog>
   );
+}
+
+function assess(incident: api.Incident): void {
+  assessed.value = incident;
+  openDialog("assessment");
 }
 
 function OpenForm({ done }: { done: () => void }) {
