@@ -70,7 +70,7 @@ export function IncidentsDialog() {
                   aria-label={`How good were the positions? ${incident.name}`}
                   onClick={() => assess(incident)}
                 >
-                  How good were they?
+                  How good were the positions?
                 </button>
               </td>
               {forgets && (
