@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from base_station.command_state import SentCommand
+from base_station.commands.state import SentCommand
 from base_station.live_state import (
     PAR_INTERVAL_S,
     WORK_LIMIT_S,

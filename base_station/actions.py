@@ -8,15 +8,17 @@ from typing import assert_never
 
 import msgspec
 
-from base_station import accountability, command_book, pin_book
+from base_station import accountability
 from base_station.alarms.book import AlarmBook
-from base_station.command_state import SentCommand
+from base_station.commands import book as command_book
+from base_station.commands.state import SentCommand
 from base_station.events import PinsTouched
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
-from base_station.pin_book import PinAction, change_pins
-from base_station.plan import read_plan
+from base_station.pins import book as pin_book
+from base_station.pins.book import PinAction, change_pins
 from base_station.positioning import Positioning
+from base_station.site.plan import read_plan
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages.station import (

@@ -56,7 +56,7 @@ def serve(
     }
     settings = _settle(config, flags)
     # Imported where needed: it takes its time, and a wrong setting is said before.
-    from base_station.app import run_station  # noqa: PLC0415
+    from base_station.app.live import run_station  # noqa: PLC0415
 
     run_station(settings, _announce)
 
@@ -73,7 +73,7 @@ def replay(
     """Show a past incident in a console of its own; the folder is only read."""
     flags = {"data": data, "http.listen": http, "insecure": insecure or None}
     settings = _settle(config, flags)
-    from base_station.app import run_replay_station  # noqa: PLC0415
+    from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
     run_replay_station(settings, incident, speed, _announce)
 
@@ -83,7 +83,7 @@ def rebuild(data: Path = Path("muster-data")) -> None:
     """Make the queryable tables again from the log; people and users are kept."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station import app as station  # noqa: PLC0415
+    from base_station.app import folder as station  # noqa: PLC0415
 
     with Progress(transient=True) as progress:
         task = progress.add_task("reading the log", total=1.0)
@@ -99,7 +99,7 @@ def forget(
     """Delete what is stored of a person or of everybody in an incident; the audit stays."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station import app as station  # noqa: PLC0415
+    from base_station.app import folder as station  # noqa: PLC0415
 
     with Progress(transient=True) as progress:
         task = progress.add_task("writing the log anew", total=1.0, start=False)
@@ -124,7 +124,7 @@ def smooth(
     """Work out an incident's trails again, from everything that is known afterwards."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station import app as station  # noqa: PLC0415
+    from base_station.app import folder as station  # noqa: PLC0415
 
     with ExitStack() as closing:
         past = station.look_back(data, incident, closing)
@@ -148,7 +148,7 @@ def assess(
     ] = None,
 ) -> None:
     """How good an incident's positions were, in the terms of ISO/IEC 18305."""
-    from base_station import app as station  # noqa: PLC0415
+    from base_station.app import folder as station  # noqa: PLC0415
     from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
 
     with ExitStack() as closing:
@@ -163,7 +163,7 @@ def assess(
 @users.command("list")
 def list_users(data: Path = Path("muster-data")) -> None:
     """Names and roles."""
-    from base_station.app import open_accounts  # noqa: PLC0415
+    from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
         for user in open_accounts(data, closing).users():
@@ -177,7 +177,7 @@ def add_user(
     data: Path = Path("muster-data"),
 ) -> None:
     """Add a user; the password is asked for, or read from standard input."""
-    from base_station.app import open_accounts  # noqa: PLC0415
+    from base_station.app.folder import open_accounts  # noqa: PLC0415
     from base_station.db.accounts import Role  # noqa: PLC0415
 
     with ExitStack() as closing:
@@ -187,7 +187,7 @@ def add_user(
 @users.command("password")
 def change_password(name: str, data: Path = Path("muster-data")) -> None:
     """Give a user a new password; their sessions and tokens end."""
-    from base_station.app import open_accounts  # noqa: PLC0415
+    from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
         open_accounts(data, closing).change_user(name, _ask_password(), None)
@@ -196,7 +196,7 @@ def change_password(name: str, data: Path = Path("muster-data")) -> None:
 @users.command("remove")
 def remove_user(name: str, data: Path = Path("muster-data")) -> None:
     """Remove a user with all sessions and tokens."""
-    from base_station.app import open_accounts  # noqa: PLC0415
+    from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
         open_accounts(data, closing).remove_user(name)

@@ -17,19 +17,19 @@ from dataclasses import dataclass
 
 import msgspec
 
-from base_station import command_book
 from base_station.api.wire import Snapshot
-from base_station.backfill import Report
+from base_station.commands import book as command_book
 from base_station.events import Refused
-from base_station.hearing import Heard, judge
-from base_station.keeping import Keeping
-from base_station.picture import Picture
+from base_station.journals.backfill import Report
+from base_station.journals.unit_journal import Held
+from base_station.live.hearing import Heard, judge
+from base_station.live.keeping import Keeping
+from base_station.live.picture import Picture
+from base_station.live.projector import Projector
+from base_station.live.self_watch import SelfWatch
+from base_station.live.sinks import ActionDone
+from base_station.live.surroundings import Record, Surroundings
 from base_station.pipeline import StationPipeline
-from base_station.projector import Projector
-from base_station.self_watch import SelfWatch
-from base_station.sinks import ActionDone
-from base_station.surroundings import Record, Surroundings
-from base_station.unit_journal import Held
 from shared.channels import OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode

@@ -12,11 +12,11 @@ from typing import Literal
 import msgspec
 
 from base_station.boot_state import BootState
-from base_station.command_state import SentCommand
+from base_station.commands.state import SentCommand
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.weather import Barometers
-from base_station.pins import Beacon, Pin, PinVerdict
-from base_station.plan import Plan, Ring
+from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.site.plan import Plan, Ring
 from shared.channels import GPS, NO_TRACKER, Channel
 from shared.clock import NS_PER_S
 from shared.geo import Anchor

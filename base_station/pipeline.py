@@ -11,11 +11,12 @@ from typing import assert_never
 
 import msgspec
 
-from base_station import accountability, command_book
+from base_station import accountability
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
-from base_station.command_state import SentCommand
+from base_station.commands import book as command_book
+from base_station.commands.state import SentCommand
 from base_station.events import (
     CommandTouched,
     Output,
@@ -31,8 +32,8 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, Fault, StationState, UnitState
+from base_station.pins.sightings import note_sighting
 from base_station.positioning import Positioning
-from base_station.sightings import note_sighting
 from base_station.thermal import dose_of
 from shared.channels import Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S

@@ -10,16 +10,16 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from base_station.floor_grid import FloorGrid
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Start
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
-from base_station.pin_book import has_pins, reframe_pins
-from base_station.pinned import PinnedUnits
-from base_station.plan import Plan, Ring
-from base_station.roaming import RADII_95, roamed_m
+from base_station.pins.book import has_pins, reframe_pins
+from base_station.pins.pinned import PinnedUnits
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import Plan, Ring
+from base_station.site.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position

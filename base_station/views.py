@@ -31,7 +31,8 @@ from base_station.api.wire import (
     UnitView,
 )
 from base_station.assessment.trust import trust_of
-from base_station.command_state import Delivery, SentCommand
+from base_station.commands.state import Delivery, SentCommand
+from base_station.live.sinks import PhotoUrls
 from base_station.live_state import (
     Alarm,
     Duty,
@@ -41,10 +42,9 @@ from base_station.live_state import (
     TrailStep,
     UnitState,
 )
-from base_station.pins import WAITING, Pin
-from base_station.plan import Ring
-from base_station.roaming import RADII_95, roamed_m
-from base_station.sinks import PhotoUrls
+from base_station.pins.pin import WAITING, Pin
+from base_station.site.plan import Ring
+from base_station.site.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import AlarmChange, AlarmState, FusedPosition, Heartbeat, Status

@@ -9,16 +9,16 @@ from typing import Self
 
 from base_station.alarms import ALARMS
 from base_station.api.wire import Delta, Snapshot
-from base_station.checkpoints import Checkpoints
-from base_station.downlink import Downlink
+from base_station.commands.downlink import Downlink
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.fusion import FUSERS
+from base_station.live.sinks import ActionDone, Projection
+from base_station.live.surroundings import Surroundings
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.playback import Archive
 from base_station.pipeline import Checkpoint, StationPipeline
-from base_station.playback import Archive
 from base_station.recorder import Recorder
-from base_station.sinks import ActionDone, Projection
-from base_station.surroundings import Surroundings
 from base_station.views import StationFacts
 from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of

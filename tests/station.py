@@ -20,7 +20,6 @@ from base_station.api.hub import Hub
 from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.api.wire import Delta, Snapshot
-from base_station.checkpoints import Checkpoints
 from base_station.db.accounts import Accounts, Role
 from base_station.db.models import Incident
 from base_station.db.projection import SqlProjection
@@ -28,10 +27,11 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import Output, Received, Refused
-from base_station.forgetting import ClosedLog, Forgetter
+from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.fusion import FUSERS
+from base_station.live.sinks import ActionDone, Projection
+from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
-from base_station.sinks import ActionDone, Projection
 from base_station.views import StationFacts, snapshot
 from shared.clock import Clock
 from shared.envelope import Stamper

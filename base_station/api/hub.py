@@ -14,7 +14,7 @@ from concurrent.futures import Future
 import msgspec
 
 from base_station.api.wire import Delta, HealthView, Snapshot
-from base_station.sinks import LiveSource
+from base_station.live.sinks import LiveSource
 
 QUEUE = 64  # messages a client may be behind, some three seconds
 
@@ -70,7 +70,7 @@ class Client:
 
 
 class Hub:
-    """A ``base_station.sinks.LiveSink`` with any number of clients."""
+    """A ``base_station.live.sinks.LiveSink`` with any number of clients."""
 
     def __init__(self) -> None:
         self._encoder = msgspec.json.Encoder()

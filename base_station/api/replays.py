@@ -13,7 +13,7 @@ from typing import Protocol
 from base_station.api.hub import Hub
 from base_station.api.wire import ReplayView
 from base_station.db.models import Incident
-from base_station.sinks import LiveSource
+from base_station.live.sinks import LiveSource
 from shared.errors import UserError
 
 MOST_REPLAYS = 8

@@ -18,10 +18,10 @@ from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
-from base_station.forgetting import Forgetter
-from base_station.hindsight import Hindsight
+from base_station.forgetting.forgetter import Forgetter
+from base_station.live.sinks import ActionDone, OperatorGate
+from base_station.past.hindsight import Hindsight
 from base_station.recordings.desk import RecordingDesk
-from base_station.sinks import ActionDone, OperatorGate
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
 from shared.messages.station import Action

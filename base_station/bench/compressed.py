@@ -17,15 +17,15 @@ from pathlib import Path
 from base_station.alarms import ALARMS
 from base_station.api.hub import Client, Hub
 from base_station.bench.units import Wearer
-from base_station.checkpoints import Checkpoints
 from base_station.data_folder import DataFolder
 from base_station.db.projection import SqlProjection
 from base_station.db.store import Store
 from base_station.drive import StationDrive
 from base_station.fusion import FUSERS
+from base_station.live.surroundings import Record, Surroundings
+from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
-from base_station.surroundings import Record, Surroundings
 from base_station.views import StationFacts
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock, SystemClock

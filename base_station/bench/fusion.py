@@ -37,12 +37,12 @@ from base_station.bench.incident_sensors import (
     reference_pa,
     walk_it,
 )
-from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
 from base_station.fusion.port import AirHeight, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.weather import Weather
-from base_station.plan import read_plan
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import read_plan
 from shared.geo import pressure_altitude_m
 
 Floats = NDArray[np.float64]

@@ -57,7 +57,8 @@ def bound_m2(truth: Truth, fixes: dict[int, PlaceFix], building: SteelBuilding) 
 def draw_errors_m(rng: np.random.Generator, bounds_m2: Floats) -> Floats:
     """Errors (n, 2) of an estimate that is as good as can be."""
     roots = np.linalg.cholesky(bounds_m2 + 1e-9 * np.eye(2))
-    return np.einsum("nij,nj->ni", roots, rng.normal(size=(len(roots), 2)))
+    drawn: Floats = np.einsum("nij,nj->ni", roots, rng.normal(size=(len(roots), 2)))
+    return drawn
 
 
 def _corrected(spread: Floats, building: SteelBuilding, place_m: Floats) -> Floats:

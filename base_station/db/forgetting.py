@@ -17,9 +17,9 @@ from base_station.db.models import (
     TrackPoint,
     UnitStart,
 )
-from base_station.erasure import Erasure, Wearing
+from base_station.forgetting.erasure import Erasure, Wearing
+from base_station.forgetting.redaction import name_pattern
 from base_station.live_state import FORGOTTEN
-from base_station.redaction import name_pattern
 
 # What these say is where somebody was.
 _PLACES = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})

@@ -21,7 +21,7 @@ from base_station.db.models import (
     Unit,
     UnitStart,
 )
-from base_station.sinks import Projection
+from base_station.live.sinks import Projection
 from shared.clock import NS_PER_S
 from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
 from shared.messages.station import (

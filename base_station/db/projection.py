@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from base_station.db.projecting import project_into
 from base_station.db.store import Store
-from base_station.sinks import Projection
+from base_station.live.sinks import Projection
 from shared.errors import StoreError
 
 PERIOD_S = 0.5
@@ -24,7 +24,7 @@ logger = logging.getLogger(__name__)
 
 
 class SqlProjection:
-    """A ``base_station.sinks.ProjectionSink`` on the store."""
+    """A ``base_station.live.sinks.ProjectionSink`` on the store."""
 
     def __init__(self, store: Store) -> None:
         self._store = store

@@ -13,7 +13,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.floor_grid import FloorGrid
 from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
@@ -25,6 +24,7 @@ from base_station.fusion.path_memory import OwnPlace, PathMemory
 from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
 from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
+from base_station.site.floor_grid import FloorGrid
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
 from shared.messages import Position

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import msgspec
 
-from base_station.floor_grid import FloorGrid
+from base_station.site.floor_grid import FloorGrid
 from shared.messages import Position
 from shared.quality import Quality
 

@@ -14,10 +14,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.floor_grid import FloorGrid
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
 from base_station.fusion.wall_cloud import SavedCloud, WallCloud
+from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 

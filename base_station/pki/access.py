@@ -1,7 +1,7 @@
 """Zenoh's access rules, made from the registry and the table of channels.
 
 Deny is the default, so a certificate without an entry, or with a revoked one, can do nothing.
-Zenoh reads the rules when the router opens; ``base_station.router`` reopens it on a change.
+Zenoh reads the rules when the router opens; ``base_station.router.router`` reopens it on a change.
 """
 
 from __future__ import annotations

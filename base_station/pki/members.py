@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Collection
 
+from base_station.live.sinks import OperatorGate
 from base_station.pki.folder import PkiFolder
-from base_station.sinks import OperatorGate
 from shared.enrolment import Holder
 from shared.errors import ConfigError, StoreError
 from shared.messages import STATION_ID

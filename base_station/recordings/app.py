@@ -14,7 +14,7 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.recordings.fetch import Fetch, FetchState, Wanted, ask_over
-from base_station.router import station_endpoint
+from base_station.router.router import station_endpoint
 from shared.bus_zenoh import ZenohBus
 from shared.clock import SystemClock
 from shared.errors import StoreError, UserError

@@ -18,7 +18,7 @@ from typing import TypeVar
 
 import msgspec
 
-from base_station.pace import Pace
+from base_station.journals.pace import Pace
 from shared.bus import Bus
 from shared.channels import ROOT
 from shared.clock import NS_PER_S, Clock

@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from threading import Lock
 from typing import NamedTuple
 
-from base_station.sinks import ActionDone, OperatorGate
+from base_station.live.sinks import ActionDone, OperatorGate
 from base_station.standby.places import BEGINNING, Place
 from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError

@@ -25,7 +25,7 @@ logger = logging.getLogger(__name__)
 _LOOK_EVERY_S = 1.0
 _TIMEOUT_S = 5.0
 _AUDIT_ENTRIES = 500
-_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting says it
+_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting.forgetter says it
 
 
 class KeptServer:

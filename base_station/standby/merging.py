@@ -13,7 +13,7 @@ from itertools import islice
 from pathlib import Path
 from threading import Event, Thread
 
-from base_station.sinks import OperatorGate
+from base_station.live.sinks import OperatorGate
 from base_station.standby.places import Record
 from base_station.standby.setting_aside import mark_told, parts, read_part
 from base_station.standby.words import Batch, key_of, pack, unpack

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from base_station.playback import is_decision
+from base_station.past.playback import is_decision
 from shared.mcap_log import is_derived
 
 Record = tuple[int, str, bytes]  # station time, key, payload

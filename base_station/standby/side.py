@@ -13,9 +13,10 @@ from base_station.config import StandbyConfig
 from base_station.db.kept import KeptTables
 from base_station.db.records import Records
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.live.sinks import OperatorGate
+from base_station.live.surroundings import Feed, Log
 from base_station.live_state import StationState
 from base_station.pki.folder import PkiFolder
-from base_station.sinks import OperatorGate
 from base_station.standby.confirming import LeadersGate
 from base_station.standby.kept_copy import KeptCopy, KeptServer
 from base_station.standby.merging import Merging, PartServer
@@ -23,7 +24,6 @@ from base_station.standby.pair import Around, Pair
 from base_station.standby.places import Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
-from base_station.surroundings import Feed, Log
 from shared.bus import Bus
 from shared.messages import STATION_ID
 

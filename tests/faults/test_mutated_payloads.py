@@ -12,11 +12,11 @@ from contextlib import closing, suppress
 from pathlib import Path
 
 from base_station.api.wire import HealthView
-from base_station.checkpoints import Checkpoints
 from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
-from base_station.playback import compare
-from base_station.surroundings import Record, Surroundings
+from base_station.live.surroundings import Record, Surroundings
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.playback import compare
 from base_station.views import StationFacts
 from edge.commands import CommandDesk
 from edge.journal_server import JournalServer

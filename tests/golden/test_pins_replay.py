@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.playback import compare
+from base_station.past.playback import compare
 from shared.channels import channel_of
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, Sighting, SightingKind

@@ -11,12 +11,12 @@ import msgspec
 import pytest
 import pytest_asyncio
 
-from base_station.checkpoints import Checkpoints
 from base_station.db.accounts import Role
 from base_station.db.smoothed import SmoothedTracks
 from base_station.fusion.smoother import SMOOTHERS
-from base_station.hindsight import Hindsight
-from base_station.playback import Archive
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from base_station import downlink
-from base_station.command_state import Order
-from base_station.downlink import Downlink
-from base_station.playback import compare
+from base_station.commands import downlink
+from base_station.commands.downlink import Downlink
+from base_station.commands.state import Order
+from base_station.past.playback import compare
 from edge.commands import CommandDesk
 from shared.bus import Subscription
 from shared.bus_memory import MemoryBus, MemoryRouter

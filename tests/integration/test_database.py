@@ -18,7 +18,7 @@ from base_station.db.projection import SqlProjection
 from base_station.db.records import FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
 from base_station.db.store import Store, copy_database
-from base_station.sinks import Projection
+from base_station.live.sinks import Projection
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.errors import StoreError

@@ -13,8 +13,8 @@ import msgspec
 import pytest
 from PIL import Image
 
-from base_station import app as station_app
 from base_station.api.photos import clean_photo
+from base_station.app import folder as station_app
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Role
 from base_station.db.models import Person
@@ -22,7 +22,7 @@ from base_station.db.records import FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import Received, event_of
-from base_station.forgetting import Forgetter
+from base_station.forgetting.forgetter import Forgetter
 from base_station.live_state import FORGOTTEN, Alarm
 from shared.channels import Direction, channel_of
 from shared.clock import ManualClock, SystemClock

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.router import Router
+from base_station.router.router import Router
 from tests.station_command import free_port, wait_until
 
 LOOKS = 9  # more than a router waits before it opens again

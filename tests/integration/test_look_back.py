@@ -9,7 +9,7 @@ import msgspec
 import pytest
 from typer.testing import CliRunner
 
-from base_station import app as station_app
+from base_station.app import folder as station_app
 from base_station.cli import app
 from shared.clock import NS_PER_S
 from shared.errors import UserError

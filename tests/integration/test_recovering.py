@@ -8,11 +8,11 @@ from pathlib import Path
 import httpx
 import pytest
 
-from base_station import recovering as module
 from base_station.config import HttpConfig
-from base_station.recovering import recovering
+from base_station.live import recovering as module
+from base_station.live.recovering import recovering
+from base_station.live.surroundings import Record
 from base_station.server import bind
-from base_station.surroundings import Record
 from shared.mcap_log import SegmentInfo, SegmentState
 
 SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)

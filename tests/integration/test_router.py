@@ -16,8 +16,8 @@ import psutil
 import pytest
 
 from base_station.pki.folder import PkiFolder
-from base_station.router import Router, station_endpoint
-from base_station.router_process import RouterProcess
+from base_station.router.process import RouterProcess
+from base_station.router.router import Router, station_endpoint
 from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos
 from shared.enrolment import Enrolment
@@ -108,7 +108,7 @@ def test_it_ends_when_its_parent_is_killed(
 ) -> None:
     script = (
         "import sys, time; from pathlib import Path\n"
-        "from base_station.router_process import RouterProcess\n"
+        "from base_station.router.process import RouterProcess\n"
         "print(RouterProcess(Path(sys.argv[1]), (sys.argv[2],)).pid, flush=True)\n"
         "time.sleep(600)\n"
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.playback import compare
+from base_station.past.playback import compare
 from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
 from shared.codec import encode
 from shared.errors import StoreError

@@ -7,7 +7,7 @@ from collections import Counter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from base_station.command_book import unanswered
+from base_station.commands.book import unanswered
 from edge.commands import CommandDesk
 from shared.channels import COMMAND
 from shared.clock import NS_PER_S, ManualClock

@@ -11,10 +11,10 @@ import pytest
 from base_station.bench.fusion import Floats, Person, Run, Timing, draw_incident, fuse
 from base_station.bench.incident_scores import CHI2_95_2DOF
 from base_station.bench.incident_sensors import position_of
-from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind, Start
-from base_station.plan import read_plan
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import read_plan
 
 PEOPLE = 3
 

@@ -15,7 +15,7 @@ from base_station.assessment.figures import (
 from base_station.assessment.trust import trust_of
 from base_station.db.records import TrackSample
 from base_station.live_state import StationState, UnitState
-from base_station.pins import Pin, PinVerdict
+from base_station.pins.pin import Pin, PinVerdict
 from shared.messages import FusedPosition, Header
 from shared.quality import Quality
 

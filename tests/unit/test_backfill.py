@@ -9,9 +9,9 @@ from typing import cast
 
 import pytest
 
-from base_station.backfill import AT_ONCE, Backfill
-from base_station.pace import LEAST_BYTES
-from base_station.unit_journal import Held
+from base_station.journals.backfill import AT_ONCE, Backfill
+from base_station.journals.pace import LEAST_BYTES
+from base_station.journals.unit_journal import Held
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
 from shared.bus import Bus, ReplyHandler

@@ -17,9 +17,9 @@ from base_station.bench.fusion import (
     fuse,
 )
 from base_station.bench.incident_people import LASTS_S
-from base_station.floor_grid import FloorGrid
 from base_station.fusion import FUSERS
-from base_station.plan import read_plan
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import read_plan
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 
-from base_station.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints
+from base_station.past.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints
 from shared.clock import NS_PER_S
 from tests.live_station import make_pipeline
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from base_station.command_book import CLOSED_KEPT, MOST_OPEN, unanswered
+from base_station.commands.book import CLOSED_KEPT, MOST_OPEN, unanswered
 from base_station.events import CommandTouched, Refused
 from shared.channels import REPLY, backfilled_key
 from shared.codec import encode

@@ -8,8 +8,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.floor_grid import FloorGrid
-from base_station.plan import Ring, read_plan
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import Ring, read_plan
 
 
 def plan_of(*features: tuple[str, list[list[float]]]) -> bytes:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from base_station.checkpoints import Checkpoints
 from base_station.db.models import Incident
 from base_station.db.projecting import project_into
 from base_station.db.records import Records, TrackSample
@@ -17,9 +16,10 @@ from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
 from base_station.exporters.incident import incident_tracks
 from base_station.fusion.smoother import SMOOTHERS
-from base_station.hindsight import Hindsight
-from base_station.playback import Archive
-from base_station.rebuild import project_log
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
+from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
 from shared.messages.station import CloseIncident
 from tests.live_station import make_pipeline

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.pace import LEAST_BYTES, MOST_BYTES, Pace
+from base_station.journals.pace import LEAST_BYTES, MOST_BYTES, Pace
 from shared.clock import NS_PER_S
 
 

@@ -52,10 +52,11 @@ def test_a_start_that_is_said_before_anybody_speaks_holds_once_they_do() -> None
     script = Script()
     script.register("FF-01")
     script.act(StartTogether("s", ("FF-01",), 0, -30.0, 9.0, 1.0, None, None, 0.3, ""))
-    assert script.pipeline.state.pin_verdicts["s:FF-01"].state == "waiting"
+    verdicts = [script.pipeline.state.pin_verdicts["s:FF-01"].state]
     script.position("FF-01", 0.0, 0.0)
     fused = script.pipeline.state.units["FF-01"].fused
-    assert script.pipeline.state.pin_verdicts["s:FF-01"].state == "used"
+    verdicts.append(script.pipeline.state.pin_verdicts["s:FF-01"].state)
+    assert verdicts == ["waiting", "used"]
     assert fused is not None
     assert (fused.north_m, fused.east_m) == pytest.approx((-30.0, 9.0), abs=0.1)
 

@@ -6,9 +6,9 @@ from concurrent.futures import Future
 
 import pytest
 
+from base_station.live.sinks import ActionDone
 from base_station.pki.folder import PkiFolder
 from base_station.pki.members import EnrolledUnits
-from base_station.sinks import ActionDone
 from shared.messages.station import Action, RegisterUnit
 
 

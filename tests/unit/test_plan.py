@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from base_station.plan import Plan, read_plan
+from base_station.site.plan import Plan, read_plan
 from shared.errors import UserError
 
 HOUSE = {

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from base_station.api.wire import Snapshot
-from base_station.checkpoints import Checkpoints
-from base_station.playback import Archive, Playback, Record
-from base_station.replay import ReplaySession, Window
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.playback import Archive, Playback, Record
+from base_station.past.replay import ReplaySession, Window
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import UserError
 from shared.messages import EventKind

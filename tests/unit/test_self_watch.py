@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.self_watch import WELL_AFTER, SelfWatch
+from base_station.live.self_watch import WELL_AFTER, SelfWatch
 from shared.messages.station import ReportProblem
 
 FULL = {"log": "the disk is full"}

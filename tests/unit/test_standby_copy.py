@@ -10,8 +10,8 @@ import pytest
 
 from base_station.data_folder import DataFolder
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.live.sinks import ActionDone
 from base_station.recorder import Recorder
-from base_station.sinks import ActionDone
 from base_station.standby.confirming import LeadersGate, OtherCopy
 from base_station.standby.following import Follower, Leader
 from base_station.standby.places import BEGINNING, Place, events_behind

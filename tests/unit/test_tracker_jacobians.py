@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from edge.tracker.error_model import (
     ACCEL_BIAS,
@@ -34,6 +37,9 @@ from edge.tracker.strapdown import (
     rotate_navigation,
     rotation_matrix,
 )
+
+Floats = NDArray[np.float64]
+Interval = tuple[Floats, Floats, Floats, float, float]  # what a transition is made of
 
 DT_S = 1e-3
 STEP = 1e-6
@@ -71,7 +77,7 @@ def _perturbed(state, error):
     }
 
 
-def _advanced(state):
+def _advanced(state: dict[str, Any]) -> tuple[Floats, Floats, Floats, float, Interval]:
     position, velocity = state["position"].copy(), state["velocity"].copy()
     quaternion, rotation, force = state["quaternion"].copy(), np.eye(3), np.zeros(3)
     accel, gyro = state["accel"] - state["accel_bias"], state["gyro"] - state["gyro_bias"]
@@ -82,7 +88,7 @@ def _advanced(state):
     # What a turned walk adds to the position is added in the frame of the walk.
     moved = DT_S * velocity
     position += np.cross([0.0, 0.0, state["turn"]], moved)
-    excursion = DT_S * np.linalg.norm(state["gyro"])
+    excursion = DT_S * float(np.linalg.norm(state["gyro"]))
     yawed_rad = 0.3 * excursion
     turn = state["turn"] + state["drift"] * excursion + state["turn_scale"] * yawed_rad
     return position, velocity, quaternion, turn, (rotation, moved, force, excursion, yawed_rad)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.unit_journal import Held, Question, UnitJournal
+from base_station.journals.unit_journal import Held, Question, UnitJournal
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 

@@ -10,7 +10,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Administrator
 from base_station.api.services import Services, Station
-from base_station.forgetting import Forgetter, Forgotten
+from base_station.forgetting.forgetter import Forgetter, Forgotten
 
 router = APIRouter(tags=["forgetting"])
 

@@ -13,7 +13,7 @@ from base_station.api.forms import Form
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Station
-from base_station.plan import read_plan
+from base_station.site.plan import read_plan
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 

@@ -17,7 +17,7 @@ from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.db import models
 from base_station.db.records import TrackSample
-from base_station.hindsight import Hindsight, Tracks
+from base_station.past.hindsight import Hindsight, Tracks
 from shared.clock import NS_PER_S
 
 router = APIRouter(tags=["tracks"])

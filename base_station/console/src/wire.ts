@@ -230,7 +230,7 @@ export interface AnchorView {
   plan_rotation_rad: number;
 }
 
-/** GeoJSON whose coordinates are `[east_m, north_m]` in the incident frame; `base_station/plan.py`
+/** GeoJSON whose coordinates are `[east_m, north_m]` in the incident frame; `base_station/site/plan.py`
  * says more. */
 export interface Plan extends FeatureCollection {
   muster: { frame: "site-m"; name?: string; floors?: PlanFloor[] };

@@ -1,0 +1,1 @@
+"""The composition roots: only here are concrete parts chosen."""

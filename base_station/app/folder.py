@@ -1,0 +1,110 @@
+"""What commands do with a station's folder, beside a running station or without one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from base_station.app.parts import incident_or_refuse, new_pipeline, project_whole_log
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Accounts
+from base_station.db.models import Incident
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
+from base_station.db.store import Store
+from base_station.feed import LogFeed
+from base_station.forgetting.forgetter import ClosedLog, Forgetter, Forgotten
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
+from shared.clock import SystemClock
+from shared.errors import StoreError, UserError
+from shared.mcap_log import recover_log
+
+_BY_COMMAND = "muster base forget"  # in the audit
+
+
+@dataclass(frozen=True)
+class LookBack:
+    """What commands about a past incident work with."""
+
+    hindsight: Hindsight
+    records: Records
+    incident: Incident
+
+
+def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
+    """Make the projections of a folder again; no station may be running on it.
+
+    ``on_progress`` hears the fraction done.  Gives the number of log records.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        with Store(folder.database) as store:
+            Records(store, SystemClock()).forget_projections()
+            return project_whole_log(store, folder.log, on_progress)
+    finally:
+        lock.close()
+
+
+def forget(
+    data: Path, what: str, confirm: Callable[[str], None], on_progress: Callable[[float], None]
+) -> Forgotten:
+    """Forget a person (id or name) or an incident (id) in a folder that no station runs on.
+
+    ``confirm`` gets what it will be about and may raise.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        recover_log(folder.log)
+        with Store(folder.database) as store:
+            clock = SystemClock()
+            records, roster = Records(store, clock), Roster(store, clock)
+            forgetter = Forgetter(
+                ClosedLog(folder.log), store, Checkpoints(folder.checkpoints), records, clock
+            )
+            incident = records.incident(what)
+            if incident is not None:
+                confirm(f"incident {incident.name!r} of {what}")
+                return forgetter.incident(_BY_COMMAND, what, on_progress)
+            named = [one.person_id for one in roster.people() if what in (one.name, one.person_id)]
+            if len(named) > 1:
+                raise UserError(f"{len(named)} people are called {what}: give one of {named}")
+            person_id = named[0] if named else what
+            confirm(f"person {what}")
+            return forgetter.person(_BY_COMMAND, person_id, on_progress)
+    finally:
+        lock.close()
+
+
+def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
+    """A past incident, beside a running station or without one."""
+    folder = DataFolder(data)
+    folder.require()
+    store = closing.enter_context(Store(folder.database))
+    clock = SystemClock()
+    records = Records(store, clock)
+    incident = incident_or_refuse(records, incident_id)
+    archive = Archive(LogFeed(folder.log).records, Checkpoints(folder.checkpoints), new_pipeline)
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
+    return LookBack(hindsight, records, incident)
+
+
+def open_accounts(data: Path, closing: ExitStack) -> Accounts:
+    """The accounts of a folder's database, beside a running station or without one."""
+    database = DataFolder(data).database
+    if not database.exists():
+        raise StoreError(
+            f"there is no station's database in {data}; give the folder with --data, or start the "
+            "station there once"
+        )
+    store = closing.enter_context(Store(database))
+    return Accounts(store, SystemClock())

@@ -1,0 +1,311 @@
+"""Puts the live station together from its parts, runs it, and takes it apart."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from base_station import collector
+from base_station.api.app import create_app
+from base_station.api.hub import Hub
+from base_station.api.replays import Replays
+from base_station.api.services import Services
+from base_station.app.folder import rebuild
+from base_station.app.parts import (
+    Announce,
+    announce_first_login,
+    new_pipeline,
+    project_whole_log,
+    replay_starter,
+)
+from base_station.clock_server import ClockServer
+from base_station.commands.downlink import Downlink
+from base_station.config import StationConfig, host_and_port
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Accounts
+from base_station.db.kept import KeptTables
+from base_station.db.projection import SqlProjection
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
+from base_station.db.store import Store
+from base_station.drive import StationDrive
+from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.forgetting.forgetter import Forgetter
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.journals.backfill import Backfill, Report
+from base_station.live.recovering import Watch, recovering
+from base_station.live.surroundings import Surroundings
+from base_station.live_state import StationState
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
+from base_station.pki.expiry import ExpiryWatch
+from base_station.pki.folder import PkiFolder
+from base_station.pki.members import EnrolledUnits
+from base_station.recorder import Recorder
+from base_station.recordings.desk import RecordingDesk
+from base_station.recordings.fetch import ask_over
+from base_station.router.process import RouterProcess
+from base_station.router.router import station_endpoint
+from base_station.segment_index import SegmentIndex
+from base_station.server import ConsoleServer, bind, serve_until_stopped
+from base_station.standby.places import Place
+from base_station.standby.setting_aside import set_aside
+from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
+from base_station.views import StationFacts
+from shared.bus_zenoh import ZenohBus
+from shared.channels import ROOT, clock_key
+from shared.clock import Clock, SystemClock
+from shared.envelope import Stamper
+from shared.errors import UserError
+from shared.mcap_log import SegmentPolicy
+from shared.messages import STATION_ID
+
+_BY_OTHER_STATION = "the other station"
+_log = logging.getLogger(__name__)
+
+
+class _Again(NamedTuple):
+    """The station is to start anew, as the standby of another one."""
+
+    cut: Place | None  # behind which the log goes its own way
+
+
+def run_station(config: StationConfig, announce: Announce) -> None:
+    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    collector.relax()
+    while (again := _run_once(config, announce)) is not None:
+        if again.cut is not None:
+            announce("what the other station does not have is set aside, and handed to it")
+            _set_aside(config.data, again.cut)
+
+
+def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
+    joining = station_endpoint(config.data, config.bus.listen)  # refuses before anything is made
+    clock = SystemClock()
+    with ExitStack() as closing:
+        folder = DataFolder(config.data)
+        recorder = Recorder(
+            folder.path, clock, SegmentPolicy(config.log.segment_s, config.log.flush_every_s)
+        )
+        closing.callback(recorder.close)
+        listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+        store = _open_store(folder, recorder, announce, closing)
+        accounts, records = Accounts(store, clock), Records(store, clock)
+        roster, hub = Roster(store, clock), Hub()
+        projection = SqlProjection(store)
+        closing.callback(projection.close)
+        steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
+        feed = LiveFeed(steady)
+        router = RouterProcess(folder.path, config.bus.listen, config.standby.peer)
+        closing.callback(router.close)
+        bus = ZenohBus(joining)
+        closing.callback(bus.close)
+        again: list[_Again] = []
+
+        def start_again(cut: Place | None) -> None:
+            again.append(_Again(cut))
+            server.stop()
+
+        pki = PkiFolder(folder.path)
+        side = _side(
+            config,
+            Parts(
+                data=folder.path,
+                bus=bus,
+                log=recorder,
+                disk=LogFeed(folder.log, recorder.flush),
+                live=feed,
+                clock=steady,
+                tables=KeptTables(store),
+                records=records,
+                pki=pki,
+                on_people=roster.read_again,
+                on_lead=lambda: announce_first_login(accounts, folder.first_login, announce),
+                start_again=start_again,
+                forget=lambda what: _forget_too(
+                    Forgetter(recorder, store, checkpoints, records, steady), what
+                ),
+            ),
+        )
+        hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
+        recordings = _beside_messages(bus, folder, steady, side, closing)
+        backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
+        downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
+
+        def report(held: Report) -> None:
+            side.note_report()
+            backfill.report(held)
+
+        checkpoints = Checkpoints(folder.checkpoints)
+        expiry = ExpiryWatch(pki, clock)
+        drive = _start_drive(
+            LogFeed(folder.log, recorder.flush),
+            Surroundings(
+                feed=side.feed,
+                log=side.log,
+                live=hub,
+                projection=projection,
+                checkpoints=checkpoints,
+                photo_urls=roster.photo_url,
+                facts=lambda: msgspec.structs.replace(
+                    _facts(config, recorder, feed, router, expiry, side),
+                    recordings=recordings.views(),
+                ),
+                clock=steady,
+                boot_id=secrets.randbits(63),
+                report=report,
+                say=lambda orders: downlink.report(orders if side.leads else ()),
+            ),
+            side.begin,
+            recovering(recorder.segments(), listening, config.http, announce),
+        )
+        gate = side.gate_to(drive)
+        beside = closing.enter_context(ExitStack())  # ends behind the drive: the other gets all
+        closing.callback(drive.stop)
+        closing.callback(hearing.close)  # first: what still comes is stepped before the end
+        backfill.start()
+        closing.callback(backfill.close)
+        downlink.start()
+        closing.callback(downlink.close)
+        closing.callback(side.feed.close)
+        archive = Archive(LogFeed(folder.log, recorder.flush).records, checkpoints, new_pipeline)
+        services = Services(
+            accounts=accounts,
+            roster=roster,
+            records=records,
+            hub=hub,
+            gate=gate,
+            settle=projection.flush,
+            replays=Replays(replay_starter(archive, roster, steady)),
+            forgetter=Forgetter(recorder, store, checkpoints, records, steady, drive.submit),
+            clock=steady,
+            secure=config.http.certificate is not None,
+            standing=side.standing,
+            recordings=recordings,
+            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), steady),
+            accountability=config.accountability,
+        )
+        app = create_app(services, started=lambda loop: hub.connect(loop, drive))
+        keep_house = _housekeeping(
+            recorder, services, EnrolledUnits(pki, gate, roster.registered_units), side
+        )
+        server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
+        side.start(gate, beside)
+        asyncio.run(serve_until_stopped(server, announce, keep_house))
+        return again[0] if again else None
+
+
+def _open_store(
+    folder: DataFolder, recorder: Recorder, announce: Announce, closing: ExitStack
+) -> Store:
+    is_new = not folder.database.exists()
+    store = closing.enter_context(Store(folder.database))
+    if is_new and recorder.segments():
+        announce("the database is new; it is made again from the log")
+        project_whole_log(store, folder.log, lambda _: None)
+    return store
+
+
+def _housekeeping(
+    recorder: Recorder, services: Services, enrolled: EnrolledUnits, side: Side
+) -> Callable[[], None]:
+    records, hindsight = services.records, services.hindsight
+    index = SegmentIndex(records, {one.path: str(one) for one in recorder.recoveries})
+
+    def keep_house() -> None:
+        index.update(recorder.segments())
+        if side.leads:
+            enrolled.update()
+        if hindsight is not None:
+            hindsight.catch_up(records.incidents())
+
+    return keep_house
+
+
+def _start_drive(
+    log: LogFeed,
+    surroundings: Surroundings,
+    begin: Callable[[tuple[int, int], StationState], None],
+    recovery: AbstractContextManager[Watch],
+) -> StationDrive:
+    """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
+    saved = surroundings.checkpoints.latest()
+    pipeline = new_pipeline(saved.pipeline if saved else None)
+    drive = StationDrive(pipeline, surroundings)
+    place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+    with recovery as watched:
+        stepped = drive.rebuild(watched(log.records(place[0])), place)
+    _log.info("live state from the log: %d events after the checkpoint", stepped)
+    begin(drive.place, pipeline.state)
+    drive.start()
+    return drive
+
+
+def _forget_too(forgetter: Forgetter, what: str) -> None:
+    """The active station has forgotten this, and its log is this one's.  What is to go from memory
+    comes as actions of that log.
+    """
+    kind, _, one = what.partition(" ")
+    try:
+        (forgetter.person if kind == "person" else forgetter.incident)(_BY_OTHER_STATION, one)
+    except UserError as error:
+        _log.info("nothing to forget here: %s", error)
+
+
+def _side(config: StationConfig, parts: Parts) -> Side:
+    return OneOfTwo(config.standby, parts) if config.standby.name else OnlyStation(parts)
+
+
+def _set_aside(data: Path, place: Place) -> None:
+    """What is queried must not know either of what is cut from the log."""
+    folder = DataFolder(data)
+    lock = folder.lock()
+    try:
+        set_aside(folder, place)
+    finally:
+        lock.close()
+    rebuild(data, _ignore)
+
+
+def _beside_messages(
+    bus: ZenohBus, folder: DataFolder, clock: Clock, side: Side, closing: ExitStack
+) -> RecordingDesk:
+    """What units ask for, and are asked for, beside their messages and journals."""
+    clock_server = ClockServer(clock, lambda: side.leads)
+    closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
+    return closing.enter_context(RecordingDesk(ask_over(bus), folder.recordings, clock))
+
+
+def _facts(
+    config: StationConfig,
+    recorder: Recorder,
+    feed: LiveFeed,
+    router: RouterProcess,
+    expiry: ExpiryWatch,
+    side: Side,
+) -> StationFacts:
+    problems = [*config.standing_problems(), *expiry.problems(), *side.problems()]
+    if not router.is_open:
+        problems.append("The bus's router is away and is started again; no unit is linked")
+    if feed.overflowed:
+        problems.append(f"{feed.overflowed} messages came faster than this machine can take them")
+    return StationFacts(
+        problems=tuple(problems),
+        log_bytes=recorder.log_bytes,
+        disk_free_bytes=recorder.disk_free_bytes,
+        insecure=bool(config.plain_endpoints()),
+        standby=None if side.standing is None else side.standing.view(),
+    )
+
+
+def _ignore(_: object) -> None:
+    return None

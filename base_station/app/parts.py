@@ -1,0 +1,79 @@
+"""What more than one composition is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from base_station.alarms import ALARMS
+from base_station.api.hub import Hub
+from base_station.api.replays import StartReplay
+from base_station.db.accounts import Accounts
+from base_station.db.models import Incident
+from base_station.db.projecting import project_into
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.store import Store
+from base_station.feed import LogFeed
+from base_station.first_login import USERNAME, ensure_administrator
+from base_station.fusion import FUSERS
+from base_station.live.sinks import Projection
+from base_station.past.playback import Archive
+from base_station.past.rebuild import project_log
+from base_station.past.replay import ReplaySession, Window
+from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.segment_index import SegmentIndex
+from shared.clock import Clock, SystemClock
+from shared.errors import UserError
+from shared.mcap_log import SegmentReader, segment_paths
+
+Announce = Callable[[str], None]
+
+
+def new_pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
+    return StationPipeline(ALARMS, FUSERS[0], checkpoint)
+
+
+def replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartReplay:
+    def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
+        end_ns = incident.closed_ns or clock.utc_ns()
+        window = Window(incident.incident_id, incident.opened_ns, end_ns)
+        return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
+
+    return start
+
+
+def announce_first_login(accounts: Accounts, note: Path, announce: Announce) -> None:
+    password = ensure_administrator(accounts, note)
+    if password is not None:
+        announce(f"first login: {USERNAME}  password: {password}  (also in {note})")
+
+
+def incident_or_refuse(records: Records, incident_id: str) -> Incident:
+    incident = records.incident(incident_id)
+    if incident is None:
+        known = ", ".join(f"{one.incident_id} ({one.name})" for one in records.incidents())
+        raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+    return incident
+
+
+def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
+    segments = []
+    for path in segment_paths(log):
+        with SegmentReader(path) as reader:
+            segments.append(reader.info())
+    start_ns = min((one.start_ns for one in segments if one.messages), default=0)
+    span_ns = max(max((one.end_ns for one in segments), default=0) - start_ns, 1)
+
+    def write(projection: Projection) -> None:
+        with store.write() as session:
+            project_into(session, (projection,))
+
+    count = project_log(
+        LogFeed(log).records(),
+        new_pipeline(None),
+        write,
+        lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
+    )
+    SegmentIndex(Records(store, SystemClock()), {}).update(segments)
+    return count

@@ -1,0 +1,86 @@
+"""Puts together a station that shows one past incident and writes nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from base_station.api.app import create_app
+from base_station.api.hub import Hub
+from base_station.api.replays import Replays
+from base_station.api.services import Services
+from base_station.app.parts import (
+    Announce,
+    announce_first_login,
+    incident_or_refuse,
+    new_pipeline,
+    project_whole_log,
+    replay_starter,
+)
+from base_station.config import StationConfig, host_and_port
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Accounts
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
+from base_station.db.store import Store, copy_database
+from base_station.feed import LogFeed
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
+from base_station.past.read_only import ReadOnlyGate
+from base_station.server import ConsoleServer, bind, serve_until_stopped
+from shared.clock import SystemClock
+
+
+def run_replay_station(
+    config: StationConfig, incident_id: str, speed: float, announce: Announce
+) -> None:
+    """A station that shows one past incident, and writes nothing to the folder.
+
+    A live station may be running on it: the database is copied first.
+    """
+    clock = SystemClock()
+    folder = DataFolder(config.data)
+    folder.require()
+    with ExitStack() as closing:
+        scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-replay-")))
+        listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+        copy_database(folder.database, scratch / "station.sqlite")
+        store = closing.enter_context(Store(scratch / "station.sqlite"))
+        accounts, records = Accounts(store, clock), Records(store, clock)
+        roster, hub = Roster(store, clock), Hub()
+        if not records.incidents():
+            announce("the folder has no database; it is made from the log for this replay")
+            project_whole_log(store, folder.log, lambda _: None)
+        incident = incident_or_refuse(records, incident_id)
+        announce_first_login(accounts, scratch / "first-login.txt", announce)
+
+        saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
+        archive = Archive(LogFeed(folder.log).records, Checkpoints(saved), new_pipeline)
+        replays = Replays(replay_starter(archive, roster, clock))
+        services = Services(
+            accounts=accounts,
+            roster=roster,
+            records=records,
+            hub=hub,
+            gate=ReadOnlyGate(),
+            settle=lambda: None,
+            replays=replays,
+            forgetter=None,
+            clock=clock,
+            secure=config.http.certificate is not None,
+            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
+        )
+        app = create_app(
+            services, started=lambda loop: _ignore(replays.open(incident, speed, loop, hub))
+        )
+        server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
+        asyncio.run(serve_until_stopped(server, announce))
+
+
+def _ignore(_: object) -> None:
+    return None

@@ -1,0 +1,1 @@
+"""Commands to the units: their life, and saying them until they are answered."""

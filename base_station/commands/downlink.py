@@ -1,0 +1,110 @@
+"""Says commands to the units, again and again, until they answer or time is over.
+
+The drive says once a second, and at once when there is a new one, which commands no unit has
+answered (``report``); a thread of this module puts them on the bus.  The station hears itself
+there like anybody else, and so the log has every time that a command was sent.  Nothing is sent
+towards a unit that is away: it is told as soon as it is back.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from threading import Condition, Thread
+
+from base_station.commands.state import Order
+from shared.bus import Bus
+from shared.channels import COMMAND
+from shared.clock import NS_PER_S, Clock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.messages import Command
+
+logger = logging.getLogger(__name__)
+
+_AGAIN_AFTER_NS = 2 * NS_PER_S  # a reply takes a second on a bad link
+_LOOK_EVERY_S = 0.2  # whether a unit is back
+
+
+class Downlink:
+    """``start`` it with a bus; ``report`` may be called from any thread and never waits.
+
+    ``stamper`` is this module's own; ``clock`` gives station time.
+    """
+
+    def __init__(self, bus: Bus, stamper: Stamper, clock: Clock) -> None:
+        self._bus = bus
+        self._stamper = stamper
+        self._clock = clock
+        self._said_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
+        self._news = Condition()
+        self._orders: Sequence[Order] = ()
+        self._changed = False
+        self._closed = False
+        self._failing = False
+        self._thread = Thread(target=self._run, name="downlink", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def report(self, orders: Sequence[Order]) -> None:
+        """Say what no unit has answered; what was said before is forgotten."""
+        with self._news:
+            self._orders = orders
+            self._changed = True
+            self._news.notify()
+
+    def close(self) -> None:
+        with self._news:
+            self._closed = True
+            self._news.notify()
+        self._thread.join()
+
+    def _run(self) -> None:
+        orders: Sequence[Order] = ()
+        while True:
+            with self._news:
+                self._news.wait_for(
+                    lambda: self._changed or self._closed, _LOOK_EVERY_S if orders else None
+                )
+                if self._closed:
+                    return
+                orders, self._changed = self._orders, False
+            self._try(orders)
+
+    def _try(self, orders: Sequence[Order]) -> None:
+        """No failure may end the thread: the next look tries again."""
+        try:
+            self._say_all(orders)
+        except Exception:
+            if not self._failing:
+                logger.exception("commands cannot be sent; trying again")
+            self._failing = True
+        else:
+            self._failing = False
+
+    def _say_all(self, orders: Sequence[Order]) -> None:
+        now_ns = self._clock.monotonic_ns()
+        said_ns = {}
+        for order in orders:
+            key = COMMAND.key(order.unit_id)
+            if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
+                continue  # what is forgotten here is said at once when the unit is back
+            name = order.unit_id, order.command_id
+            before_ns = self._said_ns.get(name)
+            if before_ns is None or now_ns - before_ns >= _AGAIN_AFTER_NS:
+                self._bus.publish(key, encode(self._command(order)), COMMAND.qos)
+                before_ns = now_ns
+            said_ns[name] = before_ns
+        self._said_ns = said_ns
+
+    def _command(self, order: Order) -> Command:
+        return Command(
+            header=self._stamper.header(),
+            command_id=order.command_id,
+            kind=order.kind,
+            issued_by=order.issued_by,
+            expires_utc_ns=order.expires_ns,
+            text=order.text,
+            position_rate_hz=order.position_rate_hz,
+        )

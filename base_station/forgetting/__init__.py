@@ -1,0 +1,1 @@
+"""Forgets people and incidents wherever the station keeps them."""

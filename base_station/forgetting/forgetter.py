@@ -1,0 +1,182 @@
+"""Forgets a person, or everybody in one incident: in the log, the database and the checkpoints.
+
+The log goes first: interrupted, the whole is done again and ends as it would have.  What the
+units' own journals and black boxes hold, what was exported and what another station holds is
+beyond this station's reach: docs/security.md says what to do about it.
+"""
+
+from __future__ import annotations
+
+import logging
+import shutil
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+
+from base_station.data_folder import DataFolder
+from base_station.db.forgetting import forget_in, known_names
+from base_station.db.records import Records
+from base_station.db.store import Store
+from base_station.events import Received, event_of
+from base_station.forgetting.erasure import Clocks, Erasure, erasure_of_incident, erasure_of_person
+from base_station.forgetting.redaction import Redactor
+from base_station.past.checkpoints import Checkpoints
+from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
+from shared.clock import Clock
+from shared.errors import UserError
+from shared.mcap_log import read_log, remove_torn, rewrite_segment, segment_paths
+from shared.messages import STATION_ID
+from shared.messages.station import Action, ForgetWearers
+
+_log = logging.getLogger(__name__)
+Progress = Callable[[float], None]  # hears the fraction done
+
+
+class LogFiles(Protocol):
+    """The log as files; a station that runs goes on in a new one."""
+
+    @property
+    def folder(self) -> Path:
+        """Where the segments are."""
+        ...
+
+    def complete_segments(self) -> Collection[Path]:
+        """In order; none of them is written to from now on, and none is missing."""
+        ...
+
+    def note_rewritten(self, path: Path) -> None:
+        """This segment has another content now."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Forgotten:
+    """What became of it."""
+
+    what: str  # "person 1f.." or "incident 20..", for the audit
+    records: int  # of the log that changed or went
+    files: int  # that were written anew or removed
+
+    def __str__(self) -> str:
+        return f"{self.what}: {self.records} records of the log in {self.files} files"
+
+
+class ClosedLog:
+    """The log of a folder that no station runs on."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def complete_segments(self) -> Collection[Path]:
+        return segment_paths(self.folder)
+
+    def note_rewritten(self, path: Path) -> None:
+        """Nobody remembers what was in it."""
+
+
+class Forgetter:
+    """One at a time; from any thread but the drive's."""
+
+    def __init__(
+        self,
+        log: LogFiles,
+        store: Store,
+        checkpoints: Checkpoints,
+        records: Records,
+        clock: Clock,
+        act: Callable[[str, Action], object] = lambda _by, _action: None,
+    ) -> None:
+        """``act`` has the running station forget what it holds in memory."""
+        self._log = log
+        self._store = store
+        self._checkpoints = checkpoints
+        self._records = records
+        self._clock = clock
+        self._act = act
+
+    def person(self, by: str, person_id: str, on_progress: Progress = lambda _: None) -> Forgotten:
+        """UserError where nobody has ever heard of that person."""
+        with self._store.read() as session:
+            names = known_names(session, person_id)
+        found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
+        everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
+        erasure = msgspec.structs.replace(found, names=tuple(everything))
+        if not erasure.wearings and not erasure.names:
+            raise UserError(f"neither the roster nor the log knows a person {person_id}")
+        return self._forget(by, erasure, f"person {person_id}", on_progress)
+
+    def incident(
+        self, by: str, incident_id: str, on_progress: Progress = lambda _: None
+    ) -> Forgotten:
+        """UserError where there is no such incident, or it is open."""
+        erasure = erasure_of_incident(self._actions(), incident_id)
+        return self._forget(by, erasure, f"incident {incident_id}", on_progress)
+
+    def _forget(self, by: str, erasure: Erasure, what: str, on_progress: Progress) -> Forgotten:
+        for unit_id in sorted(erasure.unit_ids):
+            self._act(by, ForgetWearers(unit_id))
+        self._checkpoints.clear()
+        records, files = self._rewrite_log(erasure, on_progress)
+        done = Forgotten(what, records, files)
+        with self._store.write() as session:
+            forget_in(session, erasure)
+        self._store.compact()
+        self._checkpoints.clear()  # one that was being written meanwhile
+        kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
+        self._records.audit(by, kind, str(done))
+        _log.info("forgotten at the wish of %s: %s", by, done)
+        return done
+
+    def _rewrite_log(self, erasure: Erasure, on_progress: Progress) -> tuple[int, int]:
+        segments = [*self._log.complete_segments(), *self._set_aside()]
+        redactor = Redactor(erasure, self._clocks(erasure))
+        records = 0
+        files = self._remove_recordings(erasure) + sum(map(remove_torn, self._folders(segments)))
+        for number, path in enumerate(segments):
+            on_progress(number / len(segments))
+            changed = rewrite_segment(path, redactor)
+            records += changed
+            if changed:
+                files += 1
+                self._log.note_rewritten(path)
+        on_progress(1.0)
+        return records, files
+
+    def _set_aside(self) -> list[Path]:
+        """Parts of logs that stand beside the log in the station's folder."""
+        station = self._log.folder.parent
+        known = (self._log.folder, DataFolder(station).recordings)
+        return sorted(
+            path
+            for path in station.rglob("*.mcap")
+            if not any(path.is_relative_to(folder) for folder in known)
+        )
+
+    def _folders(self, segments: list[Path]) -> set[Path]:
+        return {self._log.folder, *(path.parent for path in segments)}
+
+    def _remove_recordings(self, erasure: Erasure) -> int:
+        """Raw recordings of the units, whoever wore them: the unit still has its own."""
+        recordings = DataFolder(self._log.folder.parent).recordings
+        gone = [recordings / unit_id for unit_id in erasure.unit_ids]
+        count = sum(1 for folder in gone for path in folder.rglob("*") if path.is_file())
+        for folder in gone:
+            shutil.rmtree(folder, ignore_errors=True)
+        return count
+
+    def _actions(self) -> Collection[tuple[int, str, bytes]]:
+        return list(read_log(self._log.folder, keys={OPERATOR.key(STATION_ID)}))
+
+    def _clocks(self, erasure: Erasure) -> Clocks:
+        """From signs of life, which come once a second while a unit is linked."""
+        senders = [*erasure.unit_ids, *map(tracker_id, erasure.unit_ids)]
+        keys = {channel.key(one) for channel in (HEARTBEAT, STATUS) for one in senders}
+        clocks = Clocks()
+        for record in read_log(self._log.folder, keys=keys):
+            event = event_of(*record)
+            if isinstance(event, Received):
+                clocks.note(event.t_ns, event.message.header)
+        return clocks

@@ -1,0 +1,208 @@
+"""Takes what is to be forgotten out of a log, record by record.  Pure.
+
+What a unit said while somebody wore it who is to be forgotten becomes a bare sign of life with the
+same header: that a message came is kept, so that a station does not fetch it from the unit's
+journal again, and nothing of what it said.  Names become ``(forgotten)``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import msgspec
+from google.protobuf.message import Message as WireMessage
+
+from base_station.events import Received, event_of
+from base_station.forgetting.erasure import Clocks, Erasure, Record
+from base_station.live_state import FORGOTTEN
+from shared.channels import (
+    DESCRIPTION,
+    HEARTBEAT,
+    OPERATOR,
+    Direction,
+    backfilled_key,
+    parse_key,
+    tracked_unit,
+)
+from shared.codec import encode
+from shared.errors import UnknownChannelError
+from shared.mcap_log import is_derived, wire_type_of
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, Heartbeat, OperatorAction
+from shared.messages.pins import SetMeeting, SetPin, StartTogether
+from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
+
+
+class Redactor:
+    """Call it with every record of the log; gives what is to stand in its place."""
+
+    def __init__(self, erasure: Erasure, clocks: Clocks) -> None:
+        self._erasure = erasure
+        self._clocks = clocks
+        self._names = name_pattern(erasure.names)
+
+    def __call__(self, record: Record) -> list[Record]:
+        t_ns, key, payload = record
+        if is_derived(key):
+            return self._derived(record)
+        if self._is_of_others(key) and not self._holds_a_name(payload):
+            return [record]
+        event = event_of(t_ns, key, payload)
+        if not isinstance(event, Received):  # unreadable: nobody knows what is in it
+            return [] if self._holds_a_name(payload) else [record]
+        return self._heard(record, event)
+
+    def _heard(self, record: Record, event: Received) -> list[Record]:
+        match event.message:
+            case OperatorAction() as action:
+                return [self._renamed(one) for one in self._actions(record, action)]
+            case FusedPosition() as fused:
+                gone = self._erasure.covers(fused.unit_id, fused.t_meas_ns)
+                return [] if gone else [record]
+            case AlarmChange() as change:
+                return [self._alarm(record, change)]
+            case _ if parse_key(record[1])[1].direction is Direction.UP:
+                return [self._unit(record, event)]
+            case _:
+                return [self._renamed(record)]
+
+    def _is_of_others(self, key: str) -> bool:
+        """Whether it comes from a unit that nobody wore who is to be forgotten."""
+        try:
+            unit_id, channel = parse_key(key)
+        except UnknownChannelError:
+            return False
+        wearer = tracked_unit(unit_id) or unit_id
+        return channel.direction is Direction.UP and wearer not in self._erasure.unit_ids
+
+    def _unit(self, record: Record, event: Received) -> Record:
+        """A unit's message, or the sign of life that is left of it."""
+        t_ns, key, _ = record
+        sender, channel = parse_key(key)
+        header = event.message.header
+        captured_ns = self._clocks.captured_ns(header)
+        times_ns = [] if event.backfilled and captured_ns is not None else [t_ns]
+        if captured_ns is not None:
+            times_ns.append(captured_ns)
+        wearer = tracked_unit(sender) or sender
+        if channel in (DESCRIPTION, HEARTBEAT) or not any(
+            self._erasure.covers(wearer, one) for one in times_ns
+        ):
+            return self._renamed(record)
+        alive = HEARTBEAT.key(sender)
+        if event.backfilled:
+            alive = backfilled_key(sender, HEARTBEAT.suffix)
+        return t_ns, alive, encode(Heartbeat(header, 0, 0))
+
+    def _alarm(self, record: Record, change: AlarmChange) -> Record:
+        t_ns, key, _ = record
+        if not self._erasure.covers(change.unit_id, change.raised_ns):
+            return self._renamed(record)
+        by = self._names.sub(FORGOTTEN, change.by)
+        return t_ns, key, encode(msgspec.structs.replace(change, text=FORGOTTEN, by=by))
+
+    def _derived(self, record: Record) -> list[Record]:
+        """What only repeats other records for Foxglove."""
+        t_ns, key, _ = record
+        if self._erasure.covers(key.split("/")[1], t_ns):
+            return []
+        return [self._renamed(record)]
+
+    def _actions(self, record: Record, message: OperatorAction) -> list[Record]:
+        t_ns, key, _ = record
+        erasure = self._erasure
+        instead = _in_incident(t_ns, message, erasure) if erasure.incident_id else [message]
+        records = []
+        for one in instead:
+            kept = self._without_places(t_ns, self._without_person(one))
+            if kept is message:
+                records.append(record)
+            elif kept is not None:
+                records.append((t_ns, key, encode(kept)))
+        return records
+
+    def _without_person(self, message: OperatorAction) -> OperatorAction:
+        assign = message.action
+        if not isinstance(assign, Assign) or assign.person_id != self._erasure.person_id:
+            return message
+        nobody = msgspec.structs.replace(assign, person_name=FORGOTTEN, crew="", role="")
+        return msgspec.structs.replace(message, action=nobody)
+
+    def _without_places(self, t_ns: int, message: OperatorAction) -> OperatorAction | None:
+        """None where all that it says is where somebody was who is to be forgotten."""
+        action, covers = message.action, self._erasure.covers
+        match action:
+            case SetStart(unit_id=unit_id):
+                return None if covers(unit_id, t_ns) else message
+            case SetPin(unit_id=unit_id) | SetMeeting(unit_id=unit_id):
+                other = action.other_unit_id if isinstance(action, SetMeeting) else unit_id
+                at_ns = action.t_ns or t_ns
+                gone = any(covers(one, at) for one in (unit_id, other) for at in (t_ns, at_ns))
+                return None if gone else message
+            case StartTogether(unit_ids=unit_ids):
+                kept = tuple(one for one in unit_ids if not covers(one, action.t_ns or t_ns))
+                if kept == unit_ids:
+                    return message
+                fewer = msgspec.structs.replace(action, unit_ids=kept)
+                return msgspec.structs.replace(message, action=fewer) if kept else None
+            case _:
+                return message
+
+    def _renamed(self, record: Record) -> Record:
+        """With every name replaced, wherever in the record it stands; who did something stays."""
+        t_ns, key, payload = record
+        inside = self._erasure.from_ns <= t_ns < self._erasure.until_ns
+        if not inside or not self._holds_a_name(payload):
+            return record
+        wire_type = wire_type_of(key)
+        assert wire_type is not None  # it could be read
+        wire = wire_type.FromString(payload)
+        by = wire.by if key == OPERATOR.key(STATION_ID) else None
+        _rename(wire, self._names)
+        if by is not None:
+            wire.by = by
+        return t_ns, key, wire.SerializeToString()
+
+    def _holds_a_name(self, payload: bytes) -> bool:
+        return self._names.search(payload.decode("utf-8", "replace")) is not None
+
+
+def name_pattern(names: tuple[str, ...]) -> re.Pattern[str]:
+    """Matches any of the names, in whatever case; nothing where there are none."""
+    return re.compile("|".join(map(re.escape, names)) or r"(?!)", re.IGNORECASE)
+
+
+def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[OperatorAction]:
+    """While it was open nobody wears anything; afterwards they wear what they did."""
+    match message.action:
+        case OpenIncident(incident_id=erasure.incident_id):
+            handed_back = [Unassign(unit_id) for unit_id in erasure.worn_before]
+            return [*_instead(message, handed_back), message]
+        case CloseIncident(incident_id=erasure.incident_id):
+            return [message, *_instead(message, erasure.worn_after)]
+        case Assign() | Unassign() if erasure.from_ns <= t_ns < erasure.until_ns:
+            return []
+        case _:
+            return [message]
+
+
+def _instead(message: OperatorAction, actions: Any) -> list[OperatorAction]:
+    """Actions at the time of another, each with an id of its own."""
+    return [
+        msgspec.structs.replace(
+            message, action_id=f"{message.action_id}-{action.unit_id}", action=action
+        )
+        for action in actions
+    ]
+
+
+def _rename(wire: WireMessage, names: re.Pattern[str]) -> None:
+    """In every text of a message and of what is in it."""
+    for field, value in wire.ListFields():
+        if field.message_type is not None:
+            for part in value if field.is_repeated else [value]:
+                _rename(part, names)
+        elif field.type == field.TYPE_STRING and field.is_repeated:
+            value[:] = [names.sub(FORGOTTEN, one) for one in value]
+        elif field.type == field.TYPE_STRING:
+            setattr(wire, field.name, names.sub(FORGOTTEN, value))

@@ -1,0 +1,1 @@
+"""What the radio lost, fetched from the units' journals."""

@@ -1,0 +1,174 @@
+"""Fetches from the units' journals what the radio lost (protocol: docs/journal.md).
+
+The drive says about once a second which sequence numbers it has (``report``); one thread asks all
+the units for the rest, each one question at a time and by turns, a bounded number of them at once,
+and hands what comes to the feed as it comes.  Live data never stands behind it: what is asked for
+travels behind live data, and is handed over only while hardly anything waits there.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from threading import Condition, Thread
+from typing import NamedTuple
+
+from base_station.journals.unit_journal import Held, Question, UnitJournal
+from shared.bus import Bus
+from shared.channels import ROOT, backfilled_key
+from shared.clock import Clock
+from shared.errors import BusError, WireError
+
+logger = logging.getLogger(__name__)
+
+AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES come
+_TIMEOUT_S = 10.0
+
+Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
+Report = Mapping[str, tuple[Held, ...]]  # by unit, of units that are linked
+
+
+class _Asked(NamedTuple):
+    """A question under way."""
+
+    unit_id: str
+    question: Question
+    asked_ns: int
+
+
+class _News(NamedTuple):
+    """What has happened since the thread last looked."""
+
+    report: Report | None
+    replies: list[tuple[_Asked, bytes | None]]  # None: no more come
+
+
+class Backfill:
+    """``start`` it with a bus; ``report`` may be called from any thread and never waits."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        deliver: Deliver,
+        clock: Clock,
+        may_forget: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """``may_forget``: whether units may be told that what was reported is safe here."""
+        self._bus = bus
+        self._may_forget = may_forget
+        self._deliver = deliver
+        self._clock = clock
+        self._journals: dict[str, UnitJournal] = {}
+        self._turns: deque[str] = deque()  # units that may have something to be asked, by turns
+        self._reported: Report = {}
+        self._asking: dict[str, _Asked] = {}
+        self._news = Condition()
+        self._report: Report | None = None
+        self._replies: list[tuple[_Asked, bytes | None]] = []
+        self._closed = False
+        self._thread = Thread(target=self._run, name="backfill", daemon=True)
+        self.fetched = 0  # messages brought so far
+
+    @property
+    def gone(self) -> int:
+        """Numbers that no journal has any more."""
+        return sum(journal.gone for journal in self._journals.values())
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def report(self, report: Report) -> None:
+        """Say what the station has now; an older report that was not looked at is forgotten."""
+        with self._news:
+            self._report = report
+            self._news.notify()
+
+    def close(self) -> None:
+        with self._news:
+            self._closed = True
+            self._news.notify()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while (news := self._next()) is not None:
+            if news.report is not None:
+                self._take_report(news.report)
+            for asked, reply in news.replies:
+                if self._closed:
+                    return
+                if reply is None:
+                    self._end(asked)
+                else:
+                    self._take(asked, reply)
+            self._ask_by_turns()
+
+    def _next(self) -> _News | None:
+        """What is new; waits for it.  None: it is over."""
+        with self._news:
+            self._news.wait_for(lambda: self._report is not None or self._replies or self._closed)
+            news = _News(self._report, self._replies)
+            self._report, self._replies = None, []
+            return None if self._closed else news
+
+    def _take_report(self, report: Report) -> None:
+        self._reported = report
+        now_ns = self._clock.monotonic_ns()
+        for unit_id, held in report.items():
+            self._journals.setdefault(unit_id, UnitJournal()).report(held, now_ns)
+        waiting = [one for one in self._turns if one in report]
+        idle = [one for one in report if one not in waiting and one not in self._asking]
+        self._turns = deque([*waiting, *idle])
+
+    def _take(self, asked: _Asked, reply: bytes) -> None:
+        journal = self._journals[asked.unit_id]
+        try:
+            chunk = journal.take(asked.question, reply, self._clock.monotonic_ns())
+        except WireError as error:
+            logger.warning("the journal of %s cannot be read: %s", asked.unit_id, error)
+            return
+        if chunk is not None:
+            for entry in chunk.entries:
+                self._deliver(backfilled_key(asked.unit_id, entry.suffix), entry.payload)
+            self.fetched += len(chunk.entries)
+
+    def _end(self, asked: _Asked) -> None:
+        del self._asking[asked.unit_id]
+        took_ns = self._clock.monotonic_ns() - asked.asked_ns
+        self._journals[asked.unit_id].end(asked.question, took_ns)
+        if asked.unit_id in self._reported:
+            self._turns.append(asked.unit_id)
+
+    def _ask_by_turns(self) -> None:
+        """Alerts are asked for at once, a backlog while not too many are being fetched."""
+        for _ in range(len(self._turns)):
+            unit_id = self._turns.popleft()
+            question = self._journals[unit_id].next_question()
+            if question is None or (question.what == "acknowledge" and not self._may_forget()):
+                continue
+            if question.urgent or len(self._asking) < AT_ONCE:
+                self._ask(unit_id, question)
+            else:
+                self._turns.append(unit_id)
+
+    def _ask(self, unit_id: str, question: Question) -> None:
+        asked = _Asked(unit_id, question, self._clock.monotonic_ns())
+        self._asking[unit_id] = asked
+        try:
+            self._bus.ask(
+                f"{ROOT}/{unit_id}/journal/{question.selector}",
+                b"",
+                _TIMEOUT_S,
+                partial(self._note_reply, asked),
+                urgent=question.urgent,
+            )
+        except BusError as error:
+            logger.warning("the journal of %s cannot be asked: %s", unit_id, error)
+            self._note_reply(asked, None)
+
+    def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
+        """Called by a thread of the bus."""
+        with self._news:
+            self._replies.append((asked, reply))
+            self._news.notify()

@@ -1,0 +1,202 @@
+"""What the station knows of one unit's journal, and what to ask it next.
+
+Pure: reports and answers in, questions out.  Alerts are asked for as soon as a number is missing;
+the rest when it has been missing for a whole report, newest first and in pieces that the link
+carries.  What the station has safely on its own disk is acknowledged, so that the unit may forget
+it when it needs the room.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from base_station.journals.pace import LEAST_BYTES, Pace
+from shared.clock import NS_PER_S
+from shared.messages import JournalChunk, JournalIndex
+from shared.sequence_set import Run, SequenceSet
+
+_INDEX_EVERY_NS = 30 * NS_PER_S
+_SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
+_REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
+_ENTRY_BYTES = 100.0  # of a message, as long as none has come
+_OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
+_PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
+_LEARN_SHARE = 0.02
+
+
+class Held(NamedTuple):
+    """What the station has of one boot of one unit."""
+
+    boot_id: int
+    runs: tuple[Run, ...]
+
+
+class Question(NamedTuple):
+    what: str
+    parameters: tuple[tuple[str, int], ...] = ()
+    urgent: bool = False
+
+    @property
+    def selector(self) -> str:
+        """Behind ``muster/v1/{unit}/journal/``."""
+        said = ";".join(f"{name}={value}" for name, value in self.parameters)
+        return f"{self.what}?{said}" if said else self.what
+
+
+class _Boot:
+    """One run of the unit's program."""
+
+    def __init__(self) -> None:
+        self.held = SequenceSet()  # by the last report
+        self.fetched = SequenceSet()  # or gone for ever
+        self.urgent_known = SequenceSet()  # whatever alerts are among them were fetched
+        self.first = 1  # the oldest that the journal has
+        self.newest = 0  # that is known of
+        self.settled_to = 0  # a number up to here that is missing is lost, not under way
+        self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
+        self.acknowledged = 0
+
+    def report(self, runs: tuple[Run, ...]) -> None:
+        self.held = SequenceSet([run.first for run in runs], [run.last for run in runs])
+        self.settled_to = self.newest
+        self.newest = max(self.newest, runs[-1].last if runs else 0)
+        self.complete.append(_union(self.held, self.fetched).complete_to(1))
+
+    def lost(self) -> list[Run]:
+        """What is missing and not under way."""
+        have = _union(self.held, self.fetched)
+        return list(have.missing(self.first, self.settled_to))
+
+    def without_alerts(self) -> list[Run]:
+        """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
+        is missing before any number that came is lost.
+        """
+        have = _union(_union(self.held, self.fetched), self.urgent_known)
+        return list(
+            have.missing(self.first, self.held.lasts[-1] if self.held.lasts else self.newest)
+        )
+
+
+class UnitJournal:
+    """``report`` what is there; put the ``next_question`` and give it ``take`` and ``end``."""
+
+    def __init__(self) -> None:
+        self._boots: dict[int, _Boot] = {}
+        self._indexed: dict[int, None] = {}  # oldest boot first
+        self._index_due_ns = 0
+        self._pace = Pace()
+        self._entry_bytes = _ENTRY_BYTES
+        self._told = 0  # replies to the question that is being answered
+        self._silent = False  # it did not answer: not before the next report again
+        self._acknowledging: tuple[_Boot, int] | None = None
+        self.gone = 0  # numbers that no journal has any more
+
+    def report(self, held: tuple[Held, ...], now_ns: int) -> None:
+        """``now_ns`` monotonic.  The index is asked for now and then, and when the unit's program
+        has started again.
+        """
+        self._silent = False
+        runs_of = {one.boot_id: one.runs for one in held}
+        for boot_id in runs_of:
+            self._boots.setdefault(boot_id, _Boot())
+        for boot_id, boot in self._boots.items():
+            boot.report(runs_of.get(boot_id, ()))
+        if now_ns >= self._index_due_ns or not runs_of.keys() <= self._indexed.keys():
+            self._index_due_ns = 0
+
+    def next_question(self) -> Question | None:
+        """None: there is nothing to ask before the next report."""
+        if self._silent:
+            return None
+        if self._index_due_ns == 0:
+            return Question("index", urgent=True)
+        return self._ask_alerts() or self._ask_piece() or self._acknowledge()
+
+    def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
+        """Learn from one reply; what it brings is to be kept.  Raises WireError."""
+        self._told += 1
+        if question.what in ("index", "acknowledge"):
+            self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 1)
+            return None
+        chunk = JournalChunk.from_bytes(reply)
+        boot = self._boots.setdefault(chunk.boot_id, _Boot())
+        if chunk.urgent_only:
+            boot.urgent_known.add_run(Run(chunk.from_seq, chunk.to_seq))
+            for entry in chunk.entries:
+                boot.fetched.add(entry.seq)
+        else:
+            boot.fetched.add_run(Run(chunk.from_seq, chunk.to_seq))
+            self.gone += chunk.to_seq - chunk.from_seq + 1 - len(chunk.entries)
+        for entry in chunk.entries:
+            entry_bytes = len(entry.payload) + _OVERHEAD_BYTES
+            self._entry_bytes += _LEARN_SHARE * (entry_bytes - self._entry_bytes)
+        return chunk
+
+    def end(self, question: Question, took_ns: int) -> None:
+        """No more replies come to this question."""
+        told, self._told = self._told, 0
+        if not told:
+            self._silent = True
+            if question.what == "range":
+                self._pace.note_nothing()
+        elif question.what == "range":
+            self._pace.note(took_ns)
+        elif question.what == "acknowledge" and self._acknowledging is not None:
+            boot, last = self._acknowledging
+            boot.acknowledged = last
+        self._acknowledging = None
+
+    def _learn(self, index: JournalIndex, now_ns: int, *, is_first: bool) -> None:
+        """Two machines under one name both answer."""
+        self._index_due_ns = now_ns + _INDEX_EVERY_NS
+        before = {} if is_first else self._indexed
+        self._indexed = before | {one.boot_id: None for one in index.boots}
+        for one in index.boots:
+            boot = self._boots.setdefault(one.boot_id, _Boot())
+            boot.first = one.first_seq
+            boot.newest = max(boot.newest, one.last_seq)
+
+    def _newest_first(self) -> Iterator[tuple[int, _Boot]]:
+        return ((boot_id, self._boots[boot_id]) for boot_id in reversed(self._indexed))
+
+    def _ask_alerts(self) -> Question | None:
+        for boot_id, boot in self._newest_first():
+            missing = boot.without_alerts()
+            if missing:
+                span = Run(missing[0].first, missing[-1].last)
+                return _range("urgent", boot_id, span, LEAST_BYTES, urgent=True)
+        return None
+
+    def _ask_piece(self) -> Question | None:
+        """What the wearer did last matters most, so the newest piece of the newest boot."""
+        for boot_id, boot in self._newest_first():
+            lost = boot.lost()
+            if lost:
+                first, last = lost[-1]
+                total = self._pace.answer_bytes
+                count = max(1, int(_PIECE_SHARE * total / self._entry_bytes))
+                return _range("range", boot_id, Run(max(first, last - count + 1), last), total)
+        return None
+
+    def _acknowledge(self) -> Question | None:
+        for boot_id, boot in self._newest_first():
+            safe = min(boot.complete) if len(boot.complete) == _SAFE_REPORTS else 0
+            if safe > boot.acknowledged:
+                self._acknowledging = boot, safe
+                return Question("acknowledge", (("epoch", boot_id), ("to", safe)))
+        return None
+
+
+def _range(what: str, boot_id: int, run: Run, total: int, *, urgent: bool = False) -> Question:
+    parameters = {"epoch": boot_id, "from": run.first, "to": run.last, "total": total}
+    parameters["bytes"] = min(total, _REPLY_BYTES)
+    return Question(what, tuple(parameters.items()), urgent)
+
+
+def _union(one: SequenceSet, other: SequenceSet) -> SequenceSet:
+    both = SequenceSet([*one.firsts], [*one.lasts])
+    for run in other.runs():
+        both.add_run(run)
+    return both

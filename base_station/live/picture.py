@@ -1,0 +1,126 @@
+"""Keeps consoles up to date with a pipeline: which units, alarms and commands changed since the
+last delta, and when only a whole new snapshot will do.  Live and replay both draw through it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
+from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
+from base_station.live.sinks import LiveSink, PhotoUrls
+from base_station.pipeline import StationPipeline
+from base_station.views import (
+    NS_PER_MS,
+    StationFacts,
+    alarm_view,
+    beacon_views,
+    command_view,
+    health_view,
+    pin_views,
+    snapshot,
+    trail_view,
+    unit_views,
+)
+from shared.messages import AlarmChange
+
+
+class Picture:
+    """What the consoles were told of one pipeline."""
+
+    def __init__(self, pipeline: StationPipeline, sink: LiveSink, photo_urls: PhotoUrls) -> None:
+        self._sink = sink
+        self._photo_urls = photo_urls
+        self._seq = 0
+        self.facts = StationFacts()  # of the station's surroundings, as last measured
+        self.show(pipeline)
+
+    def show(self, pipeline: StationPipeline) -> None:
+        """Go on with another pipeline; the next ``flush`` or ``reset`` tells it."""
+        self._pipeline = pipeline
+        self._units: dict[str, None] = {}  # an ordered set
+        self._alarms: list[AlarmChange] = []
+        self._commands: dict[str, None] = {}
+        self._filled: dict[str, None] = {}
+        self._pins_changed = False
+        self._frame = self._frame_now()
+
+    def note(self, outputs: Sequence[Output]) -> None:
+        for output in outputs:
+            if isinstance(output, UnitTouched):
+                self._units[output.unit_id] = None
+            elif isinstance(output, CommandTouched):
+                self._commands[output.command_id] = None
+            elif isinstance(output, TrailFilled):
+                self._filled[output.unit_id] = None
+            elif isinstance(output, PinsTouched):
+                self._pins_changed = True
+            elif isinstance(output, AlarmChange):
+                self._alarms.append(output)
+                if output.unit_id:
+                    self._units[output.unit_id] = None
+
+    def flush(self, health: bool = False, replay: ReplayView | None = None) -> None:
+        """Tell what changed, and when asked for, how the station is."""
+        if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
+            self.reset(replay)
+            return
+        if not (self._has_news or health or replay):
+            return
+        state = self._pipeline.state
+        self._seq += 1
+        delta = Delta(
+            seq=self._seq,
+            now_ms=state.t_ns // NS_PER_MS,
+            units=unit_views(state, map(state.units.__getitem__, self._units), self._photo_urls),
+            alarms=tuple(map(alarm_view, self._alarms)),
+            commands=tuple(
+                command_view(state.commands[command_id])
+                for command_id in self._commands
+                if command_id in state.commands
+            ),
+            trails=self._filled_trails() if health or self._pins_changed else {},
+            pins=pin_views(state) if self._pins_changed else None,
+            beacons=beacon_views(state) if self._pins_changed else None,
+            health=health_view(state, self.facts) if health else None,
+            replay=replay,
+        )
+        self._units.clear()
+        self._alarms.clear()
+        self._commands.clear()
+        self._pins_changed = False
+        self._sink.delta(delta)
+
+    @property
+    def _has_news(self) -> bool:
+        return bool(self._units or self._alarms or self._commands or self._pins_changed)
+
+    def reset(self, replay: ReplayView | None = None) -> None:
+        """Everybody begins again."""
+        self._frame = self._frame_now()
+        self._units.clear()
+        self._alarms.clear()
+        self._commands.clear()
+        self._filled.clear()
+        self._pins_changed = False
+        self._sink.reset(self._snapshot(replay))
+
+    def snapshot(self, replay: ReplayView | None = None) -> Snapshot:
+        """For one console, after what was noted so far was told to all."""
+        self.flush(replay=replay)
+        return self._snapshot(replay)
+
+    def _filled_trails(self) -> dict[str, tuple[TrailPoint, ...]]:
+        """Once a second will do: a gap is filled over seconds."""
+        units = self._pipeline.state.units
+        trails = {unit_id: trail_view(units[unit_id].trail) for unit_id in self._filled}
+        self._filled.clear()
+        return trails
+
+    def _snapshot(self, replay: ReplayView | None) -> Snapshot:
+        return snapshot(self._pipeline.state, self._seq, self.facts, self._photo_urls, replay)
+
+    def _frame_now(self) -> tuple[object, ...]:
+        """What deltas do not carry; replaced whole by the pipeline when it changes."""
+        state = self._pipeline.state
+        return state.incident, state.plan, state.anchor

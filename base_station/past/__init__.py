@@ -1,0 +1,1 @@
+"""Past incidents: replayed, solved afterwards, projected again."""

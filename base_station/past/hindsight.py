@@ -1,0 +1,212 @@
+"""An incident as it is known afterwards, beside what was shown at the time.
+
+The state at the incident's end comes out of the log, by the same pipeline as live; the smoother
+makes trails of everything in it.  What it made of a closed incident is kept in the store.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from base_station.assessment.report import IncidentReport, assess
+from base_station.db.models import Incident
+from base_station.db.records import TrackSample
+from base_station.db.smoothed import SmoothedTracks
+from base_station.fusion.path_history import NO_FLOOR, RESTART, PathArrays
+from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
+from base_station.live_state import StationState
+from base_station.past.playback import Archive, Playback
+from base_station.pins.pinning import evidence_of_all, ties_of
+from shared.clock import NS_PER_S, Clock
+from shared.quality import Quality
+
+_log = logging.getLogger(__name__)
+Progress = Callable[[float], None]
+Tracks = Mapping[str, Sequence[TrackSample]]
+LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
+UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """What a smoother made of an incident."""
+
+    incident_id: str
+    smoother: str
+    made_ns: int
+    tracks: Tracks  # by unit
+
+
+@dataclass(frozen=True)
+class Known:
+    """Everything at an incident's end, and the trails that follow from it."""
+
+    state: StationState
+    solution: Solution
+
+
+class Hindsight:
+    """May be asked from any thread; one incident at a time is worked on."""
+
+    def __init__(
+        self, archive: Archive, smoother: Smoother, store: SmoothedTracks, clock: Clock
+    ) -> None:
+        self._archive = archive
+        self._smoother = smoother
+        self._store = store
+        self._clock = clock
+        self._working = threading.Lock()
+        self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
+
+    def smoothed(self, incident: Incident) -> Smoothed:
+        """As it was made when the incident had closed; made now where it was not."""
+        made = self._store.of(incident.incident_id) if incident.closed_ns is not None else None
+        if made is not None:
+            return Smoothed(incident.incident_id, *made)
+        return self.smooth(incident)
+
+    def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
+        """Make it again from the log; ``on_progress`` hears the fraction done."""
+        known = self.known(incident, on_progress)
+        tracks = {
+            unit_id: _samples(incident, known.state.paths[unit_id].arrays(), path)
+            for unit_id, path in known.solution.paths.items()
+        }
+        made = Smoothed(
+            incident.incident_id, self._smoother.name, self._clock.utc_ns(), _without_empty(tracks)
+        )
+        if incident.closed_ns is not None:
+            self._store.put(made.incident_id, made.smoother, made.made_ns, made.tracks)
+        return made
+
+    def catch_up(self, incidents: Iterable[Incident]) -> None:
+        """Smooth an incident that closed lately and was not smoothed yet, so that its trails are
+        there when somebody asks.
+        """
+        now_ns = self._clock.utc_ns()
+        for incident in incidents:
+            incident_id = incident.incident_id
+            lately = incident.closed_ns is not None and now_ns - incident.closed_ns < LATELY_NS
+            if not lately or incident_id in self._given_up or self._store.has(incident_id):
+                continue
+            try:
+                self.smooth(incident)
+            except Exception:  # noqa: BLE001  # the station goes on without these trails
+                _log.exception("the trails of %s cannot be smoothed", incident_id)
+                self._given_up.add(incident_id)
+            return
+
+    def raw(self, incident: Incident) -> Tracks:
+        """Each unit's own path, placed where each of its frames began and never corrected."""
+        known = self.known(incident)
+        return _without_empty(
+            {
+                unit_id: _raw(incident, known.state.paths[unit_id].arrays(), path)
+                for unit_id, path in known.solution.paths.items()
+            }
+        )
+
+    def assess(self, incident: Incident, live: Tracks) -> IncidentReport:
+        """How good the positions were; ``live`` is what was shown, by unit."""
+        known = self.known(incident)
+        points = {one: known.state.paths[one].arrays() for one in known.solution.paths}
+        paths = known.solution.paths
+        return assess(
+            incident.incident_id,
+            self._smoother.name,
+            self._clock.utc_ns() // 1_000_000,
+            known.state,
+            known.solution.verdicts,
+            live,
+            {one: _samples(incident, points[one], path) for one, path in paths.items()},
+            {one: _raw(incident, points[one], path) for one, path in paths.items()},
+        )
+
+    def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> Known:
+        with self._working:
+            until_ns = incident.closed_ns or self._clock.utc_ns()
+            state = self._state_at(until_ns, on_progress)
+            solution = self._smoother.smooth(evidence_of_all(state), ties_of(state))
+            on_progress(1.0)
+            return Known(state, solution)
+
+    def _state_at(self, until_ns: int, on_progress: Progress) -> StationState:
+        playback = Playback(self._archive)
+        begin_ns = None
+        for _ in playback.seek(until_ns):
+            begin_ns = playback.at_ns if begin_ns is None else begin_ns
+            span_ns = max(until_ns - begin_ns, 1)
+            on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
+        return playback.pipeline.state
+
+
+def _samples(incident: Incident, points: PathArrays, path: SmoothedPath) -> list[TrackSample]:
+    heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
+    return [
+        TrackSample(
+            t_ns=int(path.t_ns[row]),
+            north_m=float(path.north_m[row]),
+            east_m=float(path.east_m[row]),
+            down_m=float(path.down_m[row]),
+            std_north_m=float(path.std_north_m[row]),
+            std_east_m=float(path.std_east_m[row]),
+            std_down_m=float(path.std_down_m[row]),
+            heading_rad=float(heading_rad[row]),
+            floor=_floor(points, row),
+            quality=_quality(path, row),
+        )
+        for row in _rows_within(incident, path)
+    ]
+
+
+def _raw(incident: Incident, points: PathArrays, path: SmoothedPath) -> list[TrackSample]:
+    begins = np.flatnonzero((points.flags & RESTART) != 0)
+    begins = np.concatenate(([0], begins[begins > 0]))
+    begin = begins[np.searchsorted(begins, np.arange(len(points)), side="right") - 1]
+    since = points.own_m - points.own_m[begin]
+    cosine, sine = np.cos(path.turn_rad[begin]), np.sin(path.turn_rad[begin])
+    north_m = path.north_m[begin] + cosine * since[:, 0] - sine * since[:, 1]
+    east_m = path.east_m[begin] + sine * since[:, 0] + cosine * since[:, 1]
+    heading_rad = (path.turn_rad[begin] + points.heading_rad) % (2.0 * np.pi)
+    return [
+        TrackSample(
+            t_ns=int(points.t_ns[row]),
+            north_m=float(north_m[row]),
+            east_m=float(east_m[row]),
+            down_m=float(points.down_m[row]),
+            std_north_m=float(points.std_m[row]),
+            std_east_m=float(points.std_m[row]),
+            std_down_m=float(points.down_std_m[row]),
+            heading_rad=float(heading_rad[row]),
+            floor=_floor(points, row),
+            quality=Quality.GOOD.name.lower(),
+        )
+        for row in _rows_within(incident, path)
+    ]
+
+
+def _rows_within(incident: Incident, path: SmoothedPath) -> list[int]:
+    until_ns = incident.closed_ns or 2**63 - 1
+    rows: list[int] = np.flatnonzero(
+        (path.t_ns >= incident.opened_ns) & (path.t_ns <= until_ns)
+    ).tolist()
+    return rows
+
+
+def _floor(points: PathArrays, row: int) -> int | None:
+    floor = int(points.floor[row])
+    return None if floor == NO_FLOOR else floor
+
+
+def _quality(path: SmoothedPath, row: int) -> str:
+    spread_m = np.hypot(path.std_north_m[row], path.std_east_m[row])
+    return (Quality.GOOD if spread_m <= UNSURE_M else Quality.DEGRADED).name.lower()
+
+
+def _without_empty(tracks: Tracks) -> Tracks:
+    return {unit_id: track for unit_id, track in tracks.items() if track}

@@ -1,0 +1,129 @@
+"""Moves a pipeline through a recorded window of the log.  No threads and no clock.
+
+A playback only reads: it has a pipeline of its own, and nothing of what that decides goes to the
+log, the store or the bus.  ``compare`` steps a log and holds what comes out against what the
+live station had decided, one by one.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from base_station.events import Output, Received, StationEvent, event_of
+from base_station.past.checkpoints import Checkpoints
+from base_station.pipeline import Checkpoint, StationPipeline
+from shared.channels import ALARM, FUSED
+from shared.codec import encode
+from shared.messages import STATION_ID, AlarmChange, FusedPosition
+
+Record = tuple[int, str, bytes]  # station time, key, payload
+OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
+MakePipeline = Callable[[Checkpoint | None], StationPipeline]
+Decision = FusedPosition | AlarmChange
+
+BURST = 1000  # events
+_DECISIONS = frozenset(channel.key(STATION_ID) for channel in (FUSED, ALARM))
+
+
+@dataclass(frozen=True)
+class Archive:
+    """Where a playback finds what happened."""
+
+    open_log: OpenLog
+    checkpoints: Checkpoints
+    make_pipeline: MakePipeline
+
+
+class Playback:
+    """A pipeline at some time of the log."""
+
+    def __init__(self, archive: Archive) -> None:
+        self._archive = archive
+        self._pipeline: StationPipeline
+        self._events: Iterator[StationEvent]
+        self._next: StationEvent | None
+        self._at_ns: int
+        self._rewind(0)
+
+    @property
+    def pipeline(self) -> StationPipeline:
+        """Another one after a ``seek``."""
+        return self._pipeline
+
+    def seek(self, t_ns: int) -> Iterator[None]:
+        """Go to ``t_ns``, back or forth, pausing now and then so that it can be given up."""
+        if t_ns < self._at_ns or self._has_checkpoint_ahead(t_ns):
+            self._rewind(t_ns)
+        while self.advance(t_ns) is not None:
+            yield
+
+    def advance(self, t_ns: int) -> list[Output] | None:
+        """What comes of the next events until ``t_ns``, a burst at most; None: all is done."""
+        if self._next is None or self._next.t_ns > t_ns:
+            self._at_ns = max(self._at_ns, t_ns)
+            return None
+        outputs: list[Output] = []
+        for _ in range(BURST):
+            if self._next is None or self._next.t_ns > t_ns:
+                break
+            outputs += self._pipeline.step(self._next)
+            self._at_ns = self._next.t_ns
+            self._next = next(self._events, None)
+        return outputs
+
+    @property
+    def at_ns(self) -> int:
+        return self._at_ns
+
+    def _has_checkpoint_ahead(self, t_ns: int) -> bool:
+        saved_ns = self._archive.checkpoints.latest_ns(t_ns)
+        return saved_ns is not None and saved_ns > self._at_ns
+
+    def _rewind(self, t_ns: int) -> None:
+        """Begin again from the nearest checkpoint before ``t_ns``."""
+        saved = self._archive.checkpoints.latest(t_ns)
+        self._pipeline = self._archive.make_pipeline(saved.pipeline if saved else None)
+        self._at_ns, skip = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+        self._events = _events(self._archive.open_log(self._at_ns), self._at_ns, skip)
+        self._next = next(self._events, None)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where a replay decides otherwise than the live station did."""
+
+    logged: Decision | None
+    replayed: Decision | None
+
+
+def compare(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Difference]:
+    """Step a log from its beginning; yields every decision that is not as it was logged."""
+    replayed: deque[Decision] = deque()
+    for t_ns, key, payload in records:
+        event = event_of(t_ns, key, payload)
+        if isinstance(event, Received) and isinstance(event.message, Decision):
+            again = replayed.popleft() if replayed else None
+            if again is None or encode(again) != payload:
+                yield Difference(event.message, again)
+        else:
+            replayed += [o for o in pipeline.step(event) if isinstance(o, Decision)]
+    for again in replayed:
+        yield Difference(None, again)
+
+
+def is_decision(key: str) -> bool:
+    """Whether a record is what the live station made of others."""
+    return key in _DECISIONS
+
+
+def _events(records: Iterable[Record], from_ns: int, skip: int) -> Iterator[StationEvent]:
+    """The events behind a checkpoint that has stepped ``skip`` of those at ``from_ns``."""
+    for t_ns, key, payload in records:
+        if is_decision(key):
+            continue
+        if t_ns == from_ns and skip > 0:
+            skip -= 1
+        else:
+            yield event_of(t_ns, key, payload)

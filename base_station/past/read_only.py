@@ -1,0 +1,19 @@
+"""What stands in for the drive at a station that only replays."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+from base_station.events import Refused
+from base_station.live.sinks import ActionDone
+from shared.messages.station import Action
+
+
+class ReadOnlyGate:
+    """An ``OperatorGate`` through which nothing goes."""
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:  # noqa: ARG002  # the port's
+        refused = Refused("", "this station only replays: nothing of an incident can be changed")
+        done: Future[ActionDone] = Future()
+        done.set_result(ActionDone("", 0, refused))
+        return done

@@ -1,0 +1,166 @@
+"""A past incident in a console, as it was: play, pause, seek, speed."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from base_station.api.wire import ReplayView, Snapshot
+from base_station.live.picture import Picture
+from base_station.live.sinks import LiveSink, PhotoUrls
+from base_station.past.playback import Archive, Playback
+from base_station.views import NS_PER_MS
+from shared.clock import NS_PER_S, Clock
+from shared.errors import UserError
+
+SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
+DELTA_S = 0.05
+PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
+
+
+@dataclass(frozen=True)
+class Window:
+    """What is replayed, in station time."""
+
+    incident_id: str
+    start_ns: int
+    end_ns: int
+
+
+class ReplaySession:
+    """One replay with its thread; a ``LiveSource``.  Methods may be called from any thread."""
+
+    def __init__(
+        self,
+        archive: Archive,
+        window: Window,
+        speed: float,
+        sink: LiveSink,
+        photo_urls: PhotoUrls,
+        clock: Clock,
+    ) -> None:
+        """It plays from the window's beginning.  Raises UserError for an impossible speed."""
+        self._window = window
+        self._clock = clock
+        self._playback = Playback(archive)
+        self._picture = Picture(self._playback.pipeline, sink, photo_urls)
+        self._asked: deque[Callable[[Snapshot], None]] = deque()
+        self._lock = threading.Lock()  # guards what follows
+        self._speed = _checked_speed(speed)
+        self._playing = True
+        self._at_ns = window.start_ns
+        self._seek_ns: int | None = window.start_ns
+        self._news = threading.Event()
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
+        self._thread.start()
+
+    # ---- from any thread
+
+    def play(self) -> None:
+        """At the end it begins again."""
+        with self._lock:
+            if self._at_ns >= self._window.end_ns:
+                self._seek_ns = self._window.start_ns
+            self._playing = True
+        self._news.set()
+
+    def pause(self) -> None:
+        with self._lock:
+            self._playing = False
+        self._news.set()
+
+    def seek(self, t_ns: int) -> None:
+        """Before the beginning is the beginning, behind the end the end."""
+        with self._lock:
+            self._seek_ns = min(max(t_ns, self._window.start_ns), self._window.end_ns)
+            self._at_ns = self._seek_ns
+        self._news.set()
+
+    def set_speed(self, speed: float) -> None:
+        """Raises UserError for an impossible speed."""
+        with self._lock:
+            self._speed = _checked_speed(speed)
+        self._news.set()
+
+    def view(self) -> ReplayView:
+        with self._lock:
+            return ReplayView(
+                incident_id=self._window.incident_id,
+                start_ms=self._window.start_ns // NS_PER_MS,
+                end_ms=self._window.end_ns // NS_PER_MS,
+                at_ms=self._at_ns // NS_PER_MS,
+                speed=self._speed,
+                playing=self._playing,
+            )
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        self._asked.append(deliver)
+        self._news.set()
+
+    def close(self) -> None:
+        self._closed.set()
+        self._news.set()
+        self._thread.join()
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        before_ns = self._clock.monotonic_ns()
+        while not self._closed.is_set():
+            self._follow_seek()
+            now_ns = self._clock.monotonic_ns()
+            self._move(now_ns - before_ns)
+            before_ns = now_ns
+            if self._seek_ns is not None:
+                continue  # a picture now would be of another time than asked for
+            while self._asked:
+                self._asked.popleft()(self._picture.snapshot(self.view()))
+            self._news.wait(DELTA_S if self._playing else PAUSED_S)
+            if not self._playing:
+                before_ns = self._clock.monotonic_ns()
+            self._news.clear()
+
+    def _follow_seek(self) -> None:
+        with self._lock:
+            seek_ns, self._seek_ns = self._seek_ns, None
+        if seek_ns is None:
+            return
+        for _ in self._playback.seek(seek_ns):
+            if self._closed.is_set() or self._seek_ns is not None:
+                return
+        with self._lock:
+            self._at_ns = seek_ns
+        self._picture.show(self._playback.pipeline)
+        self._picture.reset(self.view())
+
+    def _move(self, elapsed_ns: int) -> None:
+        """Let as much of the past go by as the clock and the speed say."""
+        with self._lock:
+            if not self._playing or self._seek_ns is not None:
+                told = None
+            else:
+                told = min(self._at_ns + round(elapsed_ns * self._speed), self._window.end_ns)
+        if told is None:
+            self._picture.flush(replay=self.view())
+            return
+        began_ns = self._clock.monotonic_ns()
+        while (outputs := self._playback.advance(told)) is not None:
+            self._picture.note(outputs)
+            if self._clock.monotonic_ns() - began_ns > DELTA_S * NS_PER_S:
+                told = self._playback.at_ns  # as fast as it goes
+                break
+        with self._lock:
+            if self._seek_ns is None:
+                self._at_ns = told
+                self._playing = self._playing and told < self._window.end_ns
+        self._picture.flush(replay=self.view())
+
+
+def _checked_speed(speed: float) -> float:
+    if not (math.isfinite(speed) and SLOWEST <= speed <= FASTEST):
+        raise UserError(f"a replay runs at {SLOWEST} to {FASTEST:.0f} times real time, not {speed}")
+    return speed

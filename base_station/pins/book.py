@@ -1,0 +1,232 @@
+"""Sets, moves and removes pins and beacons; ``base_station.pins.pinning`` solves trails with them.
+
+Every check says in a sentence why a pin cannot be taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import msgspec
+
+from base_station.live_state import StationState
+from base_station.pins.pin import WAITING, Beacon, Pin
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.geo import rotate
+from shared.messages.pins import (
+    PlaceBeacon,
+    RemoveBeacon,
+    RemovePin,
+    SetMeeting,
+    SetPin,
+    StartTogether,
+)
+
+PinAction = SetPin | StartTogether | SetMeeting | RemovePin | PlaceBeacon | RemoveBeacon
+MOST_PINS = 1000
+FURTHEST_M = 1000.0  # from the plan's outlines
+FUTURE_NS = NS_PER_S
+BEFORE_NS = 10 * NS_PER_S  # of a path's beginning: that is where it is pinned
+LARGEST_STD_M = 1000.0
+
+
+def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
+    """The units whose past this changes; UserError where it can have no effect."""
+    match action:
+        case SetPin():
+            return _set(state, [_place_pin(state, by, action)])
+        case StartTogether():
+            return _set(state, _start_pins(state, by, action))
+        case SetMeeting():
+            return _set(state, [_meeting_pin(state, by, action)])
+        case RemovePin():
+            return _remove(state, action.pin_id)
+        case PlaceBeacon():
+            return _place_beacon(state, by, action)
+        case RemoveBeacon():
+            return _remove_beacon(state, action.beacon_id)
+
+
+def forget(state: StationState, unit_id: str) -> None:
+    """Every pin that says where this unit was."""
+    for pin_id in [one for one, pin in state.pins.items() if unit_id in units_of(pin)]:
+        del state.pins[pin_id]
+        state.pin_verdicts.pop(pin_id, None)
+
+
+def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
+    """The incident frame was moved: turned clockwise, then shifted."""
+    for pin_id, pin in state.pins.items():
+        heading_rad = None if pin.heading_rad is None else pin.heading_rad + turn_rad
+        if pin.north_m is not None and pin.east_m is not None:
+            north, east = rotate(pin.north_m, pin.east_m, turn_rad)
+            state.pins[pin_id] = msgspec.structs.replace(
+                pin, north_m=north + north_m, east_m=east + east_m, heading_rad=heading_rad
+            )
+    for beacon in state.beacons.values():
+        north, east = rotate(beacon.north_m, beacon.east_m, turn_rad)
+        beacon.north_m, beacon.east_m = north + north_m, east + east_m
+
+
+def has_pins(state: StationState, unit_id: str) -> bool:
+    """Whether any pin is about this unit's past."""
+    return any(unit_id in units_of(pin) for pin in state.pins.values())
+
+
+def units_of(pin: Pin) -> set[str]:
+    """Whose past a pin is about."""
+    return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}
+
+
+def put(state: StationState, pin: Pin) -> None:
+    """Keep a pin that was checked, in the place of an earlier one with its id."""
+    if pin.pin_id not in state.pins and len(state.pins) >= MOST_PINS:
+        raise UserError(f"there are {MOST_PINS} pins already; remove some first")
+    state.pins[pin.pin_id] = pin
+    state.pin_verdicts[pin.pin_id] = WAITING
+
+
+def _set(state: StationState, pins: Iterable[Pin]) -> set[str]:
+    changed: set[str] = set()
+    for pin in pins:
+        earlier = state.pins.get(pin.pin_id)
+        changed |= units_of(pin) | (units_of(earlier) if earlier is not None else set())
+        put(state, pin)
+    return changed
+
+
+def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
+    _check_unit(state, action.unit_id)
+    _check_time(state, action.unit_id, action.t_ns)
+    _check_place(state, action)
+    return Pin(kind="place", set_ns=state.t_ns, by=by, **msgspec.structs.asdict(action))
+
+
+def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin]:
+    if not action.unit_ids:
+        raise UserError("nobody to place: name at least one unit")
+    for unit_id in action.unit_ids:
+        _check_unit(state, unit_id)
+        _check_time(state, unit_id, action.t_ns)
+    _check_place(state, action)
+    common = msgspec.structs.asdict(action)
+    del common["pin_id"], common["unit_ids"]
+    return [
+        Pin(f"{action.pin_id}:{unit_id}", "start", unit_id, set_ns=state.t_ns, by=by, **common)
+        for unit_id in dict.fromkeys(action.unit_ids)
+    ]
+
+
+def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
+    if action.unit_id == action.other_unit_id:
+        raise UserError("a unit cannot meet itself: name two units")
+    for unit_id in (action.unit_id, action.other_unit_id):
+        _check_unit(state, unit_id)
+        _check_time(state, unit_id, action.t_ns)
+    _check_std(action.std_m)
+    return Pin(
+        pin_id=action.pin_id,
+        kind="meeting",
+        unit_id=action.unit_id,
+        t_ns=action.t_ns,
+        std_m=action.std_m,
+        set_ns=state.t_ns,
+        by=by,
+        note=action.note,
+        other_id=action.other_unit_id,
+    )
+
+
+def _remove(state: StationState, pin_id: str) -> set[str]:
+    gone = [one for one in state.pins if one == pin_id or one.startswith(f"{pin_id}:")]
+    if not gone:
+        raise UserError(f"there is no pin {pin_id}; it may have been removed already")
+    changed: set[str] = set()
+    for one in gone:
+        changed |= units_of(state.pins.pop(one))
+        state.pin_verdicts.pop(one, None)
+    return changed
+
+
+def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]:
+    _check_place(state, action)
+    if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
+        raise UserError("how far a beacon reaches is a number of metres, 0 or more")
+    earlier = state.beacons.get(action.beacon_id)
+    state.beacons[action.beacon_id] = Beacon(
+        **msgspec.structs.asdict(action),
+        placed_ns=state.t_ns,
+        by=by,
+        seen_ns=earlier.seen_ns if earlier is not None else None,
+    )
+    return _who_saw(state, action.beacon_id)
+
+
+def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:
+    if state.beacons.pop(beacon_id, None) is None:
+        raise UserError(f"there is no beacon {beacon_id}; it may have been removed already")
+    return _who_saw(state, beacon_id)
+
+
+def _who_saw(state: StationState, beacon_id: str) -> set[str]:
+    return {
+        pin.unit_id
+        for pin in state.pins.values()
+        if pin.kind in {"beacon", "tag"} and pin.other_id == beacon_id
+    }
+
+
+def _check_unit(state: StationState, unit_id: str) -> None:
+    unit = state.units.get(unit_id)
+    if unit is None or not unit.registered:
+        raise UserError(f"no registered unit {unit_id!r}; register it first")
+
+
+def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
+    if t_ns > state.t_ns + FUTURE_NS:
+        ahead_s = (t_ns - state.t_ns) / NS_PER_S
+        raise UserError(f"the pin's time is {ahead_s:.0f} s in the future; say when it was")
+    history = state.paths.get(unit_id)
+    begin_ns = None if history is None else history.begin_ns
+    if t_ns and begin_ns is not None and t_ns < begin_ns - BEFORE_NS:
+        early_s = (begin_ns - t_ns) / NS_PER_S
+        raise UserError(
+            f"the pin's time is {early_s:.0f} s before the path of {unit_id} begins; there is "
+            "nothing to pin there"
+        )
+
+
+def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeacon) -> None:
+    if not (math.isfinite(action.north_m) and math.isfinite(action.east_m)):
+        raise UserError("the place is no pair of numbers")
+    _check_std(action.std_m)
+    if not isinstance(action, PlaceBeacon) and action.heading_rad is not None:
+        _check_heading(action.heading_rad, action.heading_std_rad)
+    plan = state.plan
+    if action.floor is not None:
+        floors = [] if plan is None else [storey.floor for storey in plan.storeys]
+        if action.floor not in floors:
+            known = ", ".join(map(str, floors)) or "none; load a plan with storeys"
+            raise UserError(f"the plan has no floor {action.floor}; it has: {known}")
+    if plan is not None and plan.outlines:
+        away_m = plan.away_m(action.north_m, action.east_m)
+        if away_m > FURTHEST_M:
+            raise UserError(
+                f"the place is {away_m:.0f} m from the plan's building; at most {FURTHEST_M:.0f} m "
+                "make sense"
+            )
+
+
+def _check_std(std_m: float) -> None:
+    if not (math.isfinite(std_m) and 0.0 < std_m <= LARGEST_STD_M):
+        raise UserError(
+            f"an uncertainty of {std_m} m cannot be weighed; say how many metres it may be off, "
+            "more than 0"
+        )
+
+
+def _check_heading(heading_rad: float, std_rad: float) -> None:
+    if not (math.isfinite(heading_rad) and math.isfinite(std_rad) and std_rad > 0.0):
+        raise UserError("a heading needs an angle, and an uncertainty of more than 0")

@@ -1,0 +1,262 @@
+"""Solves the past of units again with the pins that are known of them.
+
+A meeting pins each of the two where the other is by everything else that is known of that one,
+so that neither believes itself by way of the other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from base_station.fusion.path_history import NO_FLOOR, PathArrays, PathHistory
+from base_station.fusion.smoother.port import (
+    PlaceSeen,
+    SmoothedPath,
+    Smoother,
+    Solution,
+    Tie,
+    UnitEvidence,
+    Verdict,
+)
+from base_station.live_state import TRAIL_POINTS, StationState, TrailStep
+from base_station.pins.book import units_of
+from base_station.pins.pin import Beacon, Pin, PinVerdict
+from shared.clock import NS_PER_S
+
+NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
+SUREST_M = 0.05  # nobody knows a place better
+MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
+
+
+@dataclass(frozen=True)
+class Repinned:
+    """What came of one unit."""
+
+    path: SmoothedPath | None  # None: no pin is of use
+    trail: list[TrailStep]
+
+
+def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
+    """These units and those that met them, whose past hangs on theirs; in a fixed order."""
+    wanted = set(unit_ids)
+    met = [units_of(pin) for pin in state.pins.values() if pin.kind == "meeting"]
+    for pair in met:
+        if pair & set(unit_ids):
+            wanted |= pair
+    return sorted(wanted)
+
+
+def solve_pins(
+    state: StationState, smoother: Smoother, unit_ids: Sequence[str]
+) -> dict[str, Repinned]:
+    """Solve the past of these units, and judge their pins."""
+    results: dict[str, Repinned] = {}
+    verdicts: dict[str, list[PinVerdict]] = {}
+    for unit_id in unit_ids:
+        history = state.paths.get(unit_id)
+        pins = [pin for pin in state.pins.values() if unit_id in units_of(pin)]
+        solution: Solution | None = None
+        if history is not None and history.begin_ns is not None:
+            places, waiting = _places(state, smoother, unit_id, history, pins)
+            _await(history, pins, waiting)
+            if places:
+                evidence = _evidence(history, places)
+                solution = smoother.solve({unit_id: evidence})
+        else:
+            waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
+        for pin_id, why in waiting.items():
+            verdicts.setdefault(pin_id, []).append(PinVerdict("waiting", text=why))
+        results[unit_id] = Repinned(None, [])
+        if solution is not None and history is not None:
+            for pin_id, verdict in solution.verdicts.items():
+                verdicts.setdefault(pin_id, []).append(_judged(state, verdict))
+            if any(verdict.used for verdict in solution.verdicts.values()):
+                path = solution.paths[unit_id]
+                results[unit_id] = Repinned(path, trail_of(state, history.arrays(), path))
+    for pin_id, found in verdicts.items():
+        state.pin_verdicts[pin_id] = max(found, key=lambda one: _SEVERITY[one.state])
+    return results
+
+
+_SEVERITY = {"used": 0, "waiting": 1, "conflict": 2}
+
+
+def trail_of(state: StationState, points: PathArrays, path: SmoothedPath) -> list[TrailStep]:
+    """A smoothed path as the consoles draw it: thinned evenly, since the incident began."""
+    since_ns = state.incident.opened_ns if state.incident is not None else 0
+    rows = np.flatnonzero(path.t_ns >= since_ns)
+    if len(rows) > TRAIL_POINTS:
+        rows = rows[np.linspace(0, len(rows) - 1, TRAIL_POINTS).round().astype(int)]
+    floors = _floors(state, points, path)
+    return [
+        TrailStep(
+            int(path.t_ns[row]), float(path.north_m[row]), float(path.east_m[row]), floors[row]
+        )
+        for row in rows
+    ]
+
+
+def evidence_of_all(state: StationState) -> Mapping[str, UnitEvidence]:
+    """Everything that is known of every unit that has a path, but for meetings."""
+    found = {}
+    for unit_id, history in sorted(state.paths.items()):
+        if history.begin_ns is not None:
+            pins = [pin for pin in state.pins.values() if pin.unit_id == unit_id]
+            places = [
+                place
+                for pin in pins
+                if pin.kind != "meeting"
+                and not isinstance(place := _place(state, history, pin), str)
+            ]
+            found[unit_id] = _evidence(history, places)
+    return found
+
+
+def ties_of(state: StationState) -> list[Tie]:
+    """Meetings of units whose paths both reach them."""
+    ties = []
+    for pin in state.pins.values():
+        paths = [state.paths.get(one) for one in (pin.unit_id, pin.other_id)]
+        reached = [path for path in paths if path is not None and path.begin_ns is not None]
+        if pin.kind == "meeting" and len(reached) == 2:
+            times = [_time_of(path, pin) for path in reached]
+            if not any(isinstance(t_ns, str) for t_ns in times):
+                std_m = max(pin.std_m, SUREST_M)
+                ties.append(Tie(pin.pin_id, pin.unit_id, pin.other_id, pin.t_ns, std_m))
+    return ties
+
+
+def _floors(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
+    """As they were said then, where the height is still that; else by the plan."""
+    floors: list[int | None] = []
+    for row, floor in enumerate(points.floor.tolist()):
+        said = None if floor == NO_FLOOR else floor
+        moved_m = float(path.down_m[row]) - float(points.down_m[row])
+        if state.plan is not None and abs(moved_m) > 1.0:
+            said = state.plan.floor_at(float(path.down_m[row]), floors[-1] if floors else None)
+        floors.append(said)
+    return floors
+
+
+def _places(
+    state: StationState,
+    smoother: Smoother,
+    unit_id: str,
+    history: PathHistory,
+    pins: Sequence[Pin],
+) -> tuple[list[PlaceSeen], dict[str, str]]:
+    """What pins say of the unit's place, and why others cannot yet."""
+    places: list[PlaceSeen] = []
+    waiting: dict[str, str] = {}
+    for pin in pins:
+        if pin.kind == "meeting":
+            place = _met(state, smoother, unit_id, history, pin)
+        else:
+            place = _place(state, history, pin)
+        if isinstance(place, str):
+            waiting[pin.pin_id] = place
+        else:
+            places.append(place)
+    return places, waiting
+
+
+def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | str:
+    t_ns = _time_of(history, pin)
+    if isinstance(t_ns, str):
+        return t_ns
+    beacon = state.beacons.get(pin.other_id) if pin.other_id else None
+    if pin.other_id and beacon is None:
+        return f"nobody has said where {pin.kind} {pin.other_id} hangs"
+    at: Pin | Beacon = beacon or pin
+    assert at.north_m is not None
+    assert at.east_m is not None
+    down_m = None
+    if state.plan is not None and at.floor is not None:
+        down_m = next((s.down_m for s in state.plan.storeys if s.floor == at.floor), None)
+    return PlaceSeen(
+        name=pin.pin_id,
+        t_ns=t_ns,
+        north_m=at.north_m,
+        east_m=at.east_m,
+        std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
+        down_m=down_m,
+        heading_rad=pin.heading_rad,
+        heading_std_rad=pin.heading_std_rad,
+    )
+
+
+def _met(
+    state: StationState, smoother: Smoother, unit_id: str, history: PathHistory, pin: Pin
+) -> PlaceSeen | str:
+    """Where the other one was then, by its own evidence."""
+    t_ns = _time_of(history, pin)
+    if isinstance(t_ns, str):
+        return t_ns
+    other_id = pin.other_id if pin.unit_id == unit_id else pin.unit_id
+    other = state.paths.get(other_id)
+    if other is None or other.begin_ns is None:
+        return f"no position of {other_id} has come yet"
+    there_ns = _time_of(other, pin)
+    if isinstance(there_ns, str):
+        return there_ns
+    places = [
+        place
+        for one in state.pins.values()
+        if one.unit_id == other_id
+        and one.kind != "meeting"
+        and not isinstance(place := _place(state, other, one), str)
+    ]
+    path = smoother.solve({other_id: _evidence(other, places)}).paths[other_id]
+    row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
+    spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
+    if spread_m > MEETING_MOST_M:
+        return f"nobody knows well enough where {other_id} was"
+    return PlaceSeen(
+        name=pin.pin_id,
+        t_ns=t_ns,
+        north_m=float(path.north_m[row]),
+        east_m=float(path.east_m[row]),
+        std_m=math.hypot(pin.std_m, spread_m),
+    )
+
+
+def _time_of(history: PathHistory, pin: Pin) -> int | str:
+    """When on the path the pin is, or what it waits for."""
+    begin_ns, end_ns = history.begin_ns, history.end_ns
+    assert begin_ns is not None
+    assert end_ns is not None
+    if pin.t_ns == 0:
+        return begin_ns
+    if pin.t_ns > end_ns + NEAR_NS:
+        return "the unit's path has not come to that time yet"
+    return min(max(pin.t_ns, begin_ns), end_ns)
+
+
+def _await(history: PathHistory, pins: Sequence[Pin], waiting: Mapping[str, str]) -> None:
+    """Note when the path will have come to the first pin that waits for it."""
+    end_ns = history.end_ns or 0
+    times = [pin.t_ns for pin in pins if pin.pin_id in waiting and pin.t_ns > end_ns]
+    history.awaited_ns = min(times, default=None)
+
+
+def _evidence(history: PathHistory, places: Sequence[PlaceSeen]) -> UnitEvidence:
+    return UnitEvidence(history.arrays(), history.start, history.start_ns, places)
+
+
+def _judged(state: StationState, verdict: Verdict) -> PinVerdict:
+    if verdict.used:
+        return PinVerdict("used", verdict.residual_m, verdict.sigmas)
+    other = state.pins.get(verdict.against)
+    if other is None:
+        against = "the path walked and the satellite fixes"
+    else:
+        against = f"the pin {other.note or other.pin_id!r} and the path walked"
+    text = (
+        f"{verdict.residual_m:.0f} m from where {against} lead: {verdict.sigmas:.0f} times what is "
+        "to be expected; kept, and not used"
+    )
+    return PinVerdict("conflict", verdict.residual_m, verdict.sigmas, text)

@@ -1,0 +1,108 @@
+"""Makes pins of what units say they saw: beacons, tags and each other.
+
+Somebody who stays near a beacon sees it again and again; that is one pin, at the time at which it
+was nearest.
+"""
+
+from __future__ import annotations
+
+import math
+
+from base_station.live_state import StationState, UnitState
+from base_station.pins.book import MOST_PINS, put, units_of
+from base_station.pins.pin import Pin, PinKind
+from shared.clock import NS_PER_S
+from shared.messages import Sighting, SightingKind
+
+AGAIN_NS = 20 * NS_PER_S  # sightings closer in time than this are one
+NEARER = 0.7  # of the standard deviation before: worth solving the past again
+REACH_M = 3.0  # of a beacon that nobody has placed yet
+TAG_REACH_M = 0.5  # of an arm
+MEETING_REACH_M = 3.0
+FURTHEST_M = 100.0
+_KINDS: dict[SightingKind, PinKind] = {
+    SightingKind.BEACON: "beacon",
+    SightingKind.TAG: "tag",
+    SightingKind.UNIT: "meeting",
+}
+
+
+def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> set[str]:
+    """The units whose past it changes; counts by reason what cannot be used."""
+    t_ns = _time_of(unit, sighting, state.t_ns)
+    reason = _reason_against(state, unit, sighting, t_ns)
+    if reason:
+        unit.not_used[reason] = unit.not_used.get(reason, 0) + 1
+        return set()
+    assert t_ns is not None
+    beacon = state.beacons.get(sighting.seen_id)
+    if beacon is not None:
+        beacon.seen_ns = max(t_ns, beacon.seen_ns or 0)
+    pin = Pin(
+        pin_id=f"{unit.unit_id}-{sighting.header.boot_id:x}-{sighting.header.seq}",
+        kind=_KINDS[sighting.kind],
+        unit_id=unit.unit_id,
+        t_ns=t_ns,
+        std_m=_std_m(state, sighting),
+        set_ns=state.t_ns,
+        by=unit.unit_id,
+        other_id=sighting.seen_id,
+    )
+    earlier = _same_visit(state, pin)
+    if earlier is not None and pin.std_m > NEARER * earlier.std_m:
+        return set()
+    if earlier is not None:
+        del state.pins[earlier.pin_id]
+        state.pin_verdicts.pop(earlier.pin_id, None)
+    put(state, pin)
+    return units_of(pin)
+
+
+def _reason_against(
+    state: StationState, unit: UnitState, sighting: Sighting, t_ns: int | None
+) -> str:
+    meets = sighting.kind is SightingKind.UNIT
+    other = state.units.get(sighting.seen_id) if meets else None
+    range_m = sighting.range_m or 0.0
+    causes = (
+        (not unit.registered, "a sighting of a unit that is not registered"),
+        (sighting.kind not in _KINDS or not sighting.seen_id, "a sighting of nothing"),
+        (t_ns is None, "a sighting of an unknown time"),
+        (range_m > FURTHEST_M, "a sighting from too far away"),
+        (meets and (other is None or not other.registered), "a meeting with an unknown unit"),
+        (other is unit, "a meeting with itself"),
+        (len(state.pins) >= MOST_PINS, "more sightings than are kept"),
+    )
+    return next((why for holds, why in causes if holds), "")
+
+
+def _time_of(unit: UnitState, sighting: Sighting, now_ns: int) -> int | None:
+    """Station time; None of a run of the unit whose clock is not known."""
+    boots = [boot for boot in unit.boots if boot.boot_id == sighting.header.boot_id]
+    if not boots or not boots[0].is_placed:
+        return None
+    return min(boots[0].station_ns(sighting.header.t_mono_ns), now_ns)
+
+
+def _std_m(state: StationState, sighting: Sighting) -> float:
+    """Each axis.  Somewhere on a circle of known range: half its square; anywhere within reach: a
+    quarter.
+    """
+    if sighting.range_m is not None:
+        return math.hypot(sighting.range_m / math.sqrt(2.0), sighting.range_std_m or 0.5)
+    beacon = state.beacons.get(sighting.seen_id)
+    reach_m = {
+        SightingKind.BEACON: REACH_M if beacon is None else beacon.reach_m,
+        SightingKind.TAG: TAG_REACH_M if beacon is None else beacon.reach_m,
+    }.get(sighting.kind, MEETING_REACH_M)
+    return max(reach_m / 2.0, 0.3)
+
+
+def _same_visit(state: StationState, pin: Pin) -> Pin | None:
+    """The newest pin that tells of the same meeting of the same two."""
+    for earlier in reversed(state.pins.values()):
+        if abs(earlier.t_ns - pin.t_ns) < AGAIN_NS and earlier.kind == pin.kind:
+            same = {earlier.unit_id, earlier.other_id} == {pin.unit_id, pin.other_id}
+            if same and (pin.kind == "meeting" or earlier.unit_id == pin.unit_id):
+                return earlier
+    return None

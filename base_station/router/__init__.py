@@ -1,0 +1,1 @@
+"""The bus's router, a process beside the station."""

@@ -1,0 +1,1 @@
+"""The plan of the site, and where people can get to on it."""
