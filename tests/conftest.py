@@ -8,6 +8,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from hypothesis import settings
 
 from shared.clock import ManualClock
 from shared.envelope import Stamper
@@ -15,6 +16,10 @@ from shared.messages import Position
 from shared.quality import Quality, Reason
 
 PROJECT_ROOT = Path(__file__).resolve().parent.parent
+
+# How long an example takes says how busy the machine is.
+settings.register_profile("muster", deadline=None)
+settings.load_profile("muster")
 
 
 @pytest.fixture(scope="session")

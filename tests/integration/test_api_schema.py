@@ -68,7 +68,6 @@ def check(operation: APIOperation[Any, Any, Any, Any], token: str) -> None:
 
     @settings(
         max_examples=EXAMPLES,
-        deadline=None,
         derandomize=True,
         database=None,
         suppress_health_check=list(HealthCheck),

@@ -26,7 +26,7 @@ def directions(count: int, seed: int):
 
 
 @given(distortion=matrix, bias=vector, seed=st.integers(0, 999))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_an_ellipsoid_becomes_the_sphere_it_was(distortion, bias, seed):
     gain = np.eye(3) + np.array(distortion)
     readings = directions(40, seed) @ gain.T + np.array(bias)
@@ -39,7 +39,7 @@ def test_an_ellipsoid_becomes_the_sphere_it_was(distortion, bias, seed):
 
 
 @given(distortion=matrix, bias=vector, cuts=st.lists(st.integers(0, 60), max_size=4))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_samples_are_calibrated_each_by_itself(distortion, bias, cuts):
     rng = np.random.default_rng(1)
     gain = to_matrix(np.eye(3) + np.array(distortion))

@@ -82,7 +82,7 @@ STEPS = st.one_of(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.lists(STEPS, max_size=30))
 def test_every_command_is_done_once_and_known_to_be(steps: list[tuple[object, ...]]) -> None:
     radio = Radio()

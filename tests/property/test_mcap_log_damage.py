@@ -22,7 +22,7 @@ from shared.mcap_log import (
 )
 from shared.mcap_log.schemas import location_topic
 
-MANY = settings(max_examples=60, deadline=None)
+MANY = settings(max_examples=60)
 FIXTURES = [HealthCheck.function_scoped_fixture]
 T0_NS = 1_700_000_000_000_000_000
 POLICY = SegmentPolicy(chunk_bytes=2048)

@@ -39,9 +39,7 @@ def plain() -> Walk:
 
 
 @given(pins=PINS)
-@settings(
-    max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_with_all_pins_taken_back_everything_is_as_it_was(
     plain: Walk, pins: list[tuple[str, float, float, bool]]
 ) -> None:

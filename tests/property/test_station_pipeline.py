@@ -142,7 +142,7 @@ def _restart(script: Script, unit_id: str) -> None:
     script.boot_ids[unit_id] = script.boot_ids.get(unit_id, 7) + 1
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=40), st.integers(0, 40))
 def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut: int) -> None:
     script = Script()
@@ -168,7 +168,7 @@ def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut:
         assert fused.std_north_m >= 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
 def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
     """Raised first, resolved last and for good; acknowledged and worse in between."""
@@ -191,7 +191,7 @@ def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
             assert life[-1].by.startswith("chief")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
 def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) -> None:
     script = Script()
@@ -211,7 +211,7 @@ def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) 
                 assert by_wearer or delivery.acknowledged_by == "chief"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
 def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
     """Each deed that is no person's leaves everybody's check-in as it was."""

@@ -37,7 +37,7 @@ def random_rotation(seed):
     return q * np.linalg.det(q)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40))
 def test_batching_does_not_change_a_bit(cuts):
     rows = run(WALK.imu, cuts=cuts)
@@ -59,7 +59,7 @@ def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
         assert np.array_equal(getattr(live, field.name), getattr(WHOLE, field.name)), field.name
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 10_000))
 def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
     rows = run(turned(WALK.imu, random_rotation(seed)))
@@ -70,7 +70,7 @@ def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
     assert np.array_equal(rows.stationary, WHOLE.stationary)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 10_000))
 def test_attitude_stays_orthonormal_and_covariance_positive(seed):
     noise = np.random.default_rng(seed)
@@ -100,7 +100,7 @@ def test_the_filter_covariance_stays_symmetric_positive():
         assert np.linalg.eigvalsh(0.5 * (covariance + covariance.T)).min() >= -1e-12
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     seed=st.integers(0, 10_000),
     steps_ns=st.lists(
