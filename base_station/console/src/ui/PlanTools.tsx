@@ -1,4 +1,4 @@
-import { useEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
 import { loadingKinds, shownKinds, toggle, type TrailKind } from "../plan/pastTrails";
@@ -11,7 +11,7 @@ import { MeetingPanel, PinPanel, StartPanel } from "./PinPanel";
 /** What can be done on the plan, and the panel of what is being done. */
 export function PlanTools({ picture }: { picture: Picture }) {
   const now = tool.value;
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (now === null) return undefined;
     const leave = (event: KeyboardEvent) => {
       if (event.key === "Escape") putDown();
