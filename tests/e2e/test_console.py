@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -201,22 +202,110 @@ def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card
     close(dialog)
 
 
-def test_a_pin_is_set_with_a_click_and_removed(page: Page, card: Locator) -> None:
+def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:
     card.get_by_role("button", name="Pin on the plan").click()
     form = page.get_by_role("form", name=f"Pin: {NAME}")
-    plan = page.locator(".map")
-    plan.click(position={"x": 200, "y": 150})
+    click_plan(page, -150, -80)
     expect(form.get_by_label("North, m")).not_to_have_value("", timeout=SOON_MS)
     form.get_by_label("Sure to within").select_option("4")
     form.get_by_role("button", name="Set pin").click()
     expect(form).to_have_count(0, timeout=SOON_MS)
-    (pin,) = page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())")
+    (pin,) = pins(page)
     assert (pin["unit_id"], pin["std_m"], pin["by"]) == (UNIT, 2.0, "admin")
+    expect(page.get_by_text("Pins 1")).to_be_visible(timeout=SOON_MS)
+    moved = drag(page, (-150, -80), (-90, -40))
+    assert moved["pin_id"] == pin["pin_id"]
+    right_m, down_m = moved["east_m"] - pin["east_m"], pin["north_m"] - moved["north_m"]
+    assert right_m > 0.5
+    assert down_m == pytest.approx(right_m * 40 / 60, rel=0.1)
     page.get_by_text("Pins 1").click()
     page.get_by_role("button", name=f"{NAME} here").click()
+    expect(form.get_by_label("East, m")).to_have_value(f"{moved['east_m']:.1f}", timeout=SOON_MS)
     form.get_by_role("button", name="Remove pin").click()
     expect(form).to_have_count(0, timeout=SOON_MS)
-    assert page.evaluate("fetch('/api/v1/pins').then((answer) => answer.json())") == []
+    assert pins(page) == []
+
+
+def pins(page: Page) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = answer_to(page, "pins")
+    return found
+
+
+def answer_to(page: Page, path: str) -> Any:
+    """What the station answers to who is logged in."""
+    return page.evaluate(f"fetch('/api/v1/{path}').then((answer) => answer.json())")
+
+
+def on_plan(page: Page, right_px: int, down_px: int) -> tuple[float, float]:
+    """A point of the page, from the plan's middle: that stays where it is when panels open."""
+    box = page.locator(".map").bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2 + right_px, box["y"] + box["height"] / 2 + down_px
+
+
+def click_plan(page: Page, right_px: int, down_px: int) -> None:
+    """And wait until the plan knows that it is no double click."""
+    page.wait_for_timeout(100)  # the plan has taken the size that a panel leaves it
+    page.mouse.click(*on_plan(page, right_px, down_px))
+    page.wait_for_timeout(350)
+
+
+def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, Any]:
+    """The pin as it is after it was drawn to another place of the plan."""
+    page.mouse.move(*on_plan(page, *start))
+    page.mouse.down()
+    page.mouse.move(*on_plan(page, *end), steps=8)
+    with page.expect_response(
+        lambda one: one.request.method == "PUT" and "/pins/" in one.url, timeout=SOON_MS
+    ) as moved:
+        page.mouse.up()
+    pin: dict[str, Any] = moved.value.json()
+    return pin
+
+
+def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name=NAME).click()
+    page.wait_for_timeout(600)  # the plan has come to rest
+    page.get_by_text("Trails", exact=True).click()
+    kinds = page.get_by_role("group").filter(has=page.get_by_text("Trails", exact=True))
+    kinds.get_by_label("As shown at the time").uncheck()  # it lies above the others
+    for word, kind, colour in (
+        ("own path", "raw", "--quiet"),
+        ("Best known since", "smoothed", "--watch"),
+    ):
+        before = painted(page, colour)
+        with page.expect_response(re.compile(rf"trails\?kind={kind}")) as said:
+            kinds.get_by_label(word).check()
+        (trail,) = said.value.json()["trails"]
+        assert (trail["unit_id"], len(trail["points"]) > 1) == (UNIT, True)
+        expect(kinds).not_to_contain_text("is worked out", timeout=SOON_MS)
+        page.wait_for_timeout(300)
+        assert painted(page, colour) > before + 50, kind
+        kinds.get_by_label(word).uncheck()
+        page.wait_for_timeout(300)
+        assert painted(page, colour) < before + 50, kind
+    kinds.get_by_label("As shown at the time").check()
+    page.get_by_text("Trails", exact=True).click()
+
+
+def painted(page: Page, colour: str) -> int:
+    """How many points of the plan are of a colour of the theme."""
+    count: int = page.evaluate(
+        """(name) => {
+          const said = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+          const wanted = [1, 3, 5].map((at) => parseInt(said.slice(at, at + 2), 16));
+          let found = 0;
+          for (const canvas of document.querySelectorAll(".map canvas")) {
+            const { width, height } = canvas;
+            const points = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+            for (let i = 0; i < points.length; i += 4)
+              if (wanted.every((value, band) => Math.abs(points[i + band] - value) < 12)) found++;
+          }
+          return found;
+        }""",
+        colour,
+    )
+    return count
 
 
 def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
@@ -288,6 +377,18 @@ def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator)
     page.keyboard.press("Escape")
 
 
+def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locator) -> None:
+    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
+    dialog = page.get_by_role("dialog", name=INCIDENT)
+    errors = dialog.get_by_role("table", name="ISO/IEC 18305")
+    expect(errors.get_by_role("rowheader", name=f"{NAME} ({UNIT})")).to_be_visible(timeout=SOON_MS)
+    everybody = errors.get_by_role("row", name="Everybody")
+    expect(everybody).to_contain_text(re.compile(r"as promised then(\d+\.\d\sm){4}"))
+    assert barriers(page) == []
+    dialog.get_by_role("button", name="All incidents").click()
+    close(page.get_by_role("dialog", name="Incidents"))
+
+
 def barriers(page: Page) -> list[tuple[str, list[str]]]:
     """What keeps somebody from using what is shown, as axe-core finds it."""
     if not AXE.is_file():
@@ -315,6 +416,65 @@ def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     expect(banner).to_have_count(0)
     expect(card).to_contain_text("Link good", timeout=SOON_MS)
     assert metres_north(card) > in_the_past_m
+
+
+def test_a_person_is_forgotten_by_who_writes_the_name(
+    page: Page, card: Locator, complaints: list[str]
+) -> None:
+    name = "Bo Stein"
+    dialog = menu(page, "People")
+    dialog.get_by_label("Name", exact=True).fill(name)
+    dialog.get_by_role("button", name="Add person").click()
+    row = dialog.get_by_role("row", name=name)
+    row.get_by_role("button", name=f"Forget {name}").click()
+    row.get_by_label(f"Write “{name}” to go on").fill("Bo")
+    row.get_by_role("button", name="Forget for good").click()
+    notice = page.get_by_text("The name is another")
+    expect(notice).to_have_count(1, timeout=SOON_MS)
+    assert "422" in complaints.pop()  # the browser notes the refusal, as it should
+    row.get_by_label(f"Write “{name}” to go on").fill(name)
+    row.get_by_role("button", name="Forget for good").click()
+    expect(row).to_have_count(0, timeout=SOON_MS)
+    expect(dialog.get_by_role("row", name=NAME)).to_be_visible()
+    close(dialog)
+    page.get_by_role("alert").get_by_role("button", name="Close").click()
+    assert name not in str(answer_to(page, "audit?limit=1000"))
+
+
+def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator) -> None:
+    for _ in range(2):
+        page.get_by_role("button", name="Zoom out").click()
+    menu(page, "Site").get_by_role("button", name="By two points of the plan").click()
+    form = page.get_by_role("form", name="Place on the Earth")
+    click_plan(page, -150, 60)
+    click_plan(page, 150, -60)
+    (south_m, west_m), (north_m, east_m) = clicked_places(form)
+    per_degree_m = 111_319.5  # on the equator, east
+    fill_point(form, 0, 0.0, 16.0)
+    fill_point(
+        form, 1, 2 * (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m
+    )
+    form.get_by_role("button", name="Set place").click()
+    expect(form.get_by_role("alert")).to_contain_text("m apart on the plan")
+    fill_point(form, 1, (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m)
+    form.get_by_role("button", name="Set place").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    anchor = answer_to(page, "site/anchor")
+    assert anchor["lat_deg"] * 110_574.3 == pytest.approx(-south_m, abs=0.5)
+    assert (anchor["lon_deg"] - 16.0) * per_degree_m == pytest.approx(-west_m, abs=0.5)
+    assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.01)
+
+
+def clicked_places(form: Locator) -> list[tuple[float, float]]:
+    """North and east, as the panel says them."""
+    found = re.findall(r"(-?[\d.]+) m north, (-?[\d.]+) m east", form.text_content() or "")
+    assert len(found) == 2
+    return [(float(north), float(east)) for north, east in found]
+
+
+def fill_point(form: Locator, index: int, lat_deg: float, lon_deg: float) -> None:
+    form.get_by_label("Latitude, °").nth(index).fill(f"{lat_deg:.9f}")
+    form.get_by_label("Longitude, °").nth(index).fill(f"{lon_deg:.9f}")
 
 
 def test_nothing_came_from_elsewhere_and_nothing_broke(
