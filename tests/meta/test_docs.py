@@ -26,8 +26,11 @@ def test_every_link_leads_to_a_file(page):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_every_command_exists(page):
     known = {name.partition(".")[0] for name in COMMANDS} | OF_THE_BOOTSTRAP
-    for name in re.findall(r"(?:^|`)(?:\./)?muster ([a-z]+)", page.read_text(), flags=re.MULTILINE):
+    text = page.read_text()
+    for name in re.findall(r"(?:^|`)(?:\./)?muster ([a-z]+)", text, flags=re.MULTILINE):
         assert name in known, f"muster {name}"
+    for name in re.findall(r"muster bench ([a-z]+)", text):
+        assert f"bench.{name}" in COMMANDS, f"muster bench {name}"
 
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))
