@@ -191,7 +191,7 @@ function WhenField({ set }: { set: number | null }) {
   );
 }
 
-/** Left out for now: the station knows better when that is. */
+/** Undefined where it was just now: the station knows better when that is. */
 function timeOf(given: Record<string, string>, picture: Picture): number | undefined {
   const ago = Number(given["when"] ?? "0");
   return ago === 0 ? undefined : Math.round(picture.nowMs.peek() - ago * 60_000);
