@@ -1,49 +1,44 @@
 """Keeps what is in no log the same at both stations: accounts, people, audit, who is enrolled.
 
-The standby asks once a second whether anything has changed; the answer is all of it, or nothing.
+The standby asks in every round whether anything has changed; the answer is all of it, or nothing.
 The audit is added to, in both directions.
 """
 
 from __future__ import annotations
 
 import hashlib
-import logging
 from collections.abc import Callable, Iterator
-from threading import Event, Thread
+from threading import Event
 
 import msgspec
 
 from base_station.db.kept import Kept, KeptTables, Row
 from base_station.pki.folder import PkiFolder
 from base_station.pki.registry import Registry
-from base_station.standby.words import key_of, pack, unpack
-from shared.bus import Bus, Subscription
-from shared.errors import MusterError
+from base_station.standby.asking import Answers, ask
+from base_station.standby.words import pack, unpack
+from shared.bus import Bus
 
-logger = logging.getLogger(__name__)
-
-_LOOK_EVERY_S = 1.0
-_TIMEOUT_S = 5.0
 _AUDIT_ENTRIES = 500
 _FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting.forgetter says it
 
 
-class KeptServer:
+class KeptServer(Answers):
     """Serves ``kept/all``, ``kept/photo``, ``kept/audit`` and ``kept/enrolled``."""
 
     def __init__(self, station: str, bus: Bus, tables: KeptTables, pki: PkiFolder) -> None:
         self._tables = tables
         self._pki = pki
-        self._serving: list[Subscription] = [
-            bus.serve(key_of(station, "kept/all"), self._all),
-            bus.serve(key_of(station, "kept/photo"), self._photo),
-            bus.serve(key_of(station, "kept/audit"), self._audit),
-            bus.serve(key_of(station, "kept/enrolled"), self._enrolled),
-        ]
-
-    def close(self) -> None:
-        for subscription in self._serving:
-            subscription.close()
+        super().__init__(
+            station,
+            bus,
+            {
+                "kept/all": self._all,
+                "kept/photo": self._photo,
+                "kept/audit": self._audit,
+                "kept/enrolled": self._enrolled,
+            },
+        )
 
     def _all(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
         """Nothing where the asker knows it by its hash."""
@@ -68,7 +63,7 @@ class KeptServer:
 
 
 class KeptCopy:
-    """Copies, for as long as another station is there."""
+    """Copies in rounds, for as long as another station is there."""
 
     def __init__(
         self,
@@ -100,30 +95,18 @@ class KeptCopy:
         self._on_dropped = on_dropped
         self._known = self._known_enrolled = b""
         self._audit_ns = 0
-        self._closing = Event()
-        self._thread = Thread(target=self._run, name="kept-copy", daemon=True)
 
-    def start(self) -> None:
-        self._thread.start()
+    def look(self, stop: Event) -> None:
+        """One round; ``stop`` ends it early.  Raises MusterError where the bus or a store fails."""
+        leader, other = self._leader(), self._other()
+        if leader is not None:
+            self._copy(leader, stop)
+        if other is not None:
+            self._take_enrolled(other)
+        if other is not None and self._caught_up():
+            self._add_audit(other)
 
-    def close(self) -> None:
-        self._closing.set()
-        self._thread.join()
-
-    def _run(self) -> None:
-        while not self._closing.wait(_LOOK_EVERY_S):
-            try:
-                leader, other = self._leader(), self._other()
-                if leader is not None:
-                    self._copy(leader)
-                if other is not None:
-                    self._take_enrolled(other)
-                if other is not None and self._caught_up():
-                    self._add_audit(other)
-            except MusterError as error:
-                logger.warning("accounts cannot be copied from the other station: %s", error)
-
-    def _copy(self, leader: str) -> None:
+    def _copy(self, leader: str, stop: Event) -> None:
         said = self._ask(leader, "all", self._known)
         if said is not None:
             dropped = self._tables.copy(unpack(said, Kept))
@@ -132,6 +115,8 @@ class KeptCopy:
             self._known = _hash(said)
         missing = self._tables.missing_photos()
         for person_id in missing:
+            if stop.is_set():
+                return
             photo = self._ask(leader, "photo", person_id.encode())
             if photo is not None:
                 self._tables.put_photo(person_id, photo)
@@ -158,9 +143,7 @@ class KeptCopy:
             self._known_enrolled = _hash(said)
 
     def _ask(self, station: str, what: str, payload: bytes) -> bytes | None:
-        for reply in self._bus.query(key_of(station, f"kept/{what}"), payload, _TIMEOUT_S):
-            return reply
-        return None
+        return next(iter(ask(self._bus, station, f"kept/{what}", payload)), None)
 
 
 def _hash(said: bytes) -> bytes:

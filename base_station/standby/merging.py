@@ -11,42 +11,40 @@ import logging
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 
 from base_station.live.sinks import OperatorGate
+from base_station.standby.asking import Answers, ask
 from base_station.standby.places import Record
 from base_station.standby.setting_aside import mark_told, parts, read_part
-from base_station.standby.words import Batch, key_of, pack, unpack
-from shared.bus import Bus, Subscription
+from base_station.standby.words import Batch, pack, unpack
+from shared.bus import Bus
 from shared.channels import OPERATOR, Direction, backfilled_key, parse_key
 from shared.codec import decode
-from shared.errors import MusterError, UnknownChannelError, WireError
+from shared.errors import UnknownChannelError, WireError
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import DoneApart, ReportProblem
 
 logger = logging.getLogger(__name__)
 
-_LOOK_EVERY_S = 2.0
 _BATCH = 1000  # events
-_TIMEOUT_S = 5.0
-_PART = "apart"
 
 
-class PartServer:
+class PartServer(Answers):
     """Serves what was set aside: ``apart/names``, ``apart/records``, ``apart/told``."""
 
     def __init__(self, station: str, bus: Bus, data: Path) -> None:
         self._data = data
         self._reading: tuple[str, int, Iterator[Record]] | None = None
-        self._serving: list[Subscription] = [
-            bus.serve(key_of(station, "apart/names"), self._names),
-            bus.serve(key_of(station, "apart/records"), self._records),
-            bus.serve(key_of(station, "apart/told"), self._told),
-        ]
-
-    def close(self) -> None:
-        for subscription in self._serving:
-            subscription.close()
+        super().__init__(
+            station,
+            bus,
+            {
+                "apart/names": self._names,
+                "apart/records": self._records,
+                "apart/told": self._told,
+            },
+        )
 
     def _names(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
         for name in parts(self._data):
@@ -72,7 +70,7 @@ class PartServer:
 
 
 class Merging:
-    """Fetches what the other station has set aside, for as long as this one leads."""
+    """Fetches what the other station has set aside, in rounds, for as long as this one leads."""
 
     def __init__(
         self,
@@ -86,32 +84,24 @@ class Merging:
         self._gate = gate
         self._deliver = deliver
         self._other = other
-        self._closing = Event()
-        self._thread = Thread(target=self._run, name="merging", daemon=True)
 
-    def start(self) -> None:
-        self._thread.start()
+    def look(self, stop: Event) -> None:
+        """One round; ``stop`` ends it early, and the next one begins the part again.
 
-    def close(self) -> None:
-        self._closing.set()
-        self._thread.join()
+        Raises MusterError where the other station's answer makes no sense.
+        """
+        station = self._other()
+        if station is None:
+            return
+        for name in ask(self._bus, station, "apart/names"):
+            self._merge(station, name, stop)
 
-    def _run(self) -> None:
-        while not self._closing.wait(_LOOK_EVERY_S):
-            station = self._other()
-            if station is None:
-                continue
-            try:
-                for name in self._ask(station, "names", b""):
-                    self._merge(station, name)
-            except MusterError as error:
-                logger.warning("what %s has set aside cannot be taken: %s", station, error)
-
-    def _merge(self, station: str, name: bytes) -> None:
+    def _merge(self, station: str, name: bytes, stop: Event) -> None:
         taken, actions = 0, 0
-        while not self._closing.is_set():
-            batch = next(iter(self._ask(station, "records", b"%s %d" % (name, taken))), None)
-            if batch is None:
+        while True:
+            question = b"%s %d" % (name, taken)
+            batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
+            if batch is None or stop.is_set():
                 return  # it has gone again; next time from the beginning, and nothing comes twice
             records = unpack(batch, Batch).records
             if not records:
@@ -119,7 +109,7 @@ class Merging:
             for record in records:
                 actions += self._take(station, record)
             taken += len(records)
-        for _ in self._ask(station, "told", name):
+        for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
         if actions:
             text = (
@@ -145,9 +135,6 @@ class Merging:
                 self._gate.submit(STATION_ID, done)
                 return 1
         return 0
-
-    def _ask(self, station: str, what: str, payload: bytes) -> Iterator[bytes]:
-        yield from self._bus.query(key_of(station, f"{_PART}/{what}"), payload, _TIMEOUT_S)
 
 
 def _persons_action(payload: bytes) -> OperatorAction | None:

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 
 from base_station.feed import LogFeed
+from base_station.standby.asking import Answers
 from base_station.standby.places import Place, Record, events_behind
 from base_station.standby.shared_log import SharedLog
-from base_station.standby.words import Batch, History, key_of, pack
-from shared.bus import Bus, Subscription
+from base_station.standby.words import Batch, History, pack
+from shared.bus import Bus
 
 logger = logging.getLogger(__name__)
 
@@ -20,7 +21,7 @@ _WAIT_S = 0.3  # for something to say
 _GATHER_S = 0.01  # what comes in quick succession is said together
 
 
-class Shipping:
+class Shipping(Answers):
     def __init__(
         self, station: str, bus: Bus, log: SharedLog, disk: LogFeed, leads: Callable[[], bool]
     ) -> None:
@@ -28,14 +29,7 @@ class Shipping:
         self._disk = disk
         self._leads = leads
         self._reading: tuple[Place, Iterator[Record]] | None = None
-        self._serving: list[Subscription] = [
-            bus.serve(key_of(station, "history"), self._history),
-            bus.serve(key_of(station, "records"), self._records),
-        ]
-
-    def close(self) -> None:
-        for subscription in self._serving:
-            subscription.close()
+        super().__init__(station, bus, {"history": self._history, "records": self._records})
 
     def _history(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
         if self._leads():

@@ -17,6 +17,7 @@ from base_station.live.sinks import OperatorGate
 from base_station.live.surroundings import Feed, Log
 from base_station.live_state import StationState
 from base_station.pki.folder import PkiFolder
+from base_station.standby.asking import Rounds
 from base_station.standby.confirming import LeadersGate
 from base_station.standby.kept_copy import KeptCopy, KeptServer
 from base_station.standby.merging import Merging, PartServer
@@ -197,6 +198,11 @@ class OneOfTwo:
             parts.live.deliver,
             lambda: pair.other_there() if pair.leads else None,
         )
-        for thread in (pair, copying, merging):
+        threads = (
+            pair,
+            Rounds("kept-copy", 1.0, copying.look, "the other station's accounts are not copied"),
+            Rounds("merging", 2.0, merging.look, "what the other one set aside is not taken"),
+        )
+        for thread in threads:
             closing.callback(thread.close)
             thread.start()

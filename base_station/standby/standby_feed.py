@@ -13,6 +13,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError
 
 _FOLLOWED_BYTES = 16 * 1024 * 1024
+_FOLLOWED_AT_ONCE = 500  # a long log to catch up with holds up neither consoles nor the end
 _KEPT_NS = 30 * NS_PER_S  # of what the bus says, for when the other station dies
 _KEPT_BYTES = 16 * 1024 * 1024
 
@@ -29,7 +30,7 @@ class StandbyFeed:
         self._live = live
         self._clock = clock
         self._changed = Condition()
-        self._followed: list[Record] = []
+        self._followed: deque[Record] = deque()
         self._followed_bytes = 0
         self._kept: deque[tuple[int, str, bytes]] = deque()  # monotonic time, key, payload
         self._kept_bytes = 0
@@ -74,10 +75,7 @@ class StandbyFeed:
                 )
                 self._woken = False
                 if self._followed or not self._lead_asked:
-                    records, self._followed = self._followed, []
-                    self._followed_bytes = 0
-                    self._changed.notify_all()
-                    return records
+                    return self._take_followed()
                 self._begin_live()
                 timeout_s = 0.0
         return self._live.take(timeout_s)
@@ -94,6 +92,13 @@ class StandbyFeed:
             self._closed = True
             self._changed.notify_all()
         self._live.close()
+
+    def _take_followed(self) -> Sequence[Record]:
+        count = min(len(self._followed), _FOLLOWED_AT_ONCE)
+        records = [self._followed.popleft() for _ in range(count)]
+        self._followed_bytes -= sum(len(payload) for _, _, payload in records)
+        self._changed.notify_all()
+        return records
 
     def _begin_live(self) -> None:
         self._follows = False

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -16,7 +18,6 @@ from base_station.pki.folder import PkiFolder
 from base_station.standby.kept_copy import KeptCopy, KeptServer
 from shared.bus_memory import MemoryRouter
 from shared.clock import ManualClock
-from tests.live_station import until
 from tests.station import QUICK_HASH
 
 PASSWORD = "correct horse battery"
@@ -96,7 +97,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
     forgotten: list[str] = []
     router = MemoryRouter()
-    server = KeptServer("active", router.attach_station(), active.tables, active.pki)
+    KeptServer("active", router.attach_station(), active.tables, active.pki)
     copying = KeptCopy(
         router.attach_station(),
         standby.tables,
@@ -108,20 +109,19 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
         on_forgotten=forgotten.append,
         on_dropped=lambda _: None,
     )
-    copying.start()
-    try:
-        until(lambda: standby.roster.photo(person.person_id) == (b"jpeg", "hash"))
-        assert standby.roster.photo_url(person.person_id) is not None
-        until(lambda: {e.by for e in standby.records.audit_entries(2**62, 9)} == {"ada", "bob"})
-        until(lambda: forgotten == ["person p9"])
-        until(lambda: standby.pki.registry().entries == active.pki.registry().entries)
-        active.pki.revoke("FF-01")
-        until(lambda: any(entry.revoked for entry in standby.pki.registry().entries))
-        active.roster.set_photo(person.person_id, b"other", "hash 2")
-        until(lambda: standby.roster.photo(person.person_id) == (b"other", "hash 2"))
-        active.roster.remove_person(person.person_id)
-        until(lambda: not standby.roster.people())
-        assert forgotten == ["person p9"]
-    finally:
-        copying.close()
-        server.close()
+    look = partial(copying.look, Event())
+    look()
+    assert standby.roster.photo(person.person_id) == (b"jpeg", "hash")
+    assert standby.roster.photo_url(person.person_id) is not None
+    assert {one.by for one in standby.records.audit_entries(2**62, 9)} == {"ada", "bob"}
+    assert forgotten == ["person p9"]
+    assert standby.pki.registry().entries == active.pki.registry().entries
+    active.pki.revoke("FF-01")
+    active.roster.set_photo(person.person_id, b"other", "hash 2")
+    look()
+    assert any(entry.revoked for entry in standby.pki.registry().entries)
+    assert standby.roster.photo(person.person_id) == (b"other", "hash 2")
+    active.roster.remove_person(person.person_id)
+    look()
+    assert not standby.roster.people()
+    assert forgotten == ["person p9"]

@@ -1,0 +1,110 @@
+"""What a station set aside comes to the one that leads: once, in order, and whole or again."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from base_station.data_folder import DataFolder
+from base_station.live.sinks import ActionDone
+from base_station.recorder import Recorder
+from base_station.standby.merging import Merging, PartServer
+from base_station.standby.places import BEGINNING
+from base_station.standby.setting_aside import parts, set_aside
+from shared.bus_memory import MemoryRouter
+from shared.channels import EVENT, OPERATOR, backfilled_key
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.messages import STATION_ID, Header, OperatorAction
+from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem
+
+T0 = 1_700_000_000_000_000_000
+UNITS = 1_500  # messages: more than one answer holds
+
+
+class Leading:
+    """The active station: what it was brought, what it did, and its rounds."""
+
+    def __init__(self, router: MemoryRouter) -> None:
+        self.brought: list[tuple[str, bytes]] = []
+        self.done: list[Action] = []
+        self.stop = Event()
+        self.stop_after = 10**9  # messages
+        self.there = True
+        self._merging = Merging(
+            router.attach_station(), self, self._bring, lambda: "b" if self.there else None
+        )
+
+    def look(self) -> None:
+        self._merging.look(self.stop)
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        assert by == STATION_ID
+        self.done.append(action)
+        return Future()
+
+    def _bring(self, key: str, payload: bytes) -> None:
+        self.brought.append((key, payload))
+        if len(self.brought) >= self.stop_after:
+            self.stop.set()
+
+
+@pytest.fixture
+def leading(tmp_path: Path) -> Leading:
+    """It finds one part: messages of a unit, and between them what Ada and the station did."""
+    recorder = Recorder(tmp_path, SystemClock())
+    for number in range(UNITS):
+        recorder.write(T0 + number, EVENT.key("u"), b"%d" % number)
+    for by in ("ada", STATION_ID):
+        action = OperatorAction(Header(STATION_ID, 1, 1, 5), by, by, CloseIncident("i1"))
+        recorder.write(T0 + UNITS, OPERATOR.key(STATION_ID), encode(action))
+    recorder.close()
+    set_aside(DataFolder(tmp_path), BEGINNING)
+    router = MemoryRouter()
+    PartServer("b", router.attach_station(), tmp_path)
+    return Leading(router)
+
+
+ALL = [(backfilled_key("u", EVENT.suffix), b"%d" % number) for number in range(UNITS)]
+
+
+def test_units_messages_come_as_what_was_fetched_late_and_only_once(
+    leading: Leading, tmp_path: Path
+) -> None:
+    leading.look()
+    assert leading.brought == ALL
+    assert parts(tmp_path) == []
+    leading.look()
+    assert leading.brought == ALL
+
+
+def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> None:
+    leading.look()
+    apart, report = leading.done
+    assert apart == DoneApart("b", T0 + UNITS, "ada", "CloseIncident i1")
+    assert isinstance(report, ReportProblem)
+    assert "people acted at b (1 times)" in report.text
+
+
+def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
+    leading: Leading, tmp_path: Path
+) -> None:
+    leading.stop_after = 1
+    leading.look()
+    assert len(leading.brought) < UNITS
+    assert len(parts(tmp_path)) == 1
+    leading.stop.clear()
+    leading.stop_after = 10**9
+    leading.look()
+    assert leading.brought[-UNITS:] == ALL
+    assert parts(tmp_path) == []
+
+
+def test_a_station_that_does_not_lead_asks_for_nothing(leading: Leading, tmp_path: Path) -> None:
+    leading.there = False
+    leading.look()
+    assert leading.brought == []
+    assert len(parts(tmp_path)) == 1
