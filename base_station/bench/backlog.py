@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -18,8 +17,9 @@ from rich.table import Table
 
 from base_station.bench.bus import Latency, latency_of
 from base_station.bench.console import Console, latencies_ms
-from base_station.bench.station import Membership, StationProcess, station_process
+from base_station.bench.station import Membership, PlainTcp, StationProcess, station_process
 from base_station.bench.units import BenchUnit, Wearer, speak_in_turn, unit_names
+from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import ROOT, Qos, channel_of
 from shared.clock import NS_PER_S, ManualClock
@@ -55,12 +55,8 @@ def bench_backfill(
     backlog: Annotated[int, typer.Option(min=1, help="Messages that one unit has kept.")] = 100_000,
     units: Annotated[int, typer.Option(min=1, help="Others, speaking meanwhile.")] = 50,
     seconds: Annotated[float, typer.Option(min=1.0, help="They speak alone before.")] = 10.0,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")
-    ] = False,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    plain: PlainTcp = False,
+    json_file: FiguresFile = None,
 ) -> None:
     """How fast a station fetches what a unit kept, through its own work, and what that costs the
     live picture of the others.
@@ -68,8 +64,7 @@ def bench_backfill(
     with Progress(transient=True) as progress:
         report = measure(backlog, units, seconds, progress, plain=plain)
     Terminal().print(_table(report))
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(

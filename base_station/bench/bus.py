@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import time
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -23,12 +22,14 @@ from base_station.bench.onlookers import Onlookers, Seen
 from base_station.bench.recording import recording_hz
 from base_station.bench.station import (
     Membership,
+    PlainTcp,
     Recorded,
     StationProcess,
     free_port,
     station_process,
 )
 from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
+from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import BusError, StoreError
 
 _PATIENCE_S = 60.0
@@ -95,12 +96,8 @@ def bench_bus(
         int, typer.Option(min=0, help="Further consoles that only count what they get.")
     ] = 0,
     slow: Annotated[int, typer.Option(min=0, help="Further consoles that hardly read.")] = 0,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")
-    ] = False,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    plain: PlainTcp = False,
+    json_file: FiguresFile = None,
 ) -> None:
     """Messages a second and latency from sensor to WebSocket through a real station, beside a
     bare Zenoh publisher and subscriber in the same run.
@@ -112,8 +109,7 @@ def bench_bus(
     Terminal().print(_table(report))
     for problem in report.problems:
         Terminal().print(f"the station says: {problem}")
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(

@@ -6,10 +6,9 @@ them is the link of ``base_station.bench.lossy_link``.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -23,6 +22,7 @@ from rich.table import Table
 from base_station.bench.lossy_link import CLEAN
 from base_station.bench.site import MessageId, Site, site
 from base_station.bench.troubles import FAULTS, Fault
+from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 
@@ -57,9 +57,7 @@ def bench_faults(
         float, typer.Option(help="How long to wait, after a fault, for the rest to arrive.")
     ] = 180.0,
     seed: Annotated[int, typer.Option(help="Of the link's luck.")] = 1,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """What bad links, kills, clones, clocks and full disks lose, double and delay.
 
@@ -72,9 +70,7 @@ def bench_faults(
     with Progress(transient=True) as progress:
         reports = measure(faults, patience, seed, progress)
     Terminal().print(table_of(reports))
-    if json_file is not None:
-        rows = [asdict(report) for report in reports]
-        json_file.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, reports)
 
 
 def measure(

@@ -7,10 +7,9 @@ that is right to some five degrees; the fuser has to find it.
 
 from __future__ import annotations
 
-import json
 import math
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
@@ -43,6 +42,7 @@ from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.weather import Weather
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
+from shared.bench_figures import FiguresFile, write_figures
 from shared.geo import pressure_altitude_m
 
 Floats = NDArray[np.float64]
@@ -91,9 +91,7 @@ def bench_fusion(
     tracks: Annotated[
         Path | None, typer.Option(help="Their tracks: TRIAL.csv as muster track writes them.")
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """Error and honesty of the fused position over simulated incidents, beside satellite fixes
     alone, the unit's own path alone, and switching between them.
@@ -107,8 +105,7 @@ def bench_fusion(
     Console().print(_figures_table(report))
     for table in smoothing.tables_of(report.afterwards):
         Console().print(table)
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -21,6 +20,7 @@ from base_station.bench.console import Console
 from base_station.bench.station import free_port, station_process
 from base_station.bench.units import unit_names
 from base_station.data_folder import DataFolder
+from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import StoreError
 from shared.mcap_log import segment_paths
 
@@ -49,9 +49,7 @@ class RestartReport:
 def bench_restart(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
     minutes: Annotated[float, typer.Option(min=0.1, help="That they have walked.")] = 60.0,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """Starts a station on the log of an hour: after an orderly stop, after a kill that left the
     log torn, and without any saved state.
@@ -59,8 +57,7 @@ def bench_restart(
     with Progress(transient=True) as progress:
         report = measure(units, minutes, progress)
     Terminal().print(_table(report))
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(units: int, minutes: float, progress: Progress) -> RestartReport:

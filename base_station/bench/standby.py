@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -18,6 +17,7 @@ from rich.table import Table
 
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.two_stations import Place, TwoStations, wait_until
+from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import BusError, StoreError
 
 _TAKE_OVER_S = 5.0  # to reach
@@ -40,9 +40,7 @@ class StandbyReport:
 
 def bench_standby(
     units: Annotated[int, typer.Option(min=2, max=20, help="How many are there.")] = 4,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """Kill, stop and cut off the station that leads; the last needs to be root, on Linux."""
     terminal = Terminal()
@@ -56,9 +54,7 @@ def bench_standby(
                 except BusError as error:
                     terminal.print(f"{name}: left out: {error}")
     terminal.print(_table(reports))
-    if json_file is not None:
-        rows = [asdict(report) for report in reports]
-        json_file.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, reports)
 
 
 def _kill(name: str, folder: Path, units: int, closing: ExitStack) -> StandbyReport:

@@ -13,9 +13,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import psutil
+import typer
 
 from base_station.bench.console import Api
 from base_station.data_folder import DataFolder
@@ -32,6 +33,9 @@ from shared.tls import TlsIdentity
 _SAID = "station.err"
 _START_TIMEOUT_S = 60.0
 _STOP_TIMEOUT_S = 30.0
+
+
+PlainTcp = Annotated[bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")]
 
 
 class Recorded(NamedTuple):

@@ -4,9 +4,8 @@ its memory stays as it is.
 
 from __future__ import annotations
 
-import json
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -21,6 +20,7 @@ from rich.table import Table
 from base_station import collector
 from base_station.bench.compressed import CompressedStation, compressed_station
 from base_station.bench.units import unit_names
+from shared.bench_figures import FiguresFile, write_figures
 
 _TO_REACH_HZ = 20_000.0  # messages a second and core
 _FLAT_MB_PER_MINUTE = 0.5
@@ -47,9 +47,7 @@ def bench_station(
     rate: Annotated[float, typer.Option(min=0.1, help="Messages a second of each wearer.")] = 7.0,
     minutes: Annotated[float, typer.Option(min=0.05, help="Of the station's time.")] = 0.5,
     consoles: Annotated[int, typer.Option(min=0, help="Consoles that watch.")] = 3,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """What a message costs a station: log, pipeline, database and consoles, without the network,
     at full speed.  With --minutes 30 it tells whether memory grows.
@@ -57,8 +55,7 @@ def bench_station(
     with Progress(transient=True) as progress:
         report = measure(units, rate, minutes, consoles, progress)
     Terminal().print(_table(report))
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -22,6 +21,7 @@ from edge.bench.activity_scoring import (
 from edge.bench.track import find_trials
 from edge.simulation import open_simulation
 from edge.sources.recording import RecordingSource, read_truth
+from shared.bench_figures import FiguresFile, write_figures
 from shared.messages import Activity
 
 T = TypeVar("T")
@@ -41,9 +41,7 @@ def bench_activity(
         Path | None,
         typer.Argument(help="A folder of trials, such as shared/data/walks; without: simulated."),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
     first_seed: Annotated[int, typer.Option(min=0, help="Of the simulated wearers.")] = 10,
     seeds: Annotated[int, typer.Option(min=1, max=1000, help="How many wearers.")] = 5,
 ) -> None:
@@ -62,9 +60,7 @@ def bench_activity(
             f"{score.falls_told} falls told, {score.falls_done} labelled, in "
             f"{score.duration_s / 60.0:.1f} minutes\n"
         )
-    if json_file is not None:
-        figures = {title: _as_json(score) for title, score in report.items()}
-        json_file.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, {title: _as_json(score) for title, score in report.items()})
 
 
 def _simulated(first_seed: int, seeds: int) -> ActivityScore:

@@ -6,7 +6,6 @@ at hand has a barometer, and those with a magnetometer last a minute.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -27,6 +26,7 @@ from edge.simulation import SCENARIOS, Simulation
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, SensorErrors
 from edge.sources.recording import RecordingSource
 from edge.tracker import TRACKERS
+from shared.bench_figures import FiguresFile, write_figures
 
 SEEDS = range(4)
 _SEARCH_S = 600.0
@@ -58,9 +58,7 @@ def bench_aids(
     data: Annotated[
         Path | None, typer.Argument(help="Recorded walks, such as shared/data/walks.")
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
@@ -74,12 +72,7 @@ def bench_aids(
     console.print(comparison_table(comparisons))
     if closures:
         console.print(closure_table(closures))
-    if json_file is not None:
-        report = {
-            "comparisons": [asdict(entry) for entry in comparisons],
-            "closures": [asdict(entry) for entry in closures],
-        }
-        json_file.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, {"comparisons": comparisons, "closures": closures})
 
 
 def _jobs(tracker: str) -> Iterator[Callable[[], Comparison]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -24,6 +23,7 @@ from edge.bench.speed import measure_speed, print_speed
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
 from edge.tracker import TRACKERS
+from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
 
 
@@ -61,9 +61,7 @@ WIDTH = 110  # that the tables need
 
 def bench_track(
     data: Annotated[Path, typer.Argument(help="A folder of trials, such as shared/data/walks.")],
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
@@ -119,8 +117,7 @@ def bench_track(
         left_out = cross_validate(trials)
         console.print(left_out_table(left_out))
         report["cross_validation"] = [asdict(entry) for entry in left_out]
-    if json_file is not None:
-        json_file.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def find_trials(data: Path) -> list[Path]:

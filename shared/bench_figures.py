@@ -1,0 +1,20 @@
+"""What every benchmark offers: its figures in a file as well."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FiguresFile = Annotated[
+    Path | None, typer.Option("--json", help="Also write the figures to this file.")
+]
+
+
+def write_figures(path: Path | None, figures: object) -> None:
+    """As JSON, where a file was asked for; ``figures`` may be or hold dataclasses."""
+    if path is not None:
+        path.write_text(json.dumps(figures, indent=2, default=asdict) + "\n", encoding="utf-8")
