@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
-from base_station.fusion.horizontal import HorizontalFilter, turn_of
+from base_station.fusion.horizontal import HorizontalFilter
+from base_station.fusion.kernels import Placed
 from base_station.fusion.knowledge import Knowledge, estimate_of
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
@@ -29,8 +29,6 @@ from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
 from shared.messages import Position
 from shared.quality import Quality
-
-Floats = NDArray[np.float64]
 
 LATE_NS = 5 * NS_PER_S  # a fix is later than the newest by more than receivers are
 
@@ -178,11 +176,10 @@ class GpsInertialFuser:
             return None
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        mean, covariance = self._horizontal.moments()
-        place = mean[:2], covariance[:2, :2]
         height = self._height.down_m, self._height.variance_m2
         heading_rad = last.heading_rad if last else 0.0
-        return self._estimate_at(t_mono_ns, heading_rad, place, height, turn_of(mean, covariance))
+        placed = self._horizontal.placed_before(0.0, 0.0)
+        return self._estimate_at(t_mono_ns, heading_rad, placed, height)
 
     def remember(self, position: Position) -> None:
         last = self._memory.last
@@ -196,37 +193,33 @@ class GpsInertialFuser:
         last, kind = self._memory.last, self._kind
         if last is None or last.header.boot_id != position.header.boot_id:
             return None
-        place_m, place_var_m2 = self._horizontal.place_before(
+        placed = self._horizontal.placed_before(
             last.north_m - position.north_m, last.east_m - position.east_m
         )
         walked_m = abs(last.distance_m - position.distance_m)
         climbed_m = last.down_m - position.down_m
-        place_var_m2 = place_var_m2 + np.eye(2) * kind.walk_m_per_sqrt_m**2 * walked_m
         height_m = self._height.down_m - climbed_m
         height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
         return self._estimate_at(
             position.header.t_mono_ns,
             position.heading_rad,
-            (place_m, place_var_m2),
+            placed.widened(kind.walk_m_per_sqrt_m**2 * walked_m),
             (height_m, height_var_m2),
-            self._horizontal.turn(),
         )
 
     def _estimate_at(
         self,
         t_mono_ns: int,
         own_heading_rad: float,
-        place: tuple[Floats, Floats],
+        placed: Placed,
         height: tuple[float, float],
-        turn: tuple[float, float],
     ) -> Estimate:
-        """``place`` and ``height`` each with its variance, ``turn`` with its deviation."""
+        """``height`` with its variance."""
         last, fix_ns = self._memory.last, self._memory.fix_t_mono_ns
         knowledge = Knowledge(
             t_mono_ns=t_mono_ns,
-            place=place,
+            placed=placed,
             height=height,
-            turn=turn,
             own_heading_rad=own_heading_rad,
             tracker=last.quality if last is not None else Quality.GOOD,
             assumed=self._memory.assumed,

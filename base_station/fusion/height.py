@@ -16,6 +16,7 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
+from base_station.fusion import kernels
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
 from shared.clock import NS_PER_S
@@ -24,7 +25,6 @@ Floats = NDArray[np.float64]
 
 _GATE_STD = 3.0
 _UNKNOWN_VAR_M2 = 1e4
-_OBSERVE_AIR = np.array([[1.0, 0.0, 1.0]])
 _OBSERVE_LEVEL = np.array([[1.0, 0.0, 0.0]])
 
 
@@ -103,11 +103,11 @@ class HeightFilter:
         """Take a fix's height, unless it cannot be true."""
         part = self._kind.wander_part
         observe = np.array([[1.0, std_m * math.sqrt(part), 0.0]])
-        innovation_m, spread_m2 = self._innovation(down_m, observe, std_m**2 * (1.0 - part))
+        noise_m2 = std_m**2 * (1.0 - part)
+        innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
+        spread_m2 = float((observe @ self._filter.P @ observe.T)[0, 0]) + noise_m2
         if innovation_m**2 <= _GATE_STD**2 * spread_m2:
-            self._filter.update(
-                np.array([[down_m]]), R=np.array([[std_m**2 * (1.0 - part)]]), H=observe
-            )
+            self._filter.update(np.array([[down_m]]), R=np.array([[noise_m2]]), H=observe)
 
     def feel(self, air: AirHeight) -> None:
         kind = self._kind
@@ -116,12 +116,14 @@ class HeightFilter:
             since_s = max(0.0, (air.t_mono_ns - self._air_t_mono_ns) / NS_PER_S)
         self._air_t_mono_ns = air.t_mono_ns
         wander_m = kind.air_m_per_sqrt_s if air.referenced else kind.weather_m_per_sqrt_s
-        self._filter.P[2, 2] += wander_m**2 * since_s
-        noise_m2 = kind.air_std_m**2
-        innovation_m, spread_m2 = self._innovation(air.down_m, _OBSERVE_AIR, noise_m2)
-        if innovation_m**2 > _GATE_STD**2 * spread_m2:
-            self._filter.P[2, 2] += innovation_m**2  # a step of pressure
-        self._filter.update(np.array([[air.down_m]]), R=np.array([[noise_m2]]), H=_OBSERVE_AIR)
+        kernels.feel_air(
+            self._filter.x[:, 0],
+            self._filter.P,
+            air.down_m,
+            wander_m**2 * since_s,
+            kind.air_std_m**2,
+            _GATE_STD**2,
+        )
 
     def rest_on(self, storeys_down_m: Sequence[float]) -> None:
         """Somebody in the building who walked on the level is on a storey."""

@@ -23,7 +23,9 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
+from base_station.fusion import kernels
 from base_station.fusion.heading_bank import HeadingBank, SavedBank, Sighting
+from base_station.fusion.kernels import Placed
 
 Floats = NDArray[np.float64]
 
@@ -32,8 +34,6 @@ REOPEN = 1.5  # times the width at which one hypothesis was enough
 _STATES = 7
 _PLACE_AND_SLOW = [0, 1, 4, 5]
 _DRIFT = 6
-_STAY = np.eye(_STATES)
-_STAY.setflags(write=False)
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
@@ -81,6 +81,11 @@ class HorizontalFilter:
         """Mean (7,) and covariance (7, 7) of the whole state."""
         now = self._current()
         return now.x[:, 0].copy(), now.P.copy()
+
+    def placed_before(self, north_m: float, east_m: float) -> Placed:
+        """Place before this much of own path was walked, and turn, as it looks now."""
+        now = self._current()
+        return kernels.placed_before(now.x[:, 0], now.P, north_m, east_m)
 
     def adopt(self, mean: Floats, covariance: Floats) -> None:
         """Go on from what another filter of the same state came to."""
@@ -154,29 +159,9 @@ class HorizontalFilter:
             self._bank.walk(north_m, east_m, place_var_m2, turn_var)
             self._stale = True
             return
-        state, covariance = self._filter.x[:, 0], self._filter.P
-        drifted_rad = float(state[_DRIFT]) * moving_s
-        cosine, sine = math.cos(drifted_rad), math.sin(drifted_rad)
-        c, s = float(state[2]), float(state[3])
-        c, s = cosine * c - sine * s, sine * c + cosine * s
-        move = _STAY.copy()
-        move[0, 2:4] = north_m, -east_m
-        move[1, 2:4] = east_m, north_m
-        move[2, 2:4] = cosine, -sine
-        move[3, 2:4] = sine, cosine
-        move[2, _DRIFT], move[3, _DRIFT] = -s * moving_s, c * moving_s
-        moved = move @ covariance @ move.T
-        moved[0, 0] += place_var_m2
-        moved[1, 1] += place_var_m2
-        moved[2, 2] += turn_var * s * s
-        moved[3, 3] += turn_var * c * c
-        moved[2, 3] -= turn_var * c * s
-        moved[3, 2] -= turn_var * c * s
-        moved[_DRIFT, _DRIFT] += self._wander_var * moving_s
-        self._filter.P = moved
-        state[0] += c * north_m - s * east_m
-        state[1] += s * north_m + c * east_m
-        state[2], state[3] = c, s
+        mean, covariance = self._filter.x[:, 0], self._filter.P
+        drift_var = self._wander_var * moving_s
+        kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
 
     def spread(self, variance_m2: float) -> None:
         """The wearer may have got away from the path by so much."""

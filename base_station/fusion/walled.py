@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
+from base_station.fusion.kernels import Placed, placed_before
 from base_station.fusion.wall_cloud import SavedCloud, WallCloud
 from base_station.site.floor_grid import FloorGrid
 
@@ -97,6 +98,12 @@ class WalledFilter:
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (7,) and covariance (7, 7) of the state of ``HorizontalFilter``."""
         return self._plain.moments() if self._cloud is None else self._cloud.moments()
+
+    def placed_before(self, north_m: float, east_m: float) -> Placed:
+        """As ``place_before``, in numbers, and how the own frame is turned."""
+        if self._cloud is None:
+            return self._plain.placed_before(north_m, east_m)
+        return placed_before(*self._cloud.moments(), north_m, east_m)
 
     def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
         """Place and covariance before this much of own path was walked, as it looks now."""

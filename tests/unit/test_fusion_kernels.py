@@ -1,0 +1,107 @@
+"""The compiled arithmetic of the station's filters against ``filterpy``'s own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from filterpy.kalman import KalmanFilter
+from numpy.typing import NDArray
+
+from base_station.fusion import kernels
+
+Floats = NDArray[np.float64]
+
+
+def same(found: object, expected: object) -> None:
+    np.testing.assert_allclose(np.array(found), np.array(expected), rtol=1e-10, atol=1e-12)
+
+
+def filter_of(states: int, seed: int) -> KalmanFilter:
+    """In some state, with everything in it correlated."""
+    rng = np.random.default_rng(seed)
+    mixed = rng.normal(size=(states, states))
+    found = KalmanFilter(dim_x=states, dim_z=1)
+    found.x, found.P = rng.normal(size=(states, 1)), mixed @ mixed.T
+    return found
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
+    expected = filter_of(7, seed)
+    mean, covariance = expected.x[:, 0].copy(), expected.P.copy()
+    north_m, east_m, moving_s, place_var_m2, turn_var, drift_var = 0.7, -0.4, 0.5, 0.02, 0.03, 0.04
+    drifted_rad = float(expected.x[6, 0]) * moving_s
+    a, b = math.cos(drifted_rad), math.sin(drifted_rad)
+    c = a * expected.x[2, 0] - b * expected.x[3, 0]
+    s = b * expected.x[2, 0] + a * expected.x[3, 0]
+    jacobian, noise = np.eye(7), np.zeros((7, 7))
+    jacobian[0, 2:4], jacobian[1, 2:4] = (north_m, -east_m), (east_m, north_m)
+    jacobian[2, 2:4], jacobian[3, 2:4] = (a, -b), (b, a)
+    # The place moves by the turn after the drift, which the covariance does not tell apart.
+    jacobian[2, 6], jacobian[3, 6] = -s * moving_s, c * moving_s
+    across = np.array([-s, c])
+    noise[:2, :2] = place_var_m2 * np.eye(2)
+    noise[2:4, 2:4] = turn_var * np.outer(across, across)
+    noise[6, 6] = drift_var
+
+    kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
+    expected.predict(F=jacobian, Q=noise)
+
+    same(covariance, expected.P)
+    moved = (c * north_m - s * east_m, s * north_m + c * east_m)
+    same(mean[:2] - filter_of(7, seed).x[:2, 0], moved)
+    same(mean[2:4], (c, s))
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("step_m", [0.0, 40.0], ids=["steady", "a step of pressure"])
+def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
+    expected = filter_of(3, seed)
+    mean, covariance = expected.x[:, 0].copy(), expected.P.copy()
+    down_m, wander_m2, noise_m2, gate2 = float(mean[0] + mean[2]) + 0.1 + step_m, 0.01, 0.09, 9.0
+    expected.P[2, 2] += wander_m2 + ((0.1 + step_m) ** 2 if step_m else 0.0)
+
+    kernels.feel_air(mean, covariance, down_m, wander_m2, noise_m2, gate2)
+    observe = np.array([[1.0, 0.0, 1.0]])
+    expected.update(np.array([[down_m]]), R=np.array([[noise_m2]]), H=observe)
+
+    same(mean, expected.x[:, 0])
+    same(covariance, expected.P)
+
+
+def test_the_place_before_is_the_present_one_less_the_path() -> None:
+    now = filter_of(7, 1)
+    north_m, east_m = 3.0, -2.0
+    back = np.zeros((2, 7))
+    back[:, :2], back[:, 2:4] = np.eye(2), [[-north_m, east_m], [-east_m, -north_m]]
+    place, spread = back @ now.x[:, 0], back @ now.P @ back.T
+
+    placed = kernels.placed_before(now.x[:, 0], now.P, north_m, east_m)
+
+    same((placed.north_m, placed.east_m), place)
+    stds = np.array([placed.std_north_m, placed.std_east_m])
+    same(stds**2, np.diag(spread))
+    assert placed.correlation_ne == pytest.approx(spread[0, 1] / stds.prod())
+    assert placed.turn_rad == pytest.approx(math.atan2(now.x[3, 0], now.x[2, 0]))
+
+
+def test_a_state_without_a_direction_has_no_turn() -> None:
+    placed = kernels.placed_before(np.zeros(7), np.eye(7), 0.0, 0.0)
+    assert (placed.turn_rad, placed.turn_std_rad) == (0.0, math.pi)
+
+
+def test_a_place_is_less_sure_by_what_is_added() -> None:
+    placed = kernels.placed_before(np.array([0.0, 0, 1, 0, 0, 0, 0]), 9.0 * np.eye(7), 0.0, 0.0)
+    assert placed.widened(16.0).std_north_m == pytest.approx(5.0)
+
+
+def test_arrays_of_any_layout_will_do() -> None:
+    """``filterpy`` makes new ones, and nothing must be compiled while the station is live."""
+    one, other = filter_of(7, 2), filter_of(7, 2)
+    kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+    kernels.walk(other.x[:, 0], np.asfortranarray(other.P), 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+    assert np.array_equal(one.x, other.x)
+    with pytest.raises(TypeError):
+        kernels.walk(one.x, one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
