@@ -6,14 +6,13 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-import msgspec
 import pytest
 from hypothesis import settings
 
+from base_station.bench import said
 from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position
-from shared.quality import Quality, Reason
 
 PROJECT_ROOT = Path(__file__).resolve().parent.parent
 
@@ -50,26 +49,17 @@ def make_position(stamper: Stamper) -> Callable[..., Position]:
     """A plausible position of FF-01; keyword arguments replace fields."""
 
     def make(**changes: object) -> Position:
-        position = Position(
-            header=stamper.header(),
-            north_m=1.0,
-            east_m=2.0,
-            down_m=-3.0,
-            velocity_north_mps=0.1,
-            velocity_east_mps=0.2,
-            velocity_down_mps=0.0,
-            std_north_m=0.1,
-            std_east_m=0.1,
-            std_down_m=0.2,
-            correlation_ne=0.0,
-            heading_rad=0.5,
-            heading_std_rad=0.1,
-            distance_m=12.3,
-            pressure_pa=None,
-            stationary=True,
-            quality=Quality.GOOD,
-            reasons=Reason.NONE,
-        )
-        return msgspec.structs.replace(position, **changes)
+        usual: dict[str, object] = {
+            "north_m": 1.0,
+            "east_m": 2.0,
+            "down_m": -3.0,
+            "velocity_north_mps": 0.1,
+            "velocity_east_mps": 0.2,
+            "std_down_m": 0.2,
+            "heading_rad": 0.5,
+            "distance_m": 12.3,
+            "stationary": True,
+        }
+        return said.position(stamper.header(), **{**usual, **changes})
 
     return make

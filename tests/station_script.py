@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeVar
 
-import msgspec
-
 from base_station.alarms import ALARMS
+from base_station.bench import said
 from base_station.events import Output, Received, event_of
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline
@@ -16,27 +15,21 @@ from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.messages import (
     STATION_ID,
-    Activity,
     AlarmChange,
     Command,
     CommandKind,
     CommandReply,
     CommandState,
     EventKind,
-    FixType,
     FusedPosition,
-    GpsFix,
     Header,
     Message,
     OperatorAction,
-    Position,
-    Status,
     Temperature,
     Tick,
     UnitEvent,
 )
 from shared.messages.station import Action, RegisterUnit
-from shared.quality import Quality, Reason
 
 START_NS = 1_700_000_000 * NS_PER_S
 Record = tuple[int, str, bytes]
@@ -118,19 +111,7 @@ class Script:
             self.tick()
 
     def status(self, unit_id: str, **changes: object) -> list[Output]:
-        status = Status(
-            header=self.header(unit_id),
-            activity=Activity.WALKING,
-            motionless_s=0.0,
-            battery=0.8,
-            mayday=False,
-            steps=10,
-            cadence_hz=1.0,
-            floors_climbed=0,
-            tracker_rows_dropped=0,
-            journal_pending=0,
-        )
-        return self.say(msgspec.structs.replace(status, **changes))
+        return self.say(said.status(self.header(unit_id), **changes))
 
     def temperature(self, unit_id: str, ambient_degc: float) -> list[Output]:
         return self.say(Temperature(self.header(unit_id), ambient_degc))
@@ -151,39 +132,8 @@ class Script:
     def position(
         self, unit_id: str, north_m: float, east_m: float, **changes: object
     ) -> list[Output]:
-        position = Position(
-            header=self.header(unit_id),
-            north_m=north_m,
-            east_m=east_m,
-            down_m=0.0,
-            velocity_north_mps=0.0,
-            velocity_east_mps=0.0,
-            velocity_down_mps=0.0,
-            std_north_m=0.1,
-            std_east_m=0.1,
-            std_down_m=0.1,
-            correlation_ne=0.0,
-            heading_rad=0.0,
-            heading_std_rad=0.1,
-            distance_m=0.0,
-            pressure_pa=None,
-            stationary=False,
-            quality=Quality.GOOD,
-            reasons=Reason.NONE,
-        )
-        return self.say(msgspec.structs.replace(position, **changes))
+        walked = {"north_m": north_m, "east_m": east_m, **changes}
+        return self.say(said.position(self.header(unit_id), **walked))
 
     def gps(self, unit_id: str, lat_deg: float, lon_deg: float, **changes: object) -> list[Output]:
-        fix = GpsFix(
-            header=self.header(unit_id),
-            fix_type=FixType.THREE_D,
-            lat_deg=lat_deg,
-            lon_deg=lon_deg,
-            height_m=50.0,
-            horizontal_std_m=3.0,
-            vertical_std_m=6.0,
-            satellites=9,
-            speed_mps=0.0,
-            course_rad=0.0,
-        )
-        return self.say(msgspec.structs.replace(fix, **changes))
+        return self.say(said.gps_fix(self.header(unit_id), lat_deg, lon_deg, **changes))

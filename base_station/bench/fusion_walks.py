@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.bench import said
 from base_station.fusion.port import FixVerdict, Fuser, PlaceFix
 from shared.clock import NS_PER_S
 from shared.messages import Header, Position
-from shared.quality import Quality, Reason
 
 Floats = NDArray[np.float64]
 RATE_HZ = 5
@@ -94,25 +94,11 @@ class Walk:
 
     def position(self, index: int, boot_id: int = 1) -> Position:
         north_m, east_m = self.own_m[index]
-        return Position(
-            header=Header("FF-01", boot_id, index + 1, mono_ns(self.t_s[index])),
+        return said.position(
+            Header("FF-01", boot_id, index + 1, mono_ns(self.t_s[index])),
             north_m=float(north_m),
             east_m=float(east_m),
-            down_m=0.0,
-            velocity_north_mps=0.0,
-            velocity_east_mps=0.0,
-            velocity_down_mps=0.0,
-            std_north_m=0.1,
-            std_east_m=0.1,
-            std_down_m=0.1,
-            correlation_ne=0.0,
-            heading_rad=0.0,
-            heading_std_rad=0.1,
             distance_m=float(self.distance_m[index]),
-            pressure_pa=None,
-            stationary=False,
-            quality=Quality.GOOD,
-            reasons=Reason.NONE,
         )
 
 

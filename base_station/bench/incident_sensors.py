@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.bench import said
 from base_station.bench.incident_building import SteelBuilding
 from base_station.bench.incident_people import RATE_HZ, Truth
 from base_station.fusion.port import PlaceFix
@@ -30,7 +31,6 @@ from base_station.fusion.screening import STD_FLOOR_M
 from shared.clock import NS_PER_S
 from shared.geo import pressure_pa_at
 from shared.messages import Header, Position
-from shared.quality import Quality, Reason
 
 Floats = NDArray[np.float64]
 
@@ -190,25 +190,17 @@ def position_of(
     heading_std_rad = float(own.heading_std_rad[row])
     moved_m = truth.steps_m[row] if row else np.zeros(3)
     std_m = math.hypot(0.1, heading_std_rad * math.hypot(north_m, east_m))
-    return Position(
-        header=Header(unit_id, 1, row + 1, mono_ns(float(truth.t_s[row]))),
+    return said.position(
+        Header(unit_id, 1, row + 1, mono_ns(float(truth.t_s[row]))),
         north_m=north_m,
         east_m=east_m,
         down_m=down_m,
-        velocity_north_mps=0.0,
-        velocity_east_mps=0.0,
-        velocity_down_mps=0.0,
         std_north_m=std_m,
         std_east_m=std_m,
-        std_down_m=0.1,
-        correlation_ne=0.0,
-        heading_rad=0.0,
         heading_std_rad=heading_std_rad,
         distance_m=float(own.distance_m[row]),
         pressure_pa=float(pressures[row]),
         stationary=bool(np.linalg.norm(moved_m) * RATE_HZ < MOVING_MPS),
-        quality=Quality.GOOD,
-        reasons=Reason.NONE,
     )
 
 

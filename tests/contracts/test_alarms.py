@@ -9,20 +9,18 @@ import pytest
 
 from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.bench import said
 from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, UnitState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
-    Activity,
     FusedPosition,
     Header,
-    Position,
-    Status,
     Temperature,
     UnitDescription,
 )
-from shared.quality import Quality, Reason
+from shared.quality import Quality
 
 HEADER = Header("FF-01", 1, 1, 0)
 T_NS = 1_700_000_000 * NS_PER_S
@@ -30,43 +28,28 @@ T_NS = 1_700_000_000 * NS_PER_S
 
 def calm(seen_ns: int = T_NS) -> UnitState:
     """A registered unit of which everything is known and nothing is the matter."""
-    position = Position(
-        HEADER, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.1, 0.0, None, False,
-        Quality.GOOD, Reason.NONE,
-    )  # fmt: skip
     return UnitState(
         "FF-01",
         registered=True,
         heard_ns=seen_ns,
         link="live",
-        status=Status(HEADER, Activity.WALKING, 0.0, 0.9, False, 1, 1.0, 0, 0, 0),
+        status=said.status(HEADER),
         status_ns=seen_ns,
         temperature=Temperature(HEADER, 20.0),
         temperature_ns=seen_ns,
-        position=position,
+        position=said.position(HEADER),
         position_ns=seen_ns,
     )
 
 
 def lost_place(seen_ns: int) -> FusedPosition:
-    return FusedPosition(
-        header=Header("station", 1, 1, seen_ns, t_utc_ns=seen_ns),
-        unit_id="FF-01",
-        t_meas_ns=seen_ns,
-        north_m=0.0,
-        east_m=0.0,
-        down_m=0.0,
+    return said.fused(
+        Header("station", 1, 1, seen_ns, t_utc_ns=seen_ns),
+        "FF-01",
         std_north_m=40.0,
         std_east_m=40.0,
-        std_down_m=1.0,
-        correlation_ne=0.0,
-        heading_rad=0.0,
-        heading_std_rad=0.1,
-        floor=None,
         quality=Quality.LOST,
         quality_reason="within 113 m",
-        fuser="gps-inertial",
-        since_gps_s=None,
     )
 
 

@@ -7,6 +7,7 @@ import threading
 from queue import SimpleQueue
 from typing import Self
 
+from base_station.bench import said
 from edge.commands import CommandDesk
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, channel_of
@@ -14,7 +15,6 @@ from shared.clock import SystemClock
 from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import (
-    Activity,
     Command,
     EventKind,
     Message,
@@ -23,7 +23,6 @@ from shared.messages import (
     Temperature,
     UnitEvent,
 )
-from shared.quality import Quality, Reason
 
 STEP_S = 0.2
 SPEED_MPS = 1.0
@@ -84,37 +83,14 @@ class Wearable:
         self._bus.publish(channel.key(self._stamper.unit_id), encode(message), channel.qos)
 
     def _position(self, walked_m: float) -> Position:
-        return Position(
-            header=self._stamper.header(),
+        return said.position(
+            self._stamper.header(),
             north_m=walked_m,
-            east_m=0.0,
-            down_m=0.0,
             velocity_north_mps=SPEED_MPS,
-            velocity_east_mps=0.0,
-            velocity_down_mps=0.0,
             std_north_m=0.4,
             std_east_m=0.2,
-            std_down_m=0.2,
-            correlation_ne=0.0,
-            heading_rad=0.0,
-            heading_std_rad=0.05,
             distance_m=walked_m,
-            pressure_pa=None,
-            stationary=False,
-            quality=Quality.GOOD,
-            reasons=Reason.NONE,
         )
 
     def _status(self, steps: int) -> Status:
-        return Status(
-            header=self._stamper.header(),
-            activity=Activity.WALKING,
-            motionless_s=0.0,
-            battery=0.83,
-            mayday=False,
-            steps=steps,
-            cadence_hz=1.8,
-            floors_climbed=0,
-            tracker_rows_dropped=0,
-            journal_pending=0,
-        )
+        return said.status(self._stamper.header(), steps=steps, cadence_hz=1.8)

@@ -12,6 +12,7 @@ import pytest
 from alembic import command
 from sqlalchemy import inspect
 
+from base_station.bench import said
 from base_station.db.migrate import alembic_config
 from base_station.db.models import Base, Person
 from base_station.db.projection import SqlProjection
@@ -31,7 +32,6 @@ from shared.messages.station import (
     RegisterUnit,
     Unassign,
 )
-from shared.quality import Quality
 
 ALL = Window(0, FOREVER_NS)
 
@@ -126,10 +126,7 @@ def alarm(t_s: float, state: AlarmState, by: str = "") -> AlarmChange:
 
 
 def fused(t_s: float, north_m: float) -> FusedPosition:
-    return FusedPosition(
-        header(t_s), "FF-01", round(t_s * NS_PER_S), north_m, 0.0, 0.0, 0.1, 0.1, 0.1, 0.0,
-        0.0, 0.1, None, Quality.GOOD, "", "test", None,
-    )  # fmt: skip
+    return said.fused(header(t_s), "FF-01", north_m=north_m)
 
 
 def acted(t_s: float, *actions: Action) -> Projection:

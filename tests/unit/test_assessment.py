@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 import pytest
 
@@ -13,6 +12,7 @@ from base_station.assessment.figures import (
     stated_figures,
 )
 from base_station.assessment.trust import trust_of
+from base_station.bench import said
 from base_station.db.records import TrackSample
 from base_station.live_state import StationState, UnitState
 from base_station.pins.pin import Pin, PinVerdict
@@ -61,26 +61,9 @@ def test_the_floor_is_as_sure_as_the_height_by_the_storey() -> None:
 
 
 def fused(**changes: object) -> FusedPosition:
-    position = FusedPosition(
-        header=Header("station", 1, 1, 0, 0),
-        unit_id="FF-01",
-        t_meas_ns=0,
-        north_m=0.0,
-        east_m=0.0,
-        down_m=0.0,
-        std_north_m=1.0,
-        std_east_m=1.0,
-        std_down_m=0.3,
-        correlation_ne=0.0,
-        heading_rad=0.0,
-        heading_std_rad=0.1,
-        floor=0,
-        quality=Quality.GOOD,
-        quality_reason="",
-        fuser="gps-inertial",
-        since_gps_s=1.0,
-    )
-    return msgspec.structs.replace(position, **changes)
+    usual = {"std_north_m": 1.0, "std_east_m": 1.0, "std_down_m": 0.3, "floor": 0}
+    header = Header("station", 1, 1, 0)
+    return said.fused(header, "FF-01", **{**usual, "since_gps_s": 1.0, **changes})
 
 
 def known(**changes: object) -> UnitState:

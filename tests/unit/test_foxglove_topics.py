@@ -9,34 +9,27 @@ import pytest
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
+from base_station.bench import said
 from base_station.live.foxglove_topics import FoxgloveTopics
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, AlarmState, FusedPosition, Header
-from shared.quality import Quality
 
 T0_NS = 1_700_000_000 * NS_PER_S
 HEADER = Header(STATION_ID, 1, 1, 0, T0_NS + 5)
 # The plan's north points due east.
 ANCHOR = Anchor(60.0, 10.0, 100.0, rotation_rad=math.pi / 2)
-FUSED = FusedPosition(
-    header=HEADER,
-    unit_id="anna",
+FUSED = said.fused(
+    HEADER,
+    "anna",
     t_meas_ns=T0_NS,
     north_m=100.0,
-    east_m=0.0,
     down_m=-3.0,
     std_north_m=2.0,
     std_east_m=1.0,
     std_down_m=0.5,
     correlation_ne=0.5,
-    heading_rad=0.0,
-    heading_std_rad=0.1,
     floor=1,
-    quality=Quality.GOOD,
-    quality_reason="",
-    fuser="test",
-    since_gps_s=None,
 )
 ALARM = AlarmChange(
     header=HEADER,

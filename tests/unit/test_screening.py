@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 
+from base_station.bench import said
 from base_station.fusion.port import FixVerdict, PlaceFix
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
 from shared.geo import Anchor
@@ -19,19 +21,8 @@ PLAN = b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}'
 
 
 def fix(**changes: object) -> GpsFix:
-    fields: dict[str, object] = {
-        "header": Header(U, 1, 1, 0),
-        "fix_type": FixType.THREE_D,
-        "lat_deg": 52.0001,
-        "lon_deg": 4.0001,
-        "height_m": 10.0,
-        "horizontal_std_m": 3.0,
-        "vertical_std_m": 5.0,
-        "satellites": 9,
-        "speed_mps": 0.0,
-        "course_rad": 0.0,
-    }
-    return GpsFix(**{**fields, **changes})  # type: ignore[arg-type]
+    usual = said.gps_fix(Header(U, 1, 1, 0), 52.0001, 4.0001, height_m=10.0)
+    return msgspec.structs.replace(usual, **changes)
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,14 @@ import math
 
 import pytest
 
+from base_station.bench import said
 from base_station.events import Refused
 from base_station.views import StationFacts, snapshot
 from edge.simulation.building import plan_path
 from shared.channels import GPS, backfilled_key
 from shared.codec import encode
 from shared.geo import pressure_pa_at
-from shared.messages import FixType, FusedPosition, GpsFix
+from shared.messages import FusedPosition
 from shared.messages.station import SetAnchor, SetPlan, SetReference, SetStart
 from tests.station_script import Script
 
@@ -100,20 +101,8 @@ def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) ->
         script.now_s += 1.0
         script.position(U, float(second), 0.0)
         lat_deg, lon_deg, height_m = anchor.to_geodetic(-60.0 + second, 6.0, 0.0)
-        late.append(
-            GpsFix(
-                header=script.header(U),
-                fix_type=FixType.THREE_D,
-                lat_deg=lat_deg,
-                lon_deg=lon_deg,
-                height_m=height_m,
-                horizontal_std_m=2.0,
-                vertical_std_m=4.0,
-                satellites=9,
-                speed_mps=0.0,
-                course_rad=0.0,
-            )
-        )
+        stds = {"horizontal_std_m": 2.0, "vertical_std_m": 4.0}
+        late.append(said.gps_fix(script.header(U), lat_deg, lon_deg, height_m=height_m, **stds))
     assert script.fused[-1].east_m == pytest.approx(0.0, abs=0.5)
     for fix in late:
         outputs = script.record(backfilled_key(U, GPS.suffix), encode(fix))
