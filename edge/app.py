@@ -153,9 +153,11 @@ def compose_agent(
         calibration="" if calibration is None else identity(calibration),
     )
     sensor = sensor_of(description)
+    if calibration is not None:
+        sensor = calibration.described(sensor)
     tracks = config.tracker != NO_TRACKER
     pipeline = TrackerPipeline(
-        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration),
+        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
         make_tracker(config.tracker, sensor) if tracks else NoTracker(),
         stamper,
         config.position_rate_hz,

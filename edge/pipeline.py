@@ -31,6 +31,7 @@ from edge.samples import (
 from edge.sensor_health import SensorHealth
 from edge.timeline import Timeline
 from edge.tracker.port import Tracker
+from edge.whereabouts import Place, Whereabouts
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
@@ -50,6 +51,7 @@ class UnitIdentity:
     tracker: str
     sensor: SensorDescription
     calibration: Calibration | None = None
+    place: Place | None = None
 
 
 class TrackerPipeline:
@@ -74,6 +76,7 @@ class TrackerPipeline:
         self._positions = PositionStream(stamper, position_rate_hz)
         self._monitor = ActivityMonitor()
         self._health = SensorHealth()
+        self._whereabouts = Whereabouts(identity.place)
         self._status_times = _decimator(STATUS)
         self._raw_uplink = raw_uplink
         self._description_times = _decimator(DESCRIPTION)
@@ -96,6 +99,7 @@ class TrackerPipeline:
 
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
         """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""
+        self._learn_field(batch, timeline)
         imu = self._calibrated(batch.imu)
         track = self._tracker.push(imu)
         messages: list[Message] = [
@@ -127,6 +131,14 @@ class TrackerPipeline:
     def note_journal(self, pending: int) -> None:
         """How many messages are not known to have arrived, for the next status."""
         self._journal_pending = pending
+
+    def _learn_field(self, batch: SensorBatch, timeline: Timeline) -> None:
+        def utc_ns_of(t_ns: int) -> int:
+            return self._stamper.utc_ns(timeline.to_mono_ns(t_ns))
+
+        learned = self._whereabouts.take(batch, utc_ns_of)
+        if learned is not None:
+            self._tracker.learn_field(*learned)
 
     def _calibrated(self, imu: ImuBatch) -> ImuBatch:
         calibration = self._identity.calibration

@@ -13,11 +13,12 @@ from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
-from shared.messages import Position
+from shared.messages import MagneticNorth, Position
 
 _PRESSURE_KEPT_NS = 3 * NS_PER_S  # longer than a tracker may hold rows back
 _HEADING_BASE_M = 0.5  # a shorter way says little of its direction
 _STOREY_M = 3.0
+_TELLS_NOTHING_RAD = 0.8  # of magnetic north: then it is not spoken of
 _STOREY_HYSTERESIS_M = 0.5
 
 
@@ -115,6 +116,7 @@ class PositionStream:
             stationary=bool(track.stationary[row]),
             quality=doubt[0],
             reasons=doubt[1],
+            magnetic_north=_magnetic_north(track, row),
         )
 
     def _turn(self, north_m: float, east_m: float) -> None:
@@ -134,6 +136,13 @@ class PositionStream:
     def _pressure_at(self, t_ns: int) -> float | None:
         after = bisect_right(self._pressures, (t_ns, math.inf))
         return self._pressures[after - 1][1] if after else None
+
+
+def _magnetic_north(track: TrackBatch, row: int) -> MagneticNorth | None:
+    std_rad = float(track.magnetic_north_std_rad[row])
+    if not std_rad < _TELLS_NOTHING_RAD:
+        return None
+    return MagneticNorth(float(track.magnetic_north_rad[row]), std_rad)
 
 
 def _correlation(covariance: float, product: float) -> float:

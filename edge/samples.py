@@ -130,3 +130,4 @@ class SensorDescription:
     gyro_full_scale_radps: float | None = None
     mag_present: bool = False
     barometer_present: bool = False
+    mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none

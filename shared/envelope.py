@@ -34,16 +34,19 @@ class Stamper:
         """0 before the first header."""
         return self._seq
 
+    def utc_ns(self, t_mono_ns: int) -> int:
+        """The sender's estimate of UTC at its monotonic ``t_mono_ns``."""
+        return self._clock.utc_ns() - (self._clock.monotonic_ns() - t_mono_ns)
+
     def header(self, t_mono_ns: int | None = None) -> Header:
         """The next header, for something captured at ``t_mono_ns`` (now when left out)."""
-        now_mono_ns = self._clock.monotonic_ns()
-        captured_ns = now_mono_ns if t_mono_ns is None else t_mono_ns
+        captured_ns = self._clock.monotonic_ns() if t_mono_ns is None else t_mono_ns
         self._seq += 1
         return Header(
             unit_id=self._unit_id,
             boot_id=self._boot_id,
             seq=self._seq,
             t_mono_ns=captured_ns,
-            t_utc_ns=self._clock.utc_ns() - (now_mono_ns - captured_ns),
+            t_utc_ns=self.utc_ns(captured_ns),
             utc_std_s=self._utc_std_s(),
         )

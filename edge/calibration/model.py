@@ -9,6 +9,8 @@ Beyond the temperatures of the warm-up the bias is taken to stay as it was at th
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import msgspec
@@ -54,6 +56,13 @@ class Magnetometer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     field_ut: float  # of the earth, as it was measured
     residual_ut: float
 
+    @property
+    def left_ut(self) -> float:
+        """Standard deviation, an axis, of what is left uncorrected."""
+        gain = float(np.sqrt(np.mean(np.square(self.gain_std)))) * self.field_ut
+        iron = float(np.sqrt(np.mean(np.square(self.hard_iron_std_ut))))
+        return math.hypot(gain, iron, self.residual_ut)
+
 
 class Warmth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How the biases follow the sensor's temperature."""
@@ -93,6 +102,11 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             pressure_pa=imu.pressure_pa,
             imu_temperature_degc=imu.imu_temperature_degc,
         )
+
+    def described(self, sensor: SensorDescription) -> SensorDescription:
+        """``sensor`` with what is left of iron once its readings are corrected."""
+        part = self.magnetometer
+        return sensor if part is None else replace(sensor, mag_iron_std_ut=part.left_ut)
 
     def faults(self) -> tuple[str, ...]:
         """What is poor about it, in words; empty where all residuals are as they should be."""

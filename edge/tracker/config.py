@@ -64,6 +64,7 @@ class EskfConfig(NamedTuple):
     # The magnetic field (magnetic_heading.py).
     field_std_ut: float = 60.0  # the earth's, before it is seen
     field_iron_std_ut: float = 40.0  # of iron on the foot
+    field_iron_least_ut: float = 1.0  # ... of a calibrated unit
     field_noise_ut: float = 0.5  # of the mean of a stance
     field_near_m: float = 1.5  # steel nearby is forgotten over this way
     field_wide_m: float = 30.0  # and that of a whole part of a building over this
@@ -74,6 +75,8 @@ class EskfConfig(NamedTuple):
     field_bend_fall: float = 0.04  # ... that is better
     field_bend_ratio: float = 0.2  # bend by horizontal field, from which doubt grows faster
     field_bend_limit: float = 0.5  # ... from which the field tells no heading
+    field_everywhere_ut: float = 4.0  # by which it may be bent alike all over
+    field_agreeing_ut: float = 1.0  # ... though strength and dip are the earth's
     field_known_ratio: float = 3.0  # horizontal field by its deviation; less tells no heading
 
     # The air's pressure (barometric_height.py).

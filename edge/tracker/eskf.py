@@ -23,6 +23,7 @@ from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
 from edge.tracker.state import RING, Progress, Ring, new_filter_state, new_progress, reach
 from edge.tracker.zero_velocity import motion_statistic, stride_minimum
+from shared.earth_field import EarthField
 
 RING_S = 4.0  # of samples in the ring at the described rate
 MIN_RING_HZ = 200.0  # room for a description that understates the rate
@@ -44,6 +45,8 @@ class EskfTracker:
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
         self._block = slots // 4
+        self._state["compass"]["calibrated"] = description.mag_iron_std_ut is not None
+        self._state["compass"]["iron_std_ut"] = iron_std_ut(description, self.config)
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
@@ -58,6 +61,13 @@ class EskfTracker:
                 released.append(rows)
         return join_rows(released)
 
+    def learn_field(self, field: EarthField, t_ns: int) -> None:
+        """Strength and dip tell how far the field around here is to be trusted."""
+        compass = self._state["compass"]
+        compass["earth_known"], compass["earth_from_ns"] = True, t_ns
+        compass["earth_horizontal_ut"] = field.horizontal_ut
+        compass["earth_down_ut"] = field.down_ut
+
     def finish(self) -> TrackBatch:
         """Return the rows still held back; the tracker is used up."""
         return self._work(final=True)
@@ -66,6 +76,12 @@ class EskfTracker:
         first = int(self._progress["released"][0])
         stop = work(self._ring, self._progress, self._state, self.config, final)
         return rows_of(self._ring, first, stop)
+
+
+def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:
+    """How much iron there may be on the foot; a calibration is not of today's shoe."""
+    left_ut = description.mag_iron_std_ut
+    return config.field_iron_std_ut if left_ut is None else max(left_ut, config.field_iron_least_ut)
 
 
 @njit(cache=True)

@@ -1,10 +1,10 @@
 """The method of the thesis the project began with (Huang 2009, sections 3.4 to 3.7).
 
 Stance is found by the rate about the foot's pitch axis with a least phase time (3.4);
-the orientation in stance comes from the low-passed acceleration and the magnetometer
-(3.5, see ``quasi_static``); velocity and orientation are reset in stance (3.6); and
-what is left of velocity and angle at the end of a swing is taken out of the swing as
-if constant biases had caused it (3.7).
+the orientation in stance comes from the low-passed acceleration and the magnetometer, whose
+north is true where the place is known (3.5, see ``quasi_static``); velocity and orientation
+are reset in stance (3.6); and what is left of velocity and angle at the end of a swing is
+taken out of the swing as if constant biases had caused it (3.7).
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_
 from edge.tracker.huang_stance import follow_pitch_axis, is_stance, pitch_rate
 from edge.tracker.huang_state import HUANG, HuangConfig, HuangState
 from edge.tracker.port import Quality, Reason, TrackBatch
-from edge.tracker.quasi_static import static_orientation
+from edge.tracker.quasi_static import static_orientation, turn_heading
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.state import RING, Ring, reach
 from edge.tracker.strapdown import advance, rotation_matrix
+from shared.earth_field import EarthField
 
 SLOTS_S = 4.0
 MIN_RATE_HZ = 200.0
@@ -57,6 +58,10 @@ class HuangTracker:
             self._state["received"] += len(part)
             released.append(self._work(final=False))
         return join_rows(released)
+
+    def learn_field(self, field: EarthField, t_ns: int) -> None:
+        """From then on headings are true; what was walked before stays as it was."""
+        self._state["learned_rad"], self._state["learned_from_ns"] = field.declination_rad, t_ns
 
     def finish(self) -> TrackBatch:
         """Return the rows still held back; the tracker is used up."""
@@ -100,8 +105,10 @@ def _take(ring: Ring, state: HuangState, k: int, config: HuangConfig) -> None:
     follow_pitch_axis(ring, state, k, config)
     ring[slot].motion_m2ps4 = pitch_rate(ring, state, k)
     stance = is_stance(ring, state, k, config)
+    if state.learned_rad != state.declination_rad and ring[slot].t_ns >= state.learned_from_ns:
+        _turn_to_true_north(state)
     if k == 0:
-        static_orientation(ring, state.timed, k, config.low_pass_s, config.declination_rad, state)
+        static_orientation(ring, state.timed, k, config.low_pass_s, state.declination_rad, state)
         _mark_reset(state, k)
         state.settled = True
         state.in_stance = stance
@@ -173,7 +180,7 @@ def _settle(ring: Ring, state: HuangState, k: int, config: HuangConfig) -> None:
     mask = len(ring) - 1
     since_s = ring[k & mask].t_s - ring[state.reset_at & mask].t_s
     tracked = state.quaternion_nb.copy()
-    static_orientation(ring, state.timed, k, config.low_pass_s, config.declination_rad, state)
+    static_orientation(ring, state.timed, k, config.low_pass_s, state.declination_rad, state)
     static = state.quaternion_nb.copy()
     swung = not state.settled and state.stance_from > state.swing_from >= state.reset_at
     if swung and since_s > 0.0 and k - state.reset_at < mask // 2:
@@ -220,6 +227,20 @@ def _replay(
     for i in range(3):
         state.velocity_n_mps[i] = 0.0
     return down_n_mps
+
+
+@njit()
+def _turn_to_true_north(state: HuangState) -> None:
+    """Take the declination that was learned; it is no drift of the swing it comes in."""
+    turn_rad = state.learned_rad - state.declination_rad
+    state.declination_rad = state.learned_rad
+    turn_heading(state.quaternion_nb, turn_rad)
+    turn_heading(state.reset_quaternion_nb, turn_rad)
+    rotation_matrix(state.quaternion_nb, state.rotation_nb)
+    north_mps, east_mps = state.velocity_n_mps[0], state.velocity_n_mps[1]
+    cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
+    state.velocity_n_mps[0] = cosine * north_mps - sine * east_mps
+    state.velocity_n_mps[1] = sine * north_mps + cosine * east_mps
 
 
 @njit()
@@ -279,6 +300,8 @@ def _write(ring: Ring, state: HuangState, slot: int, config: HuangConfig) -> Non
         for j in range(3):
             row.covariance[i, j] = std_m**2 if i == j else 0.0
     row.heading_std_rad = config.heading_std_rad
+    row.magnetic_north_rad = state.declination_rad
+    row.magnetic_north_std_rad = np.inf  # believed as it is, and never judged
     row.stationary = state.in_stance
     row.distance_m = state.distance_m
     row.steps = state.steps

@@ -33,6 +33,9 @@ HUANG = np.dtype(
         ("distance_m", np.float64),
         ("steps", np.int64),
         ("last_stance_s", np.float64),
+        ("declination_rad", np.float64),  # of magnetic north, east positive; 0 while unknown
+        ("learned_rad", np.float64),  # the same, to be used from a sample's time on
+        ("learned_from_ns", np.int64),
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ],
     align=True,
@@ -49,7 +52,6 @@ class HuangConfig(NamedTuple):
     rest_s: float = 1.0  # between resets of someone who stands
     longest_swing_s: float = 1.2  # then the quietest sample around is taken for stance
     low_pass_s: float = 0.7  # Hann window of the acceleration: 1 Hz
-    declination_rad: float = 0.0  # of magnetic north, east positive
     axis_memory_s: float = 5.0
     lookahead_s: float = 0.36
     hold_s: float = 0.55  # a swing's rows wait so long for its correction

@@ -35,6 +35,7 @@ ABSURD_UT = 1000.0  # twenty times the earth's field
 def heed_field(ring: Ring, state: FilterState, slot: int, still: bool, config: EskfConfig) -> None:
     """Gather the field of a stance; look at it when the stance ends, or once a second."""
     compass = state.compass
+    _write_north(ring, state, slot)
     if still:
         _gather(ring, state, slot)
     if compass.samples == 0:
@@ -100,6 +101,51 @@ def _look(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
         begin_updates(state)
         measure_heading(ring, state, slot, residual_rad, variance)
         end_updates(state)
+    _find_north(ring, state, slot, config)
+    _write_north(ring, state, slot)
+
+
+@njit()
+def _find_north(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+    """Judge where magnetic north lies in the frame as the main filter has it now.
+
+    The frame is the walk's, turned by the error of heading, and both are known together.  To
+    what the model itself knows is added what it cannot: a field that is bent alike all over,
+    which shows, where the earth's is known, by strength and dip.
+    """
+    compass = state.compass
+    if not compass.calibrated:
+        return
+    _aim(compass)
+    p = compass.covariance
+    ahead, right, strength = compass.aim_n[0], compass.aim_n[1], compass.strength_ut
+    compass.heading_var_rad2 = heading_variance(state.covariance)
+    compass.north_var_rad2 = math.inf
+    spread = p[FIELD, FIELD] + p[FIELD + 1, FIELD + 1]
+    if not strength * strength > config.field_known_ratio**2 * spread:
+        return
+    across_var = right * right * p[FIELD, FIELD] + ahead * ahead * p[FIELD + 1, FIELD + 1]
+    across_var -= 2.0 * right * ahead * p[FIELD, FIELD + 1]
+    with_heading = ahead * p[FIELD + 1, 0] - right * p[FIELD, 0]
+    everywhere_var = config.field_everywhere_ut**2
+    if compass.earth_known and ring[slot].t_ns >= compass.earth_from_ns:
+        off_along_ut = strength - compass.earth_horizontal_ut
+        off_down_ut = compass.estimate[FIELD + 2] - compass.earth_down_ut
+        everywhere_var = config.field_agreeing_ut**2
+        everywhere_var += 0.5 * (off_along_ut * off_along_ut + off_down_ut * off_down_ut)
+    variance = (across_var + everywhere_var) / (strength * strength)
+    variance += p[0, 0] - 2.0 * with_heading / strength
+    compass.north_rad = math.atan2(right, ahead) - compass.estimate[0]
+    compass.north_var_rad2 = variance
+
+
+@njit()
+def _write_north(ring: Ring, state: FilterState, slot: int) -> None:
+    """Write magnetic north into the row; since the last look the heading has drifted."""
+    compass = state.compass
+    drifted = max(heading_variance(state.covariance) - compass.heading_var_rad2, 0.0)
+    ring[slot].magnetic_north_rad = compass.north_rad
+    ring[slot].magnetic_north_std_rad = math.sqrt(compass.north_var_rad2 + drifted)
 
 
 @njit()
@@ -108,7 +154,7 @@ def _start(compass: Aid, config: EskfConfig) -> None:
     compass.bend_var_ut2 = config.field_bend_start_ut**2
     for i in range(3):
         compass.covariance[FIELD + i, FIELD + i] = config.field_std_ut**2
-        compass.covariance[IRON + i, IRON + i] = config.field_iron_std_ut**2
+        compass.covariance[IRON + i, IRON + i] = compass.iron_std_ut**2
         compass.covariance[WIDE + i, WIDE + i] = config.field_wide_share**2 * compass.bend_var_ut2
 
 

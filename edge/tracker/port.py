@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, Nanoseconds
+from shared.earth_field import EarthField
 from shared.quality import Quality, Reason
 
 __all__ = ["Quality", "Reason", "TrackBatch", "Tracker"]
@@ -37,6 +38,8 @@ class TrackBatch:
     steps: NDArray[np.int64]  # (n,) strides of this foot counted since the start
     quality: NDArray[np.uint8]  # (n,) Quality
     reasons: NDArray[np.uint32]  # (n,) Reason bits
+    magnetic_north_rad: Floats  # (n,) where it lies in the frame, clockwise from the frame's north
+    magnetic_north_std_rad: Floats  # (n,) infinite where the tracker does not know it
 
     def __len__(self) -> int:
         return len(self.t_ns)
@@ -47,6 +50,12 @@ class Tracker(Protocol):
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
+        ...
+
+    def learn_field(self, field: EarthField, t_ns: int) -> None:
+        """What the earth's field is around here; holds for samples from ``t_ns`` on, which are
+        still to be pushed.
+        """
         ...
 
     def finish(self) -> TrackBatch:

@@ -39,7 +39,7 @@ def static_orientation(
         if north * north + east * east > 1.0:
             # Seen from the sensor, magnetic north lies where the level field points.
             turn_rad = declination_rad - math.atan2(east, north)
-            _turn_heading(state.quaternion_nb, turn_rad)
+            turn_heading(state.quaternion_nb, turn_rad)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
 
 
@@ -104,7 +104,8 @@ def turn_upright(quaternion_nb: Floats, force_b_mps2: Floats) -> None:
 
 
 @njit()
-def _turn_heading(quaternion_nb: Floats, turn_rad: float) -> None:
+def turn_heading(quaternion_nb: Floats, turn_rad: float) -> None:
+    """Turn an attitude clockwise about the vertical."""
     half = 0.25 * math.atan2(math.sin(turn_rad), math.cos(turn_rad))
     for _ in range(2):  # in halves: the tangent of a quarter turn is finite
         rotate_navigation(quaternion_nb, 0.0, 0.0, 2.0 * math.tan(half))

@@ -24,6 +24,8 @@ def empty_rows() -> TrackBatch:
         steps=np.zeros(0, np.int64),
         quality=np.zeros(0, np.uint8),
         reasons=np.zeros(0, np.uint32),
+        magnetic_north_rad=np.zeros(0),
+        magnetic_north_std_rad=np.zeros(0),
     )
 
 
@@ -42,6 +44,8 @@ def rows_of(ring: Ring, first: int, stop: int) -> TrackBatch:
         steps=ring["steps"][slots],
         quality=ring["quality"][slots],
         reasons=ring["reasons"][slots],
+        magnetic_north_rad=ring["magnetic_north_rad"][slots],
+        magnetic_north_std_rad=ring["magnetic_north_std_rad"][slots],
     )
 
 

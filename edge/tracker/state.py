@@ -45,6 +45,8 @@ RING = np.dtype(
         ("velocity_n_mps", np.float64, 3),
         ("quaternion_nb", np.float64, 4),
         ("heading_std_rad", np.float64),
+        ("magnetic_north_rad", np.float64),  # in the frame
+        ("magnetic_north_std_rad", np.float64),
         ("distance_m", np.float64),
         ("steps", np.int64),
         ("stationary", np.bool_),
@@ -79,6 +81,15 @@ COMPASS = np.dtype(
         ("covariance", np.float64, (COMPASS_SIZE, COMPASS_SIZE)),
         ("started", np.bool_),
         ("bend_var_ut2", np.float64),  # of what steel does to the field around here
+        ("calibrated", np.bool_),
+        ("iron_std_ut", np.float64),  # of iron on the foot, before it is seen
+        ("north_rad", np.float64),  # of magnetic north in the frame, at the last look
+        ("north_var_rad2", np.float64),
+        ("heading_var_rad2", np.float64),  # the main filter's then
+        ("earth_known", np.bool_),  # the field by the model, from a sample's time on
+        ("earth_from_ns", np.int64),
+        ("earth_horizontal_ut", np.float64),
+        ("earth_down_ut", np.float64),
         ("north_m", np.float64),  # where the last look was
         ("east_m", np.float64),
         ("samples", np.int64),  # in this stance so far
@@ -210,6 +221,7 @@ def new_filter_state() -> NDArray[Any]:
     state = np.zeros(1, FILTER)
     state["quaternion_nb"][0] = [1.0, 0.0, 0.0, 0.0]
     state["rotation_nb"][0] = np.eye(3)
+    state["compass"]["north_var_rad2"] = np.inf
     return state
 
 

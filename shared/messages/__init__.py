@@ -16,7 +16,7 @@ from shared.messages.gps import FixType, GpsFix
 from shared.messages.header import SCHEMA_REVISION, STATION_ID, Header
 from shared.messages.imu import RawImu
 from shared.messages.journal import JournalBoot, JournalChunk, JournalEntry, JournalIndex
-from shared.messages.position import Position
+from shared.messages.position import MagneticNorth, Position
 from shared.messages.sighting import Sighting, SightingKind
 from shared.messages.station import OperatorAction, Tick
 from shared.messages.status import Activity, Status
@@ -62,6 +62,7 @@ __all__ = [
     "JournalChunk",
     "JournalEntry",
     "JournalIndex",
+    "MagneticNorth",
     "Message",
     "OperatorAction",
     "Position",

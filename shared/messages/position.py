@@ -10,6 +10,8 @@ from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import position_pb2
 from shared.messages.quantise import (
+    HALF_TURN_CDEG,
+    angle_std_known_to_cdeg,
     angle_std_to_cdeg,
     cdeg_to_heading,
     heading_to_cdeg,
@@ -17,6 +19,16 @@ from shared.messages.quantise import (
     unsigned32,
 )
 from shared.quality import Quality, Reason
+
+
+class MagneticNorth(msgspec.Struct, frozen=True):
+    """Where a unit that has a calibrated compass believes magnetic north to be in its frame.
+
+    What bends the field lasts, so many of these tell hardly more than one: not to be averaged.
+    """
+
+    heading_rad: float  # clockwise from the frame's north
+    std_rad: float
 
 
 class Position(msgspec.Struct, frozen=True):
@@ -40,8 +52,10 @@ class Position(msgspec.Struct, frozen=True):
     stationary: bool
     quality: Quality
     reasons: Reason
+    magnetic_north: MagneticNorth | None = None  # None: not known
 
     def to_wire(self) -> position_pb2.Position:
+        north = self.magnetic_north
         return position_pb2.Position(
             header=self.header.to_wire(),
             north_mm=signed32(self.north_m, 1e3),
@@ -61,6 +75,8 @@ class Position(msgspec.Struct, frozen=True):
             stationary=self.stationary,
             quality=int(self.quality),  # type: ignore[arg-type]  # stubs want the generated enum
             reasons=int(self.reasons),
+            magnetic_north_cdeg=0 if north is None else heading_to_cdeg(north.heading_rad),
+            magnetic_north_std_cdeg=0 if north is None else angle_std_known_to_cdeg(north.std_rad),
         )
 
     @staticmethod
@@ -84,7 +100,17 @@ class Position(msgspec.Struct, frozen=True):
             stationary=wire.stationary,
             quality=known(Quality, wire.quality),
             reasons=_reasons(wire.reasons & _ALL_REASONS),
+            magnetic_north=_magnetic_north(wire),
         )
+
+
+def _magnetic_north(wire: position_pb2.Position) -> MagneticNorth | None:
+    if not 0 < wire.magnetic_north_std_cdeg < HALF_TURN_CDEG:
+        return None
+    return MagneticNorth(
+        heading_rad=cdeg_to_heading(wire.magnetic_north_cdeg),
+        std_rad=cdeg_to_heading(wire.magnetic_north_std_cdeg),
+    )
 
 
 _ALL_REASONS = int(sum(Reason))

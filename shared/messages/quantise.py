@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 _TWO_PI = 2.0 * math.pi
-_CDEG_PER_RAD = 18_000.0 / math.pi
+HALF_TURN_CDEG = 18_000
+_CDEG_PER_RAD = HALF_TURN_CDEG / math.pi
 _SIGNED_MOST = 2**31 - 1
 _UNSIGNED_MOST = 2**32 - 1
 
@@ -42,7 +43,12 @@ def cdeg_to_heading(cdeg: int) -> float:
 
 def angle_std_to_cdeg(std_rad: float) -> int:
     """An angle's standard deviation; past half a turn nothing is known: 18000."""
-    return min(18_000, unsigned32(std_rad, _CDEG_PER_RAD))
+    return min(HALF_TURN_CDEG, unsigned32(std_rad, _CDEG_PER_RAD))
+
+
+def angle_std_known_to_cdeg(std_rad: float) -> int:
+    """The same where 0 says that there is no such angle: what is known is at least 1."""
+    return max(angle_std_to_cdeg(std_rad), 1)
 
 
 def _rounded(value: float) -> int:

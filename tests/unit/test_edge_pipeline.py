@@ -26,11 +26,13 @@ from edge.samples import (
 from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
+from shared.earth_field import EarthField
 from shared.envelope import Stamper
 from shared.messages import (
     Activity,
     EventKind,
     GpsFix,
+    MagneticNorth,
     Message,
     Position,
     Sighting,
@@ -48,8 +50,10 @@ SENSOR = SensorDescription("fake", RATE_HZ)
 class StraightAhead:
     """A tracker that has everyone walk north at 1 m/s with a stride a second."""
 
-    def __init__(self, spoil: bool = False) -> None:
+    def __init__(self, spoil: bool = False, north_std_rad: float = np.inf) -> None:
         self._spoil = spoil
+        self.north_std_rad = north_std_rad
+        self.learned: list[tuple[EarthField, int]] = []
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         n = len(batch)
@@ -68,7 +72,12 @@ class StraightAhead:
             steps=np.floor(t_s).astype(np.int64),
             quality=np.full(n, Quality.DEGRADED, np.uint8),
             reasons=np.full(n, Reason.NO_STANCE, np.uint32),
+            magnetic_north_rad=np.full(n, 0.3),
+            magnetic_north_std_rad=np.full(n, self.north_std_rad),
         )
+
+    def learn_field(self, field: EarthField, t_ns: int) -> None:
+        self.learned.append((field, t_ns))
 
     def finish(self) -> TrackBatch:
         return self.push(walk(0))
@@ -302,3 +311,14 @@ def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which()
 def test_without_a_calibration_the_description_names_none():
     (description,) = of(pipeline().start(), UnitDescription)
     assert (description.calibration, description.calibrated_s) == ("", None)
+
+
+def test_magnetic_north_is_said_where_the_tracker_knows_it():
+    def norths(std_rad: float):
+        messages = steps(pipeline(StraightAhead(north_std_rad=std_rad)), walk(100), [100])
+        return {position.magnetic_north for position in of(messages, Position)}
+
+    assert norths(0.1) == {MagneticNorth(0.3, 0.1)}
+    assert norths(math.inf) == {None}
+    assert norths(math.nan) == {None}
+    assert norths(2.0) == {None}  # that would tell nothing

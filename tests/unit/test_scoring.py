@@ -26,6 +26,8 @@ def rows_along(position_n_m, std_m=0.1):
         steps=np.zeros(n, np.int64),
         quality=np.ones(n, np.uint8),
         reasons=np.zeros(n, np.uint32),
+        magnetic_north_rad=np.zeros(n),
+        magnetic_north_std_rad=np.full(n, np.inf),
     )
 
 
