@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator
+from functools import partial
 
+from edge.answers import Answer, Answers, Parameters
 from edge.spool import EVERYTHING, RAW, URGENT, Spool
-from shared.channels import ROOT
-from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
-
-logger = logging.getLogger(__name__)
 
 _MAX_MESSAGES = 10_000
 _REPLY_BYTES = 16_384
@@ -20,40 +17,25 @@ _ENTRY_OVERHEAD_BYTES = 24
 _WORTHS = {"range": EVERYTHING, "urgent": URGENT, "raw": RAW}
 
 
-class JournalServer:
+class JournalServer(Answers):
     """Serves ``index``, ``urgent``, ``raw``, ``range`` and ``acknowledge`` under
     ``muster/v1/{unit}/journal/``.
     """
 
     def __init__(self, unit_id: str, spool: Spool) -> None:
-        self._prefix = f"{ROOT}/{unit_id}/journal"
         self._spool = spool
+        answers: dict[str, Answer] = {"index": self._index, "acknowledge": self._acknowledge}
+        answers |= {what: partial(self._range, what) for what in _WORTHS}
+        super().__init__(unit_id, "journal", answers)
 
-    @property
-    def key_expression(self) -> str:
-        return f"{self._prefix}/**"
+    def _index(self, _: Parameters) -> Iterator[bytes]:
+        yield JournalIndex(self._spool.boots()).to_bytes()
 
-    def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
-        """What a query is answered; nothing, and a line in the log, where it makes no sense."""
-        del payload
-        try:
-            values = dict(pair.split("=", 1) for pair in parameters.split(";") if pair)
-            match key.removeprefix(self._prefix + "/"):
-                case "index":
-                    yield JournalIndex(self._spool.boots()).to_bytes()
-                case "range" | "urgent" | "raw" as what:
-                    yield from self._range(values, what)
-                case "acknowledge":
-                    self._spool.acknowledge(int(values["epoch"]), int(values["to"]))
-                    yield JournalIndex(self._spool.boots()).to_bytes()
-                case _:
-                    logger.warning("asked for %s, which the journal does not have", key)
-        except (KeyError, ValueError, OverflowError) as error:
-            logger.warning("a question for the journal makes no sense: %r (%r)", parameters, error)
-        except StoreError as error:
-            logger.error("the journal cannot answer: %s", error)
+    def _acknowledge(self, values: Parameters) -> Iterator[bytes]:
+        self._spool.acknowledge(int(values["epoch"]), int(values["to"]))
+        return self._index(values)
 
-    def _range(self, values: dict[str, str], what: str) -> Iterator[bytes]:
+    def _range(self, what: str, values: Parameters) -> Iterator[bytes]:
         boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
         if not self._spool.has_boot(boot_id):
             return  # of another machine under this name: it may have what this one has not

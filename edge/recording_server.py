@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import logging
 from collections.abc import Iterator
 from pathlib import Path
 
+from edge.answers import Answers, Parameters
 from edge.data_folder import DataFolder
 from edge.station_clock import StationClock
-from shared.channels import ROOT
 from shared.clock import NS_PER_S
 from shared.mcap_log import segment_began_ns, segment_paths, segments_within
 from shared.messages.recording import (
@@ -19,46 +18,22 @@ from shared.messages.recording import (
     RecordingPiece,
 )
 
-logger = logging.getLogger(__name__)
-
 MOST_PIECE_BYTES = 65_536
 _HASHED_AT_ONCE = 1 << 20
 
 
-class RecordingServer:
+class RecordingServer(Answers):
     """Serves ``index``, ``piece`` and ``digest`` under ``muster/v1/{unit}/recording/``."""
 
     def __init__(self, unit_id: str, folder: DataFolder, clock: StationClock) -> None:
-        self._prefix = f"{ROOT}/{unit_id}/recording"
         self._folder = folder
         self._clock = clock
+        answers = {"index": self._index, "piece": self._piece, "digest": self._digest}
+        super().__init__(unit_id, "recording", answers)
 
-    @property
-    def key_expression(self) -> str:
-        return f"{self._prefix}/**"
-
-    def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
-        """What a query is answered; nothing, and a line in the log, where it makes no sense."""
-        del payload
-        try:
-            values = dict(pair.split("=", 1) for pair in parameters.split(";") if pair)
-            match key.removeprefix(self._prefix + "/"):
-                case "index":
-                    yield self._index(int(values["from"]), int(values["to"])).to_bytes()
-                case "piece":
-                    offset, length = int(values["offset"]), int(values["length"])
-                    yield self._piece(values["path"], offset, length).to_bytes()
-                case "digest":
-                    yield self._digest(values["path"], int(values["size"])).to_bytes()
-                case _:
-                    logger.warning("asked for %s, which a recording does not have", key)
-        except (KeyError, ValueError, OverflowError) as error:
-            logger.warning("a question for a recording makes no sense: %r (%r)", parameters, error)
-        except OSError as error:
-            logger.error("the recording cannot be read: %s", error)
-
-    def _index(self, from_ns: int, to_ns: int) -> RecordingIndex:
+    def _index(self, values: Parameters) -> Iterator[bytes]:
         """Times are station time; the black box goes by the machine's."""
+        from_ns, to_ns = int(values["from"]), int(values["to"])
         ahead_ns = round(self._clock.machine_ahead_s() * NS_PER_S)
         found: list[Path] = []
         first_ns = 0
@@ -71,24 +46,25 @@ class RecordingServer:
             found += [one for one in within if one.stat().st_mtime_ns >= from_ns + ahead_ns]
         if found:
             found += sorted(self._folder.calibrations.glob("*.toml"))
-        return RecordingIndex(
-            tuple(RecordedFile(self._name_of(one), one.stat().st_size) for one in found), first_ns
-        )
+        files = tuple(RecordedFile(self._name_of(one), one.stat().st_size) for one in found)
+        yield RecordingIndex(files, first_ns).to_bytes()
 
-    def _piece(self, name: str, offset: int, length: int) -> RecordingPiece:
-        path = self._path_of(name)
+    def _piece(self, values: Parameters) -> Iterator[bytes]:
+        offset, length = int(values["offset"]), int(values["length"])
+        path = self._path_of(values["path"])
         if path is None:
-            return RecordingPiece(offset, b"", b"", gone=True)
+            yield RecordingPiece(offset, b"", b"", gone=True).to_bytes()
+            return
         with path.open("rb") as file:
             file.seek(offset)
             data = file.read(max(0, min(length, MOST_PIECE_BYTES)))
-        return RecordingPiece(offset, data, hashlib.sha256(data).digest())
+        yield RecordingPiece(offset, data, hashlib.sha256(data).digest()).to_bytes()
 
-    def _digest(self, name: str, size_bytes: int) -> RecordingDigest:
-        path = self._path_of(name)
-        if path is None:
-            return RecordingDigest(0, b"")
-        return RecordingDigest(size_bytes, sha256_of(path, size_bytes))
+    def _digest(self, values: Parameters) -> Iterator[bytes]:
+        size_bytes = int(values["size"])
+        path = self._path_of(values["path"])
+        digest = b"" if path is None else sha256_of(path, size_bytes)
+        yield RecordingDigest(0 if path is None else size_bytes, digest).to_bytes()
 
     def _name_of(self, path: Path) -> str:
         return f"{path.parent.name}/{path.name}"

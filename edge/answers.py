@@ -1,0 +1,44 @@
+"""What the agent answers the station: questions under a branch of the unit's keys."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from shared.channels import ROOT
+from shared.errors import StoreError
+
+logger = logging.getLogger(__name__)
+
+Parameters = dict[str, str]
+Answer = Callable[[Parameters], Iterable[bytes]]
+
+
+class Answers:
+    """Answers by the last part of the key below ``muster/v1/{unit}/{branch}/``.
+
+    An answer raises KeyError, ValueError or OverflowError where the parameters make no sense,
+    StoreError or OSError where what is asked for cannot be read.
+    """
+
+    def __init__(self, unit_id: str, branch: str, answers: Mapping[str, Answer]) -> None:
+        self._prefix = f"{ROOT}/{unit_id}/{branch}/"
+        self._answers = answers
+
+    @property
+    def key_expression(self) -> str:
+        return f"{self._prefix}**"
+
+    def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
+        """What a query is answered; nothing, and a line in the log, where it makes no sense."""
+        del payload
+        answer = self._answers.get(key.removeprefix(self._prefix))
+        if answer is None:
+            logger.warning("asked for %s, of which this unit knows nothing", key)
+            return
+        try:
+            yield from answer(dict(pair.split("=", 1) for pair in parameters.split(";") if pair))
+        except (KeyError, ValueError, OverflowError) as error:
+            logger.warning("a question for %s makes no sense: %r (%r)", key, parameters, error)
+        except (StoreError, OSError) as error:
+            logger.error("%s cannot be answered: %s", key, error)
