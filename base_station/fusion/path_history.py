@@ -30,6 +30,7 @@ FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much t
 CHUNK = 128
 MOST_POINTS = 14_400  # some four hours of walking; beyond it every other old one goes
 _MOST_MM = 2**31 - 1  # what a column holds
+_TURN_RAD = 2.0 * math.pi
 
 Records = NDArray[np.void]
 Floats = NDArray[np.float64]
@@ -54,20 +55,15 @@ _FIX = np.dtype([("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("std
 NO_FLOOR = -(2**31)
 BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not join
 
-_SHOWN = (
-    "shown_north_mm", "shown_east_mm", "shown_std_mm", "shown_down_mm", "shown_down_std_mm",
-    "floor",
-)  # fmt: skip
-
 
 class Point(msgspec.Struct, array_like=True):
     """One place of the own path; fields as in the packed rows."""
 
-    t_ns: int
-    north_mm: int
-    east_mm: int
-    std_mm: int
-    heading_e4: int
+    t_ns: int = 0
+    north_mm: int = 0
+    east_mm: int = 0
+    std_mm: int = 0
+    heading_e4: int = 0
     moving_ms: int = 0
     shown_north_mm: int = 0
     shown_east_mm: int = 0
@@ -141,25 +137,22 @@ class PathHistory(msgspec.Struct):
         restarted = bool(self.points) and boot_id != self.boot_id
         if boot_id != self.boot_id:
             self.boot_id, self.boot_begin_ns = boot_id, t_ns
-        point = _point_of(position, max(t_ns, self.points[-1].t_ns + 1) if self.points else t_ns)
-        point.flags |= RESTART * restarted | BREAK * (jumped and not restarted)
+        flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
+        flags |= RESTART * restarted | BREAK * (jumped and not restarted)
         if not self.points:
-            self.points.append(point)
+            self.points.append(_point_of(position, t_ns, flags))
             return
         tip = self.points[-1]
-        for name in _SHOWN:
-            setattr(point, name, getattr(tip, name))
-        if not point.flags & (BREAK | RESTART):
-            stepped_mm = abs(point.north_mm - tip.north_mm) + abs(point.east_mm - tip.east_mm)
-            point.moving_ms = (
-                (point.t_ns - tip.t_ns) // 1_000_000 if stepped_mm > MOVING_M * 1e3 else 0
-            )
-        if self._is_settled(tip, point):
-            self._append(point)
-        else:
-            point.moving_ms += tip.moving_ms
-            point.flags |= tip.flags
-            self.points[-1] = point
+        before_ns, before_north_mm, before_east_mm = tip.t_ns, tip.north_mm, tip.east_mm
+        if self._is_settled(tip, flags):
+            tip = self._begin_point(tip)
+        tip.t_ns = max(t_ns, before_ns + 1)
+        tip.flags |= flags
+        _follow(tip, position)
+        if not flags & (BREAK | RESTART):
+            stepped_mm = abs(tip.north_mm - before_north_mm) + abs(tip.east_mm - before_east_mm)
+            if stepped_mm > MOVING_M * 1e3:
+                tip.moving_ms += (tip.t_ns - before_ns) // 1_000_000
 
     def fill(self, position: Position, t_ns: int) -> None:
         """A position that came late, where none near it is known."""
@@ -172,10 +165,10 @@ class PathHistory(msgspec.Struct):
             return
         moving_ms = round(after.moving_ms * (t_ns - before.t_ns) / (after.t_ns - before.t_ns))
         after.moving_ms -= moving_ms
-        late = _point_of(position, t_ns)
-        late.moving_ms = moving_ms
-        for name in _SHOWN:
-            setattr(late, name, getattr(before, name))
+        late = _shown_as(before)
+        late.t_ns, late.moving_ms = t_ns, moving_ms
+        late.flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
+        _follow(late, position)
         self.points.insert(row, late)
 
     def show(self, estimate: Estimate, floor: int | None) -> None:
@@ -252,45 +245,65 @@ class PathHistory(msgspec.Struct):
             fix_std_m=fixes["std_mm"] * 1e-3,
         )
 
-    def _is_settled(self, tip: Point, point: Point) -> bool:
-        """Whether the tip stays where it is and a new one begins."""
-        if point.flags & (BREAK | RESTART) or (point.flags ^ tip.flags) & DOUBTFUL:
+    def _is_settled(self, tip: Point, flags: int) -> bool:
+        """Whether the tip stays where it is and a new one, with these flags, begins."""
+        if flags & (BREAK | RESTART) or (flags ^ tip.flags) & DOUBTFUL:
             return True
         if len(self.points) == 1:
             return True
         before = self.points[-2]
-        moved_mm = np.hypot(tip.north_mm - before.north_mm, tip.east_mm - before.east_mm)
-        return bool(
-            moved_mm >= STEP_M * 1e3
+        north_mm, east_mm = tip.north_mm - before.north_mm, tip.east_mm - before.east_mm
+        return (
+            north_mm * north_mm + east_mm * east_mm >= (STEP_M * 1e3) ** 2
             or abs(tip.shown_down_mm - before.shown_down_mm) >= CLIMB_M * 1e3
             or tip.t_ns - before.t_ns >= STEP_NS
         )
 
-    def _append(self, point: Point) -> None:
-        self.points.append(point)
+    def _begin_point(self, tip: Point) -> Point:
+        """A new tip; until it is estimated, it is shown where the last one was."""
+        begun = _shown_as(tip)
+        self.points.append(begun)
         if len(self.points) >= 2 * CHUNK:
             self.packed += _pack(self.points[:CHUNK]).tobytes()
             del self.points[:CHUNK]
             if len(self.packed) > MOST_POINTS * _POINT.itemsize:
                 self.packed = _thinned(np.frombuffer(self.packed, _POINT)).tobytes()
+        return begun
 
     def _rows(self) -> Records:
         return np.concatenate((np.frombuffer(self.packed, _POINT), _pack(self.points)))
 
 
-def _point_of(position: Position, t_ns: int) -> Point:
+def _point_of(position: Position, t_ns: int, flags: int) -> Point:
+    point = Point(t_ns, flags=flags)
+    _follow(point, position)
+    return point
+
+
+def _follow(point: Point, position: Position) -> None:
+    """The point is where the own path is now."""
+    point.north_mm, point.east_mm = _mm(position.north_m), _mm(position.east_m)
+    point.std_mm = _mm(max(position.std_north_m, position.std_east_m))
+    point.heading_e4 = round(position.heading_rad % _TURN_RAD * 1e4)  # whatever it says
+
+
+def _shown_as(point: Point) -> Point:
+    """A point about which nothing is known but where a neighbour was shown."""
     return Point(
-        t_ns=t_ns,
-        north_mm=_mm(position.north_m),
-        east_mm=_mm(position.east_m),
-        std_mm=_mm(max(position.std_north_m, position.std_east_m)),
-        heading_e4=round(position.heading_rad % (2.0 * math.pi) * 1e4),  # whatever it says
-        flags=0 if position.quality is Quality.GOOD else DOUBTFUL,
+        shown_north_mm=point.shown_north_mm,
+        shown_east_mm=point.shown_east_mm,
+        shown_std_mm=point.shown_std_mm,
+        shown_down_mm=point.shown_down_mm,
+        shown_down_std_mm=point.shown_down_std_mm,
+        floor=point.floor,
     )
 
 
 def _mm(metres: float) -> int:
-    return max(-_MOST_MM, min(_MOST_MM, round(metres * 1e3)))
+    millimetres = round(metres * 1e3)
+    if -_MOST_MM <= millimetres <= _MOST_MM:
+        return millimetres
+    return _MOST_MM if millimetres > 0 else -_MOST_MM
 
 
 def _pack(points: list[Point]) -> Records:
