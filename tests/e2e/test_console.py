@@ -335,6 +335,23 @@ def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Loc
     close(audit)
 
 
+def test_the_units_are_looked_after_in_their_dialog(page: Page, card: Locator) -> None:
+    dialog = menu(page, "Units")
+    row = dialog.get_by_role("row", name=UNIT)
+    expect(row).to_contain_text("1 min 15 s behind ± 3 ms", timeout=SOON_MS)
+    row.get_by_role("button", name=f"Fetch the recording of {UNIT}").click()
+    expect(row).to_contain_text("waiting", timeout=SOON_MS)
+    close(dialog)
+    page.get_by_role("button", name="Station health").click()
+    health = page.get_by_role("dialog")
+    pull = health.get_by_role("region", name="Raw recordings").get_by_role("listitem")
+    expect(pull).to_contain_text(f"{UNIT}waiting")
+    assert barriers(page) == []
+    pull.get_by_role("button", name=f"Stop the recording of {UNIT}").click()
+    expect(pull).to_contain_text("stopped by a person", timeout=SOON_MS)
+    close(health)
+
+
 def test_an_evacuation_asks_first_and_may_be_answered_by_voice(page: Page, card: Locator) -> None:
     dialog = command(page, "Evacuate")
     expect(card).not_to_contain_text("Evacuate")
@@ -475,6 +492,19 @@ def clicked_places(form: Locator) -> list[tuple[float, float]]:
 def fill_point(form: Locator, index: int, lat_deg: float, lon_deg: float) -> None:
     form.get_by_label("Latitude, °").nth(index).fill(f"{lat_deg:.9f}")
     form.get_by_label("Longitude, °").nth(index).fill(f"{lon_deg:.9f}")
+
+
+def test_two_machines_under_one_name_are_unmistakable(
+    page: Page, card: Locator, station: StationProcess
+) -> None:
+    name = "FF-09"
+    with Wearable(name, station.bus), Wearable(name, station.bus):
+        cloned = page.locator(f"[data-unit='{name}']")
+        expect(cloned).to_contain_text("Somebody may be unseen: two machines", timeout=2 * SOON_MS)
+        row = menu(page, "Units").get_by_role("row", name=name)
+        expect(row).to_contain_text("two machines speak under this name")
+        close(page.get_by_role("dialog"))
+    expect(card).not_to_contain_text("two machines")
 
 
 def test_nothing_came_from_elsewhere_and_nothing_broke(

@@ -17,6 +17,7 @@ from shared.envelope import Stamper
 from shared.messages import (
     Command,
     EventKind,
+    Heartbeat,
     Message,
     Position,
     Status,
@@ -26,6 +27,7 @@ from shared.messages import (
 
 STEP_S = 0.2
 SPEED_MPS = 1.0
+CLOCK_AHEAD_S = -75.0
 
 
 class Wearable:
@@ -70,6 +72,7 @@ class Wearable:
             if steps % 5 == 0:
                 self._say(self._status(steps))
                 self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
+                self._say(Heartbeat(self._stamper.header(), 1, 1, CLOCK_AHEAD_S, clock_std_s=0.003))
             steps += 1
 
     def _take_commands(self) -> None:
@@ -93,4 +96,4 @@ class Wearable:
         )
 
     def _status(self, steps: int) -> Status:
-        return said.status(self._stamper.header(), steps=steps, cadence_hz=1.8)
+        return said.status(self._stamper.header(), battery=0.83, steps=steps, cadence_hz=1.8)

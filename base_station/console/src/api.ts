@@ -3,7 +3,9 @@ import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
-export type Role = "viewer" | "commander" | "administrator";
+/** Each may do what those before it may. */
+export const ROLES = ["viewer", "commander", "administrator"] as const;
+export type Role = (typeof ROLES)[number];
 
 export interface Me {
   username: string;
@@ -176,6 +178,9 @@ export const fetchRecording = (unitId: string, incidentId: string | null) =>
     unit_id: unitId,
     ...(incidentId === null ? { from_ms: Date.now() - 3_600_000 } : { incident_id: incidentId }),
   });
+/** What has come of it is kept. */
+export const stopRecording = (fetchId: string) =>
+  call<void>("DELETE", `/recordings/${id(fetchId)}`);
 export const registerUnit = (unitId: string, label: string) =>
   call<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>

@@ -125,8 +125,8 @@ export interface UnitView {
   duty: DutyView | null;
   alarms: string[]; // ids of the alarms that are not resolved
   trust: TrustView;
-  clock?: ClockView | null;
-  cloned?: boolean; // two machines speak under its name; one of them is shown
+  clock: ClockView | null; // null: it has not heard the station's time yet
+  cloned: boolean; // two machines speak under its name; one of them is shown
 }
 
 /** What a unit knows of the station's time. */
@@ -198,7 +198,7 @@ export interface HealthView {
   messages_per_s: number;
   insecure: boolean;
   standby: StandbyView | null; // null: this is the only station
-  recordings?: RecordingView[];
+  recordings: RecordingView[];
   repeated: number; // messages since the station started that came again and were kept once
 }
 

@@ -1,5 +1,5 @@
 /** Numbers as a tired person reads them.  Pure. */
-import type { AlarmView, HealthView, Link, PositionView, UnitView } from "./wire";
+import type { AlarmView, ClockView, HealthView, Link, PositionView, UnitView } from "./wire";
 
 /** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
 export function duration(ms: number): string {
@@ -31,6 +31,23 @@ export function countdown(ms: number): string {
   return minutes < 60
     ? `${pad(minutes)}:${rest}`
     : `${Math.floor(minutes / 60)}:${pad(minutes % 60)}:${rest}`;
+}
+
+const WRONG_MS = 10_000;
+
+/** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
+export function clockOffset({ ahead_ms, std_ms }: ClockView): string {
+  const way = ahead_ms < 0 ? "behind" : "ahead";
+  return `${briefly(Math.abs(ahead_ms))} ${way} ± ${briefly(std_ms)}`;
+}
+
+/** Far enough for times in its black box to mislead. */
+export function isSetWrong({ ahead_ms }: ClockView): boolean {
+  return Math.abs(ahead_ms) >= WRONG_MS;
+}
+
+function briefly(ms: number): string {
+  return ms < 1000 ? `${Math.ceil(ms)} ms` : duration(ms);
 }
 
 /** Time of the day where the console stands. */
@@ -104,6 +121,9 @@ const LINKS: Record<Link, string> = {
   lost: "Link lost",
   never: "Never heard",
 };
+
+/** Of a unit whose name two machines use. */
+export const TWO_MACHINES = "two machines speak under this name; only one is shown";
 
 export function linkWord(link: Link): string {
   return LINKS[link];

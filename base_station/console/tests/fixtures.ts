@@ -21,6 +21,7 @@ export const HEALTH: HealthView = {
   messages_per_s: 0,
   insecure: false,
   standby: null,
+  recordings: [],
   repeated: 0,
 };
 
@@ -74,6 +75,8 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     duty: null,
     trust: { level: "green", reason: "" },
     alarms: [],
+    clock: null,
+    cloned: false,
     ...change,
   };
 }

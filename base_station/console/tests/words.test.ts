@@ -24,6 +24,15 @@ describe("words", () => {
     expect(words.plusMinus(31.6)).toBe("±\u00a032\u00a0m");
   });
 
+  it.each([
+    [12.2, 2.4, "13 ms ahead ± 3 ms", false],
+    [-75_000, 3, "1 min 15 s behind ± 3 ms", true],
+    [9_900, 1_500, "9.9 s ahead ± 1.5 s", false],
+  ])("say a clock %f ms ahead, sure to %f ms, as %s", (ahead_ms, std_ms, text, wrong) => {
+    expect(words.clockOffset({ ahead_ms, std_ms })).toBe(text);
+    expect(words.isSetWrong({ ahead_ms, std_ms })).toBe(wrong);
+  });
+
   it("say a place without the plan", () => {
     expect(words.place({ north_m: 12, east_m: -3.44 })).toBe("12.0 m north, 3.4 m west");
   });

@@ -3,6 +3,7 @@ import { attempt, leave, user } from "../sessions";
 import { notice, openDialog } from "../view";
 import * as api from "../api";
 import { dateAndTime } from "../words";
+import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { fields, useLoaded } from "./useLoaded";
@@ -61,8 +62,6 @@ function PasswordForm() {
   );
 }
 
-const ROLES = ["viewer", "commander", "administrator"] as const;
-
 function Tokens({ role }: { role: api.Role }) {
   const [tokens, again] = useLoaded(api.tokens);
   const made = useSignal<string | null>(null);
@@ -90,7 +89,7 @@ function Tokens({ role }: { role: api.Role }) {
         <label>
           May do what
           <select name="role">
-            {ROLES.slice(0, ROLES.indexOf(role) + 1).map((one) => (
+            {api.ROLES.slice(0, api.ROLES.indexOf(role) + 1).map((one) => (
               <option key={one}>{one}</option>
             ))}
           </select>
@@ -115,16 +114,7 @@ function Tokens({ role }: { role: api.Role }) {
         </p>
       )}
       <table>
-        <thead>
-          <tr>
-            <th scope="col">Token</th>
-            <th scope="col">May</th>
-            <th scope="col">Valid until</th>
-            <th scope="col">
-              <span class="spoken">Remove</span>
-            </th>
-          </tr>
-        </thead>
+        <Columns names={["Token", "May", "Valid until"]} spoken="Remove" />
         <tbody>
           {(tokens.value ?? []).map((token) => (
             <tr key={token.token_id}>

@@ -17,6 +17,7 @@ import {
 } from "../assessment";
 import { displayName } from "../live/urgency";
 import { duration, percent } from "../words";
+import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 
 /** What was promised at the time, and how it stands up to what is known since. */
@@ -68,17 +69,7 @@ function Errors({ report }: { report: Assessment }) {
   return (
     <table class="assessment">
       <caption>Errors in the terms of ISO/IEC 18305</caption>
-      <thead>
-        <tr>
-          <th scope="col">Person</th>
-          <th scope="col">Error</th>
-          <th scope="col">CE50</th>
-          <th scope="col">CE95</th>
-          <th scope="col">VE95</th>
-          <th scope="col">SE95</th>
-          <th scope="col">Floor right</th>
-        </tr>
-      </thead>
+      <Columns names={["Person", "Error", "CE50", "CE95", "VE95", "SE95", "Floor right"]} />
       {report.units.map((unit) => (
         <ErrorRows
           key={unit.unit_id}
@@ -136,16 +127,16 @@ function Checks({ report }: { report: Assessment }) {
   return (
     <table class="assessment">
       <caption>What else tells how good they were</caption>
-      <thead>
-        <tr>
-          <th scope="col">Person</th>
-          <th scope="col">Shown for</th>
-          <th scope="col">Walked</th>
-          <th scope="col">Own path missed the beginning by</th>
-          <th scope="col">Jumps as GPS came back</th>
-          <th scope="col">Off from pins</th>
-        </tr>
-      </thead>
+      <Columns
+        names={[
+          "Person",
+          "Shown for",
+          "Walked",
+          "Own path missed the beginning by",
+          "Jumps as GPS came back",
+          "Off from pins",
+        ]}
+      />
       <tbody>
         {report.units.map((unit) => (
           <tr key={unit.unit_id}>

@@ -3,6 +3,7 @@ import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import * as api from "../api";
 import { clockTime, dateAndTime } from "../words";
+import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 
 const PAGE = 100;
@@ -23,14 +24,7 @@ export function AuditDialog() {
   return (
     <Dialog title="Audit log" wide>
       <table class="audit">
-        <thead>
-          <tr>
-            <th scope="col">When</th>
-            <th scope="col">Who</th>
-            <th scope="col">Did</th>
-            <th scope="col">What</th>
-          </tr>
-        </thead>
+        <Columns names={["When", "Who", "Did", "What"]} />
         <tbody>
           {entries.value.map((entry) => (
             <tr key={entry.entry_id}>

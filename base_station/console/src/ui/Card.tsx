@@ -58,6 +58,7 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         </span>
       </button>
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
+      {unit.cloned && <TwoMachines />}
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
       <Facts unit={unit} picture={picture} />
       <Trust unit={unit} />
@@ -218,6 +219,16 @@ function Trust({ unit }: { unit: UnitView }) {
     <p class={`trust ${level}`}>
       <Icon name="target" />
       {reason === "" ? word : `${word}: ${reason}`}
+    </p>
+  );
+}
+
+/** Somebody is not seen, and what is shown may be the other. */
+function TwoMachines() {
+  return (
+    <p class="trust red">
+      <Icon name="people" />
+      Somebody may be unseen: {words.TWO_MACHINES}
     </p>
   );
 }

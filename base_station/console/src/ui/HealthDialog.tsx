@@ -1,6 +1,7 @@
 import { picture } from "../sessions";
 import { bytes, problemsOf } from "../words";
 import { Dialog } from "./Dialog";
+import { Recordings } from "./Recording";
 
 export function HealthDialog() {
   const health = picture.value?.health.value;
@@ -26,6 +27,7 @@ export function HealthDialog() {
         <Figure name="Recorded" value={bytes(health.log_bytes)} />
         <Figure name="Free disk space" value={bytes(health.disk_free_bytes)} />
       </dl>
+      <Recordings pulls={health.recordings} />
     </Dialog>
   );
 }

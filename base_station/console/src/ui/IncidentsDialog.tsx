@@ -3,10 +3,13 @@ import * as api from "../api";
 import { assessed, openDialog } from "../view";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes } from "../words";
+import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
 import { fields, useLoaded } from "./useLoaded";
+
+const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Positions"];
 
 export function IncidentsDialog() {
   const [incidents, again] = useLoaded(api.incidents);
@@ -31,17 +34,7 @@ export function IncidentsDialog() {
       {mayAct.value && running !== null && <TimesForm incident={running} />}
       <table>
         <caption>Incidents so far</caption>
-        <thead>
-          <tr>
-            <th scope="col">Incident</th>
-            <th scope="col">Opened</th>
-            <th scope="col">Lasted</th>
-            <th scope="col">Replay</th>
-            <th scope="col">Tracks</th>
-            <th scope="col">Positions</th>
-            {forgets && <th scope="col">Personal data</th>}
-          </tr>
-        </thead>
+        <Columns names={forgets ? [...COLUMNS, "Personal data"] : COLUMNS} />
         <tbody>
           {(incidents.value ?? []).map((incident) => (
             <tr key={incident.incident_id}>

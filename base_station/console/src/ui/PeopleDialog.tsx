@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, user } from "../sessions";
 import * as api from "../api";
+import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
 import { Photo } from "./Photo";
@@ -12,17 +13,7 @@ export function PeopleDialog() {
     <Dialog title="People" wide>
       <PersonForm done={again} />
       <table>
-        <thead>
-          <tr>
-            <th scope="col">Name</th>
-            <th scope="col">Crew</th>
-            <th scope="col">Role</th>
-            <th scope="col">Photo</th>
-            <th scope="col">
-              <span class="spoken">Change</span>
-            </th>
-          </tr>
-        </thead>
+        <Columns names={["Name", "Crew", "Role", "Photo"]} spoken="Change" />
         <tbody>
           {(people.value ?? []).map((person) => (
             <PersonRow key={person.person_id} person={person} done={again} />

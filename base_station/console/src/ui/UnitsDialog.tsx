@@ -1,8 +1,10 @@
 import { attempt, live } from "../sessions";
 import * as api from "../api";
-import type { UnitView } from "../wire";
-import { alarmWord, bytes, linkWord } from "../words";
+import type { ClockView, UnitView } from "../wire";
+import { alarmWord, clockOffset, isSetWrong, linkWord, TWO_MACHINES } from "../words";
+import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
+import { Recording } from "./Recording";
 import { fields, useLoaded } from "./useLoaded";
 import { Wearer } from "./Wearer";
 
@@ -17,16 +19,17 @@ export function UnitsDialog() {
     <Dialog title="Units and who wears them" wide>
       <RegisterForm />
       <table>
-        <thead>
-          <tr>
-            <th scope="col">Unit</th>
-            <th scope="col">Link</th>
-            <th scope="col">Worn by</th>
-            <th scope="col">Calibration</th>
-            <th scope="col">Positions a second</th>
-            <th scope="col">Raw recording</th>
-          </tr>
-        </thead>
+        <Columns
+          names={[
+            "Unit",
+            "Link",
+            "Clock",
+            "Worn by",
+            "Calibration",
+            "Positions a second",
+            "Raw recording",
+          ]}
+        />
         <tbody>
           {ids.map((unitId) => {
             const unit = picture?.unit(unitId)?.value;
@@ -59,7 +62,13 @@ function UnitRow({ unit, people, calibration }: RowProps) {
   return (
     <tr>
       <th scope="row">{labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}</th>
-      <td>{linkWord(unit.link)}</td>
+      <td>
+        {linkWord(unit.link)}
+        {unit.cloned && <small class="warned"> {TWO_MACHINES}</small>}
+      </td>
+      <td>
+        <UnitClock clock={unit.clock} />
+      </td>
       <td>{unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}</td>
       <td>
         <Calibration unit={unit} calibration={calibration} />
@@ -68,6 +77,12 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       <td>{unit.registered && <Recording unitId={unit.unit_id} />}</td>
     </tr>
   );
+}
+
+/** By which the unit names its black box; nothing that is shown here goes by it. */
+function UnitClock({ clock }: { clock: ClockView | null }) {
+  if (clock === null) return <>not known</>;
+  return <span class={isSetWrong(clock) ? "warned" : ""}>{clockOffset(clock)}</span>;
 }
 
 /** Its name, and what the station has to say against it. */
@@ -101,39 +116,6 @@ function Rate({ unitId }: { unitId: string }) {
         </option>
       ))}
     </select>
-  );
-}
-
-/** The unit's black box, pulled over the bus behind everything that is live. */
-function Recording({ unitId }: { unitId: string }) {
-  const picture = live.value?.picture;
-  const pulls = picture?.health.value?.recordings ?? [];
-  const pull = pulls.filter((one) => one.unit_id === unitId).at(-1);
-  if (pull !== undefined && pull.state !== "done" && pull.state !== "failed") {
-    return (
-      <label>
-        {bytes(pull.done_bytes)}
-        {pull.total_bytes > 0 && ` of ${bytes(pull.total_bytes)}`}
-        <progress
-          {...(pull.total_bytes > 0 ? { value: pull.done_bytes, max: pull.total_bytes } : {})}
-        />
-      </label>
-    );
-  }
-  return (
-    <>
-      <button
-        type="button"
-        aria-label={`Fetch the recording of ${unitId}`}
-        onClick={() => {
-          const incident = picture?.incident.peek()?.incident_id ?? null;
-          void attempt(api.fetchRecording(unitId, incident));
-        }}
-      >
-        Fetch
-      </button>
-      {pull !== undefined && <small> {pull.state === "done" ? "fetched" : pull.problem}</small>}
-    </>
   );
 }
 

@@ -1,10 +1,9 @@
 import { attempt, user as me } from "../sessions";
 import * as api from "../api";
+import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { fields, useLoaded } from "./useLoaded";
-
-const ROLES: readonly api.Role[] = ["viewer", "commander", "administrator"];
 
 /** Who may log in, and as what. */
 export function UsersDialog() {
@@ -13,17 +12,7 @@ export function UsersDialog() {
     <Dialog title="Users" wide>
       <NewUser done={again} />
       <table>
-        <thead>
-          <tr>
-            <th scope="col">User</th>
-            <th scope="col">Role</th>
-            <th scope="col">New password</th>
-            <th scope="col">Logged in</th>
-            <th scope="col">
-              <span class="spoken">Remove</span>
-            </th>
-          </tr>
-        </thead>
+        <Columns names={["User", "Role", "New password", "Logged in"]} spoken="Remove" />
         <tbody>
           {(users.value ?? []).map((user) => (
             <UserRow key={user.username} user={user} done={again} />
@@ -56,7 +45,7 @@ function NewUser({ done }: { done: () => void }) {
       <label>
         Role
         <select name="role">
-          {ROLES.map((role) => (
+          {api.ROLES.map((role) => (
             <option key={role}>{role}</option>
           ))}
         </select>
@@ -83,7 +72,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
             void attempt(api.changeUser(username, { role })).then(done);
           }}
         >
-          {ROLES.map((role) => (
+          {api.ROLES.map((role) => (
             <option key={role}>{role}</option>
           ))}
         </select>

@@ -1,0 +1,25 @@
+interface Props {
+  names: readonly string[];
+  /** What the last column is for, where that is plain to see and has to be said aloud only. */
+  spoken?: string;
+}
+
+/** The head of a table. */
+export function Columns({ names, spoken }: Props) {
+  return (
+    <thead>
+      <tr>
+        {names.map((name) => (
+          <th key={name} scope="col">
+            {name}
+          </th>
+        ))}
+        {spoken !== undefined && (
+          <th scope="col">
+            <span class="spoken">{spoken}</span>
+          </th>
+        )}
+      </tr>
+    </thead>
+  );
+}

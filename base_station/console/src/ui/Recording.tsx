@@ -1,0 +1,76 @@
+import { attempt, live, mayAct } from "../sessions";
+import * as api from "../api";
+import type { RecordingView } from "../wire";
+import { bytes } from "../words";
+
+/** A unit's black box, pulled over the bus behind everything that is live. */
+export function Recording({ unitId }: { unitId: string }) {
+  const picture = live.value?.picture;
+  const pulls = picture?.health.value?.recordings ?? [];
+  const pull = pulls.filter((one) => one.unit_id === unitId).at(-1);
+  if (pull !== undefined && !isOver(pull)) return <UnderWay pull={pull} />;
+  return (
+    <>
+      <button
+        type="button"
+        aria-label={`Fetch the recording of ${unitId}`}
+        onClick={() => {
+          const incident = picture?.incident.peek()?.incident_id ?? null;
+          void attempt(api.fetchRecording(unitId, incident));
+        }}
+      >
+        Fetch
+      </button>
+      {pull !== undefined && <small> {outcome(pull)}</small>}
+    </>
+  );
+}
+
+/** All that the station was asked for lately, with how far each is; nothing where it was not. */
+export function Recordings({ pulls }: { pulls: readonly RecordingView[] }) {
+  if (pulls.length === 0) return null;
+  return (
+    <section aria-label="Raw recordings">
+      <h3>Raw recordings</h3>
+      <ul class="recordings">
+        {pulls.map((pull) => (
+          <li key={pull.fetch_id}>
+            <strong>{pull.unit_id}</strong>
+            {isOver(pull) ? <span>{outcome(pull)}</span> : <UnderWay pull={pull} />}
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function UnderWay({ pull }: { pull: RecordingView }) {
+  const known = pull.total_bytes > 0;
+  return (
+    <span class="under-way">
+      <label>
+        {pull.state}
+        {known && `, ${bytes(pull.done_bytes)} of ${bytes(pull.total_bytes)}`}
+        <progress {...(known ? { value: pull.done_bytes, max: pull.total_bytes } : {})} />
+      </label>
+      {pull.problem !== "" && <small>{pull.problem}</small>}
+      {mayAct.value && (
+        <button
+          type="button"
+          aria-label={`Stop the recording of ${pull.unit_id}`}
+          onClick={() => void attempt(api.stopRecording(pull.fetch_id))}
+        >
+          Stop
+        </button>
+      )}
+    </span>
+  );
+}
+
+function isOver(pull: RecordingView): boolean {
+  return pull.state === "done" || pull.state === "failed";
+}
+
+function outcome(pull: RecordingView): string {
+  return pull.state === "done" ? `held here, ${bytes(pull.total_bytes)}` : pull.problem;
+}
