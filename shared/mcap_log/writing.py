@@ -7,16 +7,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
-from mcap.writer import CompressionType, Writer
+from mcap.records import Channel, Schema
 
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.folder import segment_number, segment_path
+from shared.mcap_log.making import ChunkMaker, McapFile, bytes_of
 from shared.mcap_log.schemas import DERIVED, descriptor_set, sender_time_and_sequence, wire_type_of
 
-PROFILE = "muster"
+_ENCODING = "protobuf"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
 
 
@@ -55,27 +57,28 @@ class Segment:
     """One MCAP file being written: topics are keys, payloads are kept as they are."""
 
     def __init__(self, path: Path, chunk_bytes: int) -> None:
-        self.file = DurableFile(path)
-        self._writer = Writer(self.file, chunk_bytes, CompressionType.ZSTD)  # type: ignore[arg-type]  # a stream is what it writes to
-        self._writer.start(profile=PROFILE)
+        self._mcap = McapFile(path)
+        self._chunk = ChunkMaker()
+        self._chunk_bytes = chunk_bytes
         self._schemas: dict[str, int] = {}
         self._topics: dict[str, int] = {}
-        self._chunk_topics: set[int] = set()
-        self._chunk_start = self.file.tell()
         self.index_entries = 0
         self.start_ns = 0
         self.end_ns = 0
         self.messages = 0
 
+    @property
+    def file(self) -> DurableFile:
+        return self._mcap.file
+
     def add(self, t_ns: int, key: str, payload: bytes) -> None:
         topic = self._topics.get(key)
         if topic is None:
             topic = self._register(key)
-        utc_ns, sequence = sender_time_and_sequence(payload)
-        self._chunk_topics.add(topic)
-        self._writer.add_message(topic, t_ns, payload, utc_ns or t_ns, sequence)
-        if self.file.tell() != self._chunk_start:
-            self._count_chunk()
+        said_ns, sequence = sender_time_and_sequence(payload)
+        self._chunk.add_message(topic, t_ns, payload, said_ns or t_ns, sequence)
+        if self._chunk.size > self._chunk_bytes:
+            self.end_chunk()
         self.start_ns = self.start_ns or t_ns
         self.end_ns = max(self.end_ns, t_ns)
         if not key.startswith(DERIVED):
@@ -83,12 +86,15 @@ class Segment:
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""
-        self._writer.flush()  # type: ignore[no-untyped-call]
-        self._count_chunk()
+        chunk = self._chunk.take()
+        if chunk is not None:
+            self._mcap.add(chunk)
+            self.index_entries += len(chunk.index_offsets)
 
     def finish(self) -> None:
         """Write what makes the file complete."""
-        self._writer.finish()  # type: ignore[no-untyped-call]
+        self.end_chunk()
+        self._mcap.finish()
 
     @property
     def is_full_of_topics(self) -> bool:
@@ -99,24 +105,24 @@ class Segment:
             self.file.path, state, self.start_ns, self.end_ns, self.messages, self.file.tell()
         )
 
-    def _count_chunk(self) -> None:
-        self.index_entries += len(self._chunk_topics)
-        self._chunk_topics.clear()
-        self._chunk_start = self.file.tell()
-
     def _register(self, key: str) -> int:
         wire_type = wire_type_of(key)
-        if wire_type is None:
-            topic = self._writer.register_channel(key, "", 0)
-        else:
-            name = wire_type.DESCRIPTOR.full_name
-            if name not in self._schemas:
-                self._schemas[name] = self._writer.register_schema(
-                    name, "protobuf", descriptor_set(wire_type)
-                )
-            topic = self._writer.register_channel(key, "protobuf", self._schemas[name])
-        self._topics[key] = topic
+        schema = 0 if wire_type is None else self._schema_of(wire_type)
+        topic = self._topics[key] = len(self._topics) + 1
+        encoding = "" if wire_type is None else _ENCODING
+        record = bytes_of(Channel(topic, key, encoding, {}, schema))
+        self._mcap.topics[topic] = record
+        self._chunk.add_record(record)
         return topic
+
+    def _schema_of(self, wire_type: Any) -> int:
+        name = wire_type.DESCRIPTOR.full_name
+        if name not in self._schemas:
+            number = self._schemas[name] = len(self._schemas) + 1
+            record = bytes_of(Schema(number, descriptor_set(wire_type), _ENCODING, name))
+            self._mcap.schemas[number] = record
+            self._chunk.add_record(record)
+        return self._schemas[name]
 
 
 class SegmentWriter:

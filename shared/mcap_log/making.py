@@ -1,0 +1,173 @@
+"""An MCAP file in the making: chunks one after the other, and what makes the file complete.
+
+The library's writer packs every field of every message by itself, which is most of what a log
+costs; the records that come once a chunk or once a file are still the library's.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import ChunkIndex, DataEnd, Footer, Header, McapRecord, Statistics
+from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
+
+from shared.mcap_log.container import CHUNK, COMPRESSION, MESSAGE, MESSAGE_BYTES, RECORD
+from shared.mcap_log.durable_file import DurableFile
+
+PROFILE = "muster"
+_MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and when it was said
+_INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
+_SIZE = struct.Struct("<Q")
+
+
+@dataclass(frozen=True, slots=True)
+class MadeChunk:
+    """A chunk as it will stand in the file."""
+
+    record: bytes  # with opcode and length
+    start_ns: int
+    end_ns: int
+    size: int  # of what is in it
+    index: bytes  # the message index records that go behind it
+    index_offsets: Mapping[int, int]  # in ``index``, by topic
+    counts: Mapping[int, int]  # messages, by topic
+
+
+class ChunkMaker:
+    """Schemas, topics and messages of one chunk after the other."""
+
+    def __init__(self) -> None:
+        self._compressor = zstandard.ZstdCompressor()
+        self._parts: list[bytes] = []
+        self._entries: dict[int, list[int]] = {}  # by topic: time and place of each message
+        self._start_ns = self._end_ns = 0
+        self.size = 0
+
+    def add_record(self, record: bytes) -> None:
+        """A schema or a topic, with opcode and length."""
+        self._parts.append(record)
+        self.size += len(record)
+
+    def add_message(
+        self, topic: int, t_ns: int, payload: bytes, said_ns: int, sequence: int
+    ) -> None:
+        entries = self._entries.get(topic)
+        if entries is None:
+            if not self._entries:
+                self._start_ns = self._end_ns = t_ns
+            entries = self._entries[topic] = []
+        entries.append(t_ns)
+        entries.append(self.size)
+        if t_ns > self._end_ns:
+            self._end_ns = t_ns
+        elif t_ns < self._start_ns:
+            self._start_ns = t_ns
+        length = MESSAGE_BYTES - 9 + len(payload)
+        self._parts.append(_MESSAGE.pack(Opcode.MESSAGE, length, topic, sequence, t_ns, said_ns))
+        self._parts.append(payload)
+        self.size += 9 + length
+
+    def take(self) -> MadeChunk | None:
+        """What came since the last one; None where there was no message."""
+        if not self._entries:
+            return None
+        data = b"".join(self._parts)
+        packed = self._compressor.compress(data)
+        head = CHUNK.pack(
+            self._start_ns, self._end_ns, len(data), zlib.crc32(data), len(COMPRESSION)
+        )
+        body = b"".join((head, COMPRESSION, _SIZE.pack(len(packed)), packed))
+        offsets: dict[int, int] = {}
+        index = bytearray()
+        for topic, entries in self._entries.items():
+            offsets[topic] = len(index)
+            entries_bytes = 8 * len(entries)
+            index += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + entries_bytes, topic, entries_bytes)
+            index += struct.pack(f"<{len(entries)}Q", *entries)
+        made = MadeChunk(
+            RECORD.pack(Opcode.CHUNK, len(body)) + body,
+            self._start_ns,
+            self._end_ns,
+            len(data),
+            bytes(index),
+            offsets,
+            {topic: len(entries) // 2 for topic, entries in self._entries.items()},
+        )
+        self._parts.clear()
+        self._entries.clear()
+        self.size = 0
+        return made
+
+
+class McapFile:
+    """``add`` chunks in their order, then ``finish``."""
+
+    def __init__(self, path: Path) -> None:
+        self.file = DurableFile(path)
+        self.schemas: dict[int, bytes] = {}  # records with opcode and length, by number
+        self.topics: dict[int, bytes] = {}
+        self.counts: Counter[int] = Counter()  # messages, by topic
+        self._chunks: list[ChunkIndex] = []
+        self.file.write(MCAP0_MAGIC)
+        self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
+
+    def add(self, chunk: MadeChunk) -> None:
+        offset = self.file.tell()
+        self.file.write(chunk.record)
+        index_begin = self.file.tell()
+        self.file.write(chunk.index)
+        self.counts.update(chunk.counts)
+        self._chunks.append(
+            ChunkIndex(
+                chunk_length=len(chunk.record),
+                chunk_start_offset=offset,
+                compression=COMPRESSION.decode("ascii"),
+                compressed_size=len(chunk.record) - 9 - CHUNK.size - len(COMPRESSION) - _SIZE.size,
+                message_end_time=chunk.end_ns,
+                message_index_length=len(chunk.index),
+                message_index_offsets={
+                    topic: index_begin + at for topic, at in chunk.index_offsets.items()
+                },
+                message_start_time=chunk.start_ns,
+                uncompressed_size=chunk.size,
+            )
+        )
+
+    def finish(self) -> None:
+        """Write what makes the file complete."""
+        self.file.write(bytes_of(DataEnd(0)))
+        start = self.file.tell()
+        summary = b"".join((*self.schemas.values(), *self.topics.values()))
+        summary += b"".join(bytes_of(record) for record in (self._statistics(), *self._chunks))
+        checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
+        self.file.write(summary)
+        self.file.write(bytes_of(Footer(start, 0, zlib.crc32(checked))))
+        self.file.write(MCAP0_MAGIC)
+
+    def _statistics(self) -> Statistics:
+        return Statistics(
+            attachment_count=0,
+            channel_count=len(self.topics),
+            channel_message_counts=dict(self.counts),
+            chunk_count=len(self._chunks),
+            message_count=sum(self.counts.values()),
+            message_end_time=max((chunk.message_end_time for chunk in self._chunks), default=0),
+            message_start_time=min((chunk.message_start_time for chunk in self._chunks), default=0),
+            metadata_count=0,
+            schema_count=len(self.schemas),
+        )
+
+
+def bytes_of(record: McapRecord) -> bytes:
+    """A record with opcode and length."""
+    builder = RecordBuilder()
+    record.write(builder)
+    return bytes(builder.end())  # type: ignore[no-untyped-call]
