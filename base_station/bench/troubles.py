@@ -158,7 +158,7 @@ class FullDisk:
 FAULTS: tuple[Fault, ...] = (
     BadLink("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
     BadLink("outage of 1 s", DARK, 1.0),
-    BadLink("outage of 30 s", DARK, 30.0),
+    BadLink("outage of 30 s", DARK, 30.0, is_long=True),
     BadLink("20 kbit/s", THIN, 10.0, after=THIN),
     BadLink("outage of 10 s at 20 kbit/s", DARK, 10.0, after=THIN),
     BadLink("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, is_long=True),
