@@ -13,6 +13,7 @@ import msgspec
 
 from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
+from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.weather import Barometers
 from base_station.pins.pin import Beacon, Pin, PinVerdict
@@ -338,6 +339,7 @@ class StationState(msgspec.Struct):
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
+    learnt_building: LearntBuilding = LearntBuilding()
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Start
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
@@ -79,6 +80,7 @@ class Positioning:
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=is_outside)
         if air is not None:
             self._fuser(unit).feel(air)
+        state.learnt_building = self._fuser(unit).recognise(state.learnt_building)
         history = state.paths.setdefault(unit.unit_id, PathHistory())
         begins = history.begin_ns is None
         history.note(position, t_ns, bool(reason))
@@ -87,6 +89,7 @@ class Positioning:
             pinned.advance(position)
             if air is not None:
                 pinned.feel(air)
+            pinned.recognise(state.learnt_building)
         if history.is_awaited or (begins and has_pins(state, unit.unit_id)):
             return self.solve_pins(state, [unit.unit_id])
         return []
@@ -97,6 +100,7 @@ class Positioning:
 
     def begin_incident(self, state: StationState, before_ns: int) -> None:
         """What was known of paths and pins before that time no longer matters."""
+        state.learnt_building = LearntBuilding()
         for history in state.paths.values():
             history.trim(before_ns)
         old = [pin.pin_id for pin in state.pins.values() if pin.set_ns <= before_ns]
@@ -256,6 +260,7 @@ class Positioning:
             unit.trail = [_moved(step, turn_rad, shift_m) for step in unit.trail]
             if unit.plain_trail is not None:
                 unit.plain_trail = [_moved(step, turn_rad, shift_m) for step in unit.plain_trail]
+        state.learnt_building = state.learnt_building.reframed(turn_rad, *shift_m[:2])
         reframe_pins(state, turn_rad, shift_m[0], shift_m[1])
 
 

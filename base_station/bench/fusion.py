@@ -8,8 +8,7 @@ that is right to some five degrees; the fuser has to find it.
 from __future__ import annotations
 
 import math
-import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -22,47 +21,20 @@ from rich.table import Table
 
 from base_station.bench import smoothing
 from base_station.bench.fusion_recorded import print_recorded
-from base_station.bench.incident_bound import ENGINE_STD_M, bound_m2, draw_errors_m
-from base_station.bench.incident_building import SteelBuilding, draw_building
-from base_station.bench.incident_people import PEOPLE, Truth, live_through
+from base_station.bench.incident_bound import bound_m2, draw_errors_m
+from base_station.bench.incident_people import PEOPLE
+from base_station.bench.incident_run import Person, Timing, draw_incident, fuse_all
 from base_station.bench.incident_scores import ERROR_STAGES, HELD_STAGES, FloorScores, Scores
-from base_station.bench.incident_sensors import (
-    OwnPath,
-    draw_air,
-    fixes_of,
-    mono_ns,
-    position_of,
-    pressures_pa,
-    reference_pa,
-    walk_it,
-)
 from base_station.fusion import FUSERS
-from base_station.fusion.port import AirHeight, FuserKind, PlaceFix, Start
+from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
-from base_station.fusion.weather import Weather
-from base_station.site.floor_grid import FloorGrid
-from base_station.site.plan import read_plan
 from shared.bench_figures import FiguresFile, write_figures
-from shared.geo import pressure_altitude_m
 
 Floats = NDArray[np.float64]
 
-SOLVED_RAD = 0.2
 PEER_HEADING_STD_RAD = math.radians(5.0)
 WITH_PLAN, WITHOUT = "with the plan", "without a plan"
 BOUND = "the best possible without a plan"
-
-
-@dataclass(frozen=True)
-class Person:
-    """One of an incident's people with all that the sensors said."""
-
-    building: SteelBuilding
-    truth: Truth
-    own: OwnPath
-    fixes: dict[int, PlaceFix]
-    pressures_pa: Floats
-    weather_m: Floats  # as the station's own barometer tells it, row by row
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,14 +93,16 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
         people = draw_incident(rng)
         shown_m: dict[str, list[Floats]] = {WITH_PLAN: [], WITHOUT: []}
         kinds = {name: smoothing.RecordingKind(kind) for name in shown_m}
-        for person in people:
-            for name, recording in kinds.items():
-                run = fuse(recording, person, timing, with_plan=name == WITH_PLAN)
+        for name, recording in kinds.items():
+            runs = fuse_all(recording, people, timing, with_plan=name == WITH_PLAN)
+            for person, run in zip(people, runs, strict=True):
                 shown_m[name].append(run.places_m)
                 ways[name].note(person.truth, run.places_m, run.normalised2)
                 if name == WITH_PLAN:
                     right.note(person.truth, person.building, run.floors, run.surenesses)
-            walked_m.append(run.heading_walked_m)
+                else:
+                    walked_m.append(run.heading_walked_m)
+        for person in people:
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
         for name, recording in kinds.items():
@@ -157,89 +131,6 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
         },
         afterwards=afterwards.report(seed),
     )
-
-
-def draw_incident(rng: np.random.Generator) -> list[Person]:
-    building = draw_building(rng)
-    truths = [live_through(rng, building, from_engine=n % 2 == 1) for n in range(PEOPLE)]
-    air = draw_air(rng, truths[0].t_s)
-    weather_m = _weather_m(truths[0].t_s, reference_pa(rng, air))
-    return [
-        Person(
-            building,
-            truth,
-            walk_it(rng, truth),
-            fixes_of(rng, truth, building),
-            pressures_pa(rng, air, truth),
-            weather_m,
-        )
-        for truth in truths
-    ]
-
-
-def _weather_m(t_s: Floats, reference: Floats) -> Floats:
-    weather = Weather()
-    rises_m = np.zeros(len(t_s))
-    for row, pressure_pa in enumerate(reference.tolist()):
-        weather.note("station", mono_ns(float(t_s[row])), pressure_altitude_m(pressure_pa), 0.0)
-        rises_m[row] = weather.rise_m
-    return rises_m
-
-
-@dataclass
-class Timing:
-    steps_ns: list[int] = field(default_factory=list)
-    fixes_ns: list[int] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Run:
-    """One person through the fuser."""
-
-    places_m: Floats  # (n, 2)
-    normalised2: Floats  # (n,) chi-square of 2 degrees of freedom
-    heading_walked_m: float
-    floors: list[int | None]  # row by row
-    surenesses: Floats  # (n,) the stated probability of that floor
-
-
-def fuse(kind: FuserKind, person: Person, timing: Timing, *, with_plan: bool) -> Run:
-    truth, fuser = person.truth, kind.new()
-    plan = read_plan(person.building.geojson())
-    if with_plan:
-        fuser.consider(FloorGrid.of(plan))
-    if truth.from_engine:
-        north_m, east_m = truth.place_m[0, :2]
-        fuser.start(Start(north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
-    count = len(truth.t_s)
-    places_m, normalised2, sure = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
-    floors: list[int | None] = []
-    solved_m = math.inf
-    for row in range(count):
-        position = position_of(truth, person.own, person.pressures_pa, row)
-        altitude_m = pressure_altitude_m(float(person.pressures_pa[row]))
-        air_down_m = float(person.weather_m[row]) - altitude_m
-        fix = person.fixes.get(row)
-        began_ns = time.thread_time_ns()
-        fuser.advance(position)
-        fuser.feel(AirHeight(position.header.t_mono_ns, air_down_m, referenced=True))
-        if fix is not None:
-            fuser.correct(fix)
-        estimate = fuser.estimate()
-        took_ns = time.thread_time_ns() - began_ns
-        assert estimate is not None
-        (timing.steps_ns if fix is None else timing.fixes_ns).append(took_ns)
-        floors.append(plan.floor_at(estimate.down_m, floors[-1] if floors else None))
-        if floors[-1] is not None:
-            sure[row] = plan.sureness(floors[-1], estimate.down_m, estimate.std_down_m)
-        places_m[row] = estimate.north_m, estimate.east_m
-        off_m = places_m[row] - truth.place_m[row, :2]
-        product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
-        spread = np.array([[estimate.std_north_m**2, product], [product, estimate.std_east_m**2]])
-        normalised2[row] = off_m @ np.linalg.solve(spread, off_m)
-        if math.isinf(solved_m) and estimate.heading_std_rad < SOLVED_RAD:
-            solved_m = float(person.own.distance_m[row])
-    return Run(places_m, normalised2, solved_m, floors, sure)
 
 
 def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:

@@ -18,10 +18,12 @@ from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
 from base_station.fusion.horizontal import HorizontalFilter
 from base_station.fusion.kernels import Placed
 from base_station.fusion.knowledge import Knowledge, estimate_of
+from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import OwnPlace, PathMemory
 from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
+from base_station.fusion.recognition import Recognition
 from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
 from base_station.site.floor_grid import FloorGrid
@@ -30,6 +32,7 @@ from shared.geo import wrap_pi
 from shared.messages import Position
 from shared.quality import Quality
 
+INSIDE_NS = 10 * NS_PER_S  # without a fix for as long: inside, where no plan tells
 LATE_NS = 5 * NS_PER_S  # a fix is later than the newest by more than receivers are
 
 
@@ -58,6 +61,7 @@ class _Memory(msgspec.Struct):
     fix_t_mono_ns: int | None = None  # the newest accepted fix
     wander_t_mono_ns: int | None = None
     trust: FixTrust = msgspec.field(default_factory=FixTrust)
+    recognition: Recognition = msgspec.field(default_factory=Recognition)
 
 
 class GpsInertialFuser:
@@ -88,6 +92,7 @@ class GpsInertialFuser:
         self._height.begin(start.down_m, start.std_m)
         memory.assumed = False
         memory.trust.outliers.clear()
+        memory.recognition.forget()
         if memory.last is not None:
             self._walk(OwnPath().stretch(self._kind, None, memory.last))
 
@@ -97,6 +102,7 @@ class GpsInertialFuser:
             self._height.begin(self._height.down_m + present.down_shift_m, present.down_std_m)
         self._memory.assumed = False
         self._memory.trust.outliers.clear()
+        self._memory.recognition.forget()
 
     def consider(self, grid: FloorGrid | None) -> None:
         self._horizontal.consider(grid)
@@ -124,6 +130,12 @@ class GpsInertialFuser:
 
     def feel(self, air: AirHeight) -> None:
         self._height.feel(air)
+
+    def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
+        memory, last = self._memory, self._memory.last
+        fix_ns = memory.fix_t_mono_ns
+        inside = last is None or fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS
+        return memory.recognition.go_by(learnt, self._horizontal, inside=inside)
 
     def correct(self, fix: PlaceFix) -> FixVerdict:
         memory = self._memory
@@ -169,6 +181,7 @@ class GpsInertialFuser:
         self._horizontal.reframe(turn_rad, north_m, east_m)
         self._height.shift(down_m)
         self._memory.trust.outliers.clear()
+        self._memory.recognition.forget()
 
     def estimate(self) -> Estimate | None:
         memory = self._memory
@@ -236,12 +249,14 @@ class GpsInertialFuser:
             self._height.rest_on(self._horizontal.storeys_down_m)
         self._horizontal.stand_at(self._height.down_m)
         self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
+        self._memory.recognition.follow(stretch, self._height.down_m)
 
     def _restart(self) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown."""
         self._horizontal.spread(self._kind.restart_m**2)
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
+        self._memory.recognition = Recognition()
 
     def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:
         """``lasts``: so many fixes in a row have about the same doubtful error."""
@@ -286,6 +301,7 @@ class GpsInertialFuser:
         shape_std_rad = 2.0 * fix.horizontal_std_m / shape.spread_m
         apart_rad = abs(wrap_pi(shape.turn_rad - held_rad))
         self._horizontal.forget_place()
+        self._memory.recognition.forget()
         if apart_rad > 3.0 * math.hypot(held_std_rad, shape_std_rad):
             self._horizontal.forget_heading()
         return FixVerdict(False, "contradicts the path, and agrees with others: going there")

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import msgspec
 
+from base_station.fusion.learnt_building import LearntBuilding
 from base_station.site.floor_grid import FloorGrid
 from shared.messages import Position
 from shared.quality import Quality
@@ -107,6 +108,12 @@ class Fuser(Protocol):
 
     def feel(self, air: AirHeight) -> None:
         """The air pressure that came with the last position."""
+        ...
+
+    def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
+        """Go by what everybody's paths have shown of the building, where the own path shows it
+        too; gives what is known of it then.
+        """
         ...
 
     def correct(self, fix: PlaceFix) -> FixVerdict: ...

@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
 from base_station.fusion.kernels import Placed, placed_before
+from base_station.fusion.told import told
 from base_station.fusion.wall_cloud import SavedCloud, WallCloud
 from base_station.site.floor_grid import FloorGrid
+from shared.geo import wrap_pi
 
 Floats = NDArray[np.float64]
 
@@ -108,13 +110,32 @@ class WalledFilter:
     def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
         """Place and covariance before this much of own path was walked, as it looks now."""
         mean, covariance = self.moments()
-        back = np.array(
-            [
-                [1.0, 0.0, -north_m, east_m, 0.0, 0.0, 0.0],
-                [0.0, 1.0, -east_m, -north_m, 0.0, 0.0, 0.0],
-            ]
-        )
+        back = place_then(north_m, east_m)
         return back @ mean, back @ covariance @ back.T
+
+    @property
+    def is_plain(self) -> bool:
+        """No walls are heeded, and one heading is left."""
+        return self._cloud is None and self._plain.is_linear
+
+    def stand_then(self, north_m: float, east_m: float, place: Floats, covariance: Floats) -> None:
+        """Where the wearer was before this much of own path was walked has come to be known as
+        this; only where the filter is plain.
+        """
+        observe = place_then(north_m, east_m)
+        self._plain.adopt(*told(*self._plain.moments(), observe, place, covariance))
+
+    def face(self, turn_rad: float, variance: float) -> None:
+        """The own frame's turn has come to be known as this; only where the filter is plain."""
+        mean, covariance = self._plain.moments()
+        c, s = float(mean[2]), float(mean[3])
+        scale2 = c * c + s * s
+        observe = np.array([[0.0, 0.0, -s / scale2, c / scale2, 0.0, 0.0, 0.0]])
+        by_rad = wrap_pi(turn_rad - math.atan2(s, c))
+        to = observe @ mean + by_rad
+        mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
+        mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
+        self._plain.adopt(mean, covariance)
 
     def turn(self) -> tuple[float, float]:
         """Heading correction and its standard deviation, pi where it is not known."""
@@ -210,3 +231,13 @@ class WalledFilter:
             self._plain.adopt(*self._cloud.moments())
             self._cloud = None
         self._plain.reframe(turn_rad, north_m, east_m)
+
+
+def place_then(north_m: float, east_m: float) -> Floats:
+    """(2, 7): the place before this much of own path was walked, by the present state."""
+    return np.array(
+        [
+            [1.0, 0.0, -north_m, east_m, 0.0, 0.0, 0.0],
+            [0.0, 1.0, -east_m, -north_m, 0.0, 0.0, 0.0],
+        ]
+    )

@@ -8,7 +8,7 @@ from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, Sighting, SightingKind
 from shared.messages.pins import PlaceBeacon, RemovePin, SetMeeting
 from tests.live_station import make_pipeline
-from tests.square_walk import Walk
+from tests.round_walk import Walk
 from tests.station_script import Record, Script
 
 

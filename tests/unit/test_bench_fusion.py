@@ -9,14 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from base_station.bench.fusion import (
-    WITH_PLAN,
-    Timing,
-    bench_fusion,
-    draw_incident,
-    fuse,
-)
+from base_station.bench.fusion import WITH_PLAN, bench_fusion
 from base_station.bench.incident_people import LASTS_S
+from base_station.bench.incident_run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan

@@ -23,7 +23,7 @@ from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
 from shared.messages.station import CloseIncident
 from tests.live_station import make_pipeline
-from tests.square_walk import Walk, truth
+from tests.round_walk import Walk, truth
 
 
 class Past:

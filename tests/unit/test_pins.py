@@ -19,7 +19,7 @@ from shared.messages.pins import (
 )
 from shared.messages.station import CloseIncident, OpenIncident, SetPlan
 from tests.live_station import make_pipeline
-from tests.square_walk import Walk, truth
+from tests.round_walk import Walk, truth
 from tests.station_script import START_NS, Script
 
 PLAN = (

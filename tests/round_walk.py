@@ -1,4 +1,4 @@
-"""Units that walk a square together, with paths that turn away from it, each in its own frame."""
+"""Units that walk a round together, with paths that turn away from it, each in its own frame."""
 
 from __future__ import annotations
 
@@ -12,10 +12,14 @@ from tests.station_script import Script
 DRIFT_RADPS = 1e-3
 
 
+ROUND_M = 160.0
+
+
 def truth(second: float) -> tuple[float, float]:
-    """A square of 40 m, walked at 1 m/s."""
-    side, along = divmod(second % 160.0, 40.0)
-    return [(along, 0.0), (40.0, along), (40.0 - along, 40.0), (0.0, 40.0 - along)][int(side)]
+    """A circle, walked at 1 m/s: a path that shows nothing of a building's walls."""
+    radius_m = ROUND_M / math.tau
+    angle = second / radius_m
+    return radius_m * math.sin(angle), radius_m * (1.0 - math.cos(angle))
 
 
 class Walk:

@@ -1,0 +1,158 @@
+"""The directions of a building: people inside walk along its walls, two ways at right angles.
+
+A straight leg of the own path is taken for one along a wall where it fits (Borenstein and Ojeda
+2009, Heuristic drift elimination); then it tells how far the own heading has drifted since the
+first ones.  The axis is not known beforehand; it is as good as the heading that somebody came in
+with, and whoever came in with a better one tells the others.
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+
+from shared.geo import wrap_pi
+
+LOOK_M = 0.4  # way after which the direction is looked at
+BENT_RAD = math.radians(25.0)  # from the leg so far: another one begins
+LEG_M = 2.5  # at least
+LONG_M = 6.0  # and a longer one is told of in parts
+LEG_STD_RAD = math.radians(3.0)  # nobody walks on lines
+ASIDE_M = 0.2
+QUARTER_RAD = math.pi / 2.0
+BEGIN_M = 20.0  # of legs, until they are asked for an axis
+CLEAR = 0.55  # of their length, summed as vectors of four times the angle: an axis shows
+ALONG_WALLS = 0.6  # of the legs, before anything is known of one
+BELIEVED = 0.6
+SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
+
+
+class Leg(msgspec.Struct, frozen=True):
+    """A straight piece of the own path."""
+
+    direction_rad: float
+    length_m: float
+
+    @property
+    def variance(self) -> float:
+        return LEG_STD_RAD**2 + (ASIDE_M / self.length_m) ** 2
+
+
+class LegWatch(msgspec.Struct):
+    """Cuts the own path into straight legs."""
+
+    step_m: tuple[float, float] = (0.0, 0.0)
+    leg_m: tuple[float, float] = (0.0, 0.0)
+
+    def follow(self, north_m: float, east_m: float) -> Leg | None:
+        """The own path went on by this much; gives a leg that is over."""
+        step_m = self.step_m[0] + north_m, self.step_m[1] + east_m
+        self.step_m = step_m
+        if math.hypot(*step_m) < LOOK_M:
+            return None
+        self.step_m = 0.0, 0.0
+        leg_m, length_m, ended = self.leg_m, math.hypot(*self.leg_m), None
+        bent_rad = abs(wrap_pi(_direction(step_m) - _direction(leg_m)))
+        if length_m > LONG_M or (length_m > 0.0 and bent_rad > BENT_RAD):
+            ended = Leg(_direction(leg_m), length_m) if length_m > LEG_M else None
+            leg_m = 0.0, 0.0
+        self.leg_m = leg_m[0] + step_m[0], leg_m[1] + step_m[1]
+        return ended
+
+
+class Axis(msgspec.Struct, frozen=True):
+    """Of a building, in the incident frame; directions a quarter turn apart are the same."""
+
+    direction_rad: float
+    variance: float
+
+
+class AxisFilter(msgspec.Struct):
+    """One unit's heading correction and the building's axis, as one normal distribution: what is
+    not known of the one is not known of the other.
+    """
+
+    legs: list[Leg] = msgspec.field(default_factory=list)  # until an axis shows
+    axis: Axis | None = None
+    turn_variance: float = 0.0
+    crossed: float = 0.0  # covariance of both
+
+    def look(self, leg: Leg, turn_rad: float, variance: float) -> tuple[float, float]:
+        """Heading correction and variance after a leg, given what they were before."""
+        if self.axis is None:
+            self._begin(leg, turn_rad, variance)
+            return turn_rad, variance
+        self._catch_up(variance)
+        axis = self.axis
+        off_rad = quarter(turn_rad + leg.direction_rad - axis.direction_rad)
+        apart = variance - 2.0 * self.crossed + axis.variance
+        spread = apart + leg.variance
+        fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
+        along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
+        if along < BELIEVED:
+            return turn_rad, variance
+        spread = apart + leg.variance / along
+        turn_gain = (variance - self.crossed) / spread
+        axis_gain = (self.crossed - axis.variance) / spread
+        turned = turn_rad - turn_gain * off_rad, variance - turn_gain**2 * spread
+        self.crossed -= turn_gain * axis_gain * spread
+        direction_rad = axis.direction_rad - axis_gain * off_rad
+        self.axis = Axis(direction_rad, axis.variance - axis_gain**2 * spread)
+        self.turn_variance = turned[1]
+        return turned
+
+    def hear(self, other: Axis, turn_rad: float, variance: float) -> tuple[float, float]:
+        """The same after another's word for the axis, which is worth no more than it says."""
+        axis = self.axis
+        if axis is None:
+            return turn_rad, variance
+        self._catch_up(variance)
+        off_rad = quarter(other.direction_rad - axis.direction_rad)
+        grown = axis.variance - other.variance
+        same = off_rad**2 < 9.0 * (axis.variance + other.variance + SHARED_STD_RAD**2)
+        if grown <= 0.0 or not same:
+            return turn_rad, variance
+        gain = grown / (grown + SHARED_STD_RAD**2)
+        hangs_on = self.crossed / axis.variance
+        self.axis = Axis(axis.direction_rad + gain * off_rad, axis.variance - gain * grown)
+        self.crossed -= hangs_on * gain * grown
+        self.turn_variance = variance - hangs_on**2 * gain * grown
+        return turn_rad + hangs_on * gain * off_rad, self.turn_variance
+
+    def _begin(self, leg: Leg, turn_rad: float, variance: float) -> None:
+        self.legs.append(leg)
+        length_m = sum(one.length_m for one in self.legs)
+        if length_m < BEGIN_M:
+            return
+        four_rad = [4.0 * one.direction_rad for one in self.legs]
+        whole_m = (
+            sum(one.length_m * math.cos(a) for one, a in zip(self.legs, four_rad, strict=True)),
+            sum(one.length_m * math.sin(a) for one, a in zip(self.legs, four_rad, strict=True)),
+        )
+        if math.hypot(*whole_m) < CLEAR * length_m:
+            del self.legs[0]
+            return
+        leg_var = sum(one.variance for one in self.legs) / len(self.legs) ** 2
+        self.axis = Axis(quarter(turn_rad + _direction(whole_m) / 4.0), variance + 2.0 * leg_var)
+        self.turn_variance = self.crossed = variance
+        self.legs.clear()
+
+    def _catch_up(self, variance: float) -> None:
+        """What the heading lost since is its own; what it learnt elsewhere tells of the axis."""
+        axis, was = self.axis, self.turn_variance
+        if axis is not None and variance < was:
+            left = variance / was
+            told = self.crossed**2 / was * (1.0 - left)
+            self.axis = Axis(axis.direction_rad, max(axis.variance - told, 1e-6))
+            self.crossed *= left
+        self.turn_variance = variance
+
+
+def quarter(angle_rad: float) -> float:
+    """The nearest that is as good, within an eighth of a turn."""
+    return (angle_rad + QUARTER_RAD / 2.0) % QUARTER_RAD - QUARTER_RAD / 2.0
+
+
+def _direction(vector_m: tuple[float, float]) -> float:
+    return math.atan2(vector_m[1], vector_m[0])

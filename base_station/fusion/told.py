@@ -1,0 +1,39 @@
+"""What somebody else found out of a part of a state, taken over with what hangs on it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def told(
+    mean: Floats, covariance: Floats, observe: Floats, to: Floats, to_covariance: Floats
+) -> tuple[Floats, Floats]:
+    """A normal distribution (n,), (n, n) after ``observe @ state`` (k,) has come to be known as
+    ``to`` with ``to_covariance``; the rest follows as it hangs on that (Jeffrey's rule).
+    """
+    crossed = covariance @ observe.T
+    was = observe @ crossed
+    regression = np.linalg.solve(was, crossed.T).T
+    moved = mean + regression @ (to - observe @ mean)
+    left = covariance - regression @ (was - to_covariance) @ regression.T
+    return moved, 0.5 * (left + left.T)
+
+
+def taken_over(
+    mean: Floats, covariance: Floats, known: Floats, known_covariance: Floats, noise: Floats
+) -> tuple[Floats, Floats]:
+    """One's own word (k,) for a place, or the like, after it was seen to be one that was ``known``
+    before, by oneself or by another: nobody can tell how far both err alike, so what comes of it is
+    worth no more than the better of the two, direction by direction.
+    """
+    grown = _positive(covariance - known_covariance)
+    gain = grown @ np.linalg.inv(grown + noise)
+    return mean + gain @ (known - mean), covariance - gain @ grown
+
+
+def _positive(matrix: Floats) -> Floats:
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)

@@ -1,0 +1,140 @@
+"""What paths show of a building that nobody has a plan of: its stairs and its walls' directions."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.fusion.building_axes import Axis, AxisFilter, Leg, LegWatch, quarter
+from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.same_stairs import Climb, ClimbWatch, Stairs
+from base_station.fusion.told import taken_over, told
+
+STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
+
+
+def test_a_climb_is_told_when_it_is_over_and_where_its_middle_was() -> None:
+    watch, climbs = ClimbWatch(), []
+    for row in range(60):  # on the level, up 3 m of stairs northwards, on the level again
+        climbing = 20 <= row < 40
+        down_m = -0.15 * min(max(row - 19, 0), 20)
+        climbs.append(watch.follow(0.25 if climbing else 0.5, 0.0, down_m))
+    over = [(row, climb) for row, climb in enumerate(climbs) if climb is not None]
+    assert len(over) == 1
+    row, climb = over[0]
+    assert row > 40
+    here_m = 0.5 * 20 + 0.25 * 20 + 0.5 * (row - 39)
+    assert here_m - climb.since_north_m == pytest.approx(12.5, abs=0.6)
+    assert (climb.low_m, climb.high_m) == pytest.approx((0.0, -3.0), abs=0.2)
+    assert not climb.turns
+
+
+def test_a_kerb_is_no_climb() -> None:
+    watch = ClimbWatch()
+    assert not any(watch.follow(0.5, 0.0, -0.2 * (row > 20)) for row in range(60))
+
+
+def test_stairs_nearby_are_the_same_and_far_ones_are_others() -> None:
+    learnt = LearntBuilding((STAIRS,))
+    near = msgspec.structs.replace(STAIRS, north_m=11.5, covariance_m2=(4.0, 0.0, 4.0))
+    far = msgspec.structs.replace(STAIRS, north_m=35.0, covariance_m2=(4.0, 0.0, 4.0))
+    between = msgspec.structs.replace(STAIRS, north_m=18.0, covariance_m2=(9.0, 0.0, 9.0))
+    lost = msgspec.structs.replace(STAIRS, covariance_m2=(49.0, 0.0, 49.0))
+    assert learnt.which(near) == 0
+    assert learnt.which(far) == -1
+    assert learnt.which(between) is None
+    assert learnt.which(lost) is None
+
+
+def test_straight_stairs_lie_above_each_other_only_by_chance() -> None:
+    straight = msgspec.structs.replace(STAIRS, turns=False)
+    next_storey = msgspec.structs.replace(straight, low_m=-3.0, high_m=-6.0)
+    assert LearntBuilding((straight,)).which(next_storey) == -1
+    above = msgspec.structs.replace(STAIRS, low_m=-3.0, high_m=-6.0)
+    assert LearntBuilding((STAIRS,)).which(above) == 0
+
+
+def test_the_surer_word_for_stairs_is_kept() -> None:
+    worse = msgspec.structs.replace(STAIRS, covariance_m2=(2.0, 0.0, 2.0))
+    better = msgspec.structs.replace(STAIRS, covariance_m2=(0.5, 0.0, 0.5))
+    learnt = LearntBuilding((STAIRS,))
+    assert learnt.with_stairs(0, worse) is learnt
+    assert learnt.with_stairs(0, better).stairs == (better,)
+    assert learnt.with_stairs(-1, worse).stairs == (STAIRS, worse)
+
+
+def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() -> None:
+    known, spread = np.array([3.0, 0.0]), np.diag([1.0, 4.0])
+    place, own = np.array([0.0, 0.0]), np.diag([9.0, 2.0])
+    for _ in range(20):
+        place, own = taken_over(place, own, known, spread, 0.25 * np.eye(2))
+    assert own[0, 0] >= 1.0
+    assert own[1, 1] == pytest.approx(2.0)  # it was surer already
+    assert place[0] == pytest.approx(3.0, abs=0.3)
+    assert place[1] == pytest.approx(0.0)
+
+
+def test_what_is_told_carries_what_hangs_on_it() -> None:
+    mean, covariance = np.array([0.0, 0.0]), np.array([[4.0, 2.0], [2.0, 4.0]])
+    first = np.array([[1.0, 0.0]])
+    moved, left = told(mean, covariance, first, np.array([2.0]), np.array([[1.0]]))
+    assert moved == pytest.approx([2.0, 1.0])
+    assert left[0, 0] == pytest.approx(1.0)
+    assert left[1, 1] == pytest.approx(4.0 - 0.5**2 * 3.0)
+
+
+def test_straight_legs_are_cut_at_corners() -> None:
+    watch = LegWatch()
+    ways = [(0.5, 0.0)] * 10 + [(0.0, 0.5)] * 10 + [(-0.5, 0.0)] * 2
+    legs = [leg for way in ways if (leg := watch.follow(*way)) is not None]
+    assert [leg.direction_rad for leg in legs] == pytest.approx([0.0, math.pi / 2.0])
+    assert [leg.length_m for leg in legs] == pytest.approx([5.0, 5.0])
+
+
+@pytest.mark.parametrize("axis_rad", [0.0, 0.6, -0.7])
+def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
+    """Legs at right angles, of a path whose own heading drifts; one in four fits no wall."""
+    rng, axis = np.random.default_rng(3), AxisFilter()
+    turn_rad, variance = 0.0, 0.05**2
+    for number in range(60):
+        drifted_rad = 0.01 * number
+        along = axis_rad + rng.integers(4) * math.pi / 2.0 + rng.normal(0.0, 0.03)
+        if number % 4 == 3:
+            along = rng.uniform(-math.pi, math.pi)
+        variance += 0.015**2
+        leg = Leg(along - drifted_rad, 5.0)
+        turn_rad, variance = axis.look(leg, turn_rad, variance)
+    assert turn_rad == pytest.approx(0.59, abs=0.15)
+    assert 0.05**2 < variance < 0.12**2
+
+
+def test_without_right_angles_there_is_no_axis() -> None:
+    rng, axis = np.random.default_rng(1), AxisFilter()
+    for _ in range(12):
+        axis.look(Leg(rng.uniform(-math.pi, math.pi), 4.0), 0.0, 0.01)
+    assert axis.axis is None
+
+
+def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
+    axis = AxisFilter()
+    turn_rad, variance = 0.2, 0.2**2
+    for _ in range(6):
+        turn_rad, variance = axis.look(Leg(-0.2, 5.0), turn_rad, variance)
+    assert (turn_rad, math.sqrt(variance)) == pytest.approx((0.2, 0.2), abs=0.02)
+    turn_rad, variance = axis.hear(Axis(0.1, 0.02**2), turn_rad, variance)
+    assert turn_rad == pytest.approx(0.3, abs=0.02)
+    assert 0.02 < math.sqrt(variance) < 0.06
+
+
+def test_reframed_it_is_the_same_building() -> None:
+    learnt = LearntBuilding((STAIRS,), Axis(0.1, 1e-3))
+    moved = learnt.reframed(math.pi / 2.0, 1.0, 2.0)
+    assert (moved.stairs[0].north_m, moved.stairs[0].east_m) == pytest.approx((-4.0, 12.0))
+    assert moved.axis is not None
+    assert quarter(moved.axis.direction_rad - 0.1) == pytest.approx(0.0)
+    climb = Climb(0.0, 0.0, 0.0, -3.0, turns=True)
+    seen = Stairs.at(climb, np.array([-4.0, 12.0]), np.eye(2))
+    assert moved.which(seen) == 0
