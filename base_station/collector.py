@@ -1,13 +1,20 @@
-"""Python's collector of cycles, set for a program that holds much and makes hardly a cycle.
+"""Python's interpreter, set for a station.
 
-As it comes it looks at everything that lives again and again: a tenth of the drive's time, in
-pauses of a tenth of a second in which nobody is heard or told anything.
+Its collector of cycles is that of a program that holds much and makes hardly a cycle.  As it comes
+it looks at everything that lives again and again: a tenth of the drive's time, in pauses of a tenth
+of a second in which nobody is heard or told anything.
+
+Its threads take turns ten times as often as they would.  What comes from the bus and what goes to a
+console passes three threads that need it for a moment only, and each would wait for five
+milliseconds while the drive has much to do.
 """
 
 from __future__ import annotations
 
 import gc
+import sys
 
+_TURN_S = 0.0005
 _NEW_OBJECTS = 50_000  # made and not gone, after which the young are looked at
 _YOUNG, _OLD = 20, 20  # such looks, after which older ones are
 
@@ -15,6 +22,7 @@ _YOUNG, _OLD = 20, 20  # such looks, after which older ones are
 def relax() -> None:
     """When the program begins."""
     gc.set_threshold(_NEW_OBJECTS, _YOUNG, _OLD)
+    sys.setswitchinterval(_TURN_S)
 
 
 def settle() -> None:

@@ -42,6 +42,7 @@ TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 20
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
 CHECKPOINT_NS = 30 * NS_PER_S  # what a restart steps at most; at 1,000 events/s some 2 s
+FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
 log = logging.getLogger(__name__)
@@ -127,8 +128,8 @@ class StationDrive:
                 self._turn()
         self._finish()
 
-    def _turn(self) -> None:
-        """Take what came, then do whatever is due."""
+    def _turn(self) -> bool:
+        """Take what came, then do whatever is due; whether anything came."""
         clock, due = self._around.clock, self._due
         wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
         records = self._around.feed.take(max(wait_ns, 0) / NS_PER_S)
@@ -159,6 +160,7 @@ class StationDrive:
             due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
         while self._asked:
             self._asked.popleft()(self._picture.snapshot())
+        return bool(records)
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
@@ -259,8 +261,10 @@ class StationDrive:
         }
 
     def _finish(self) -> None:
+        until_ns = self._around.clock.monotonic_ns() + FINISH_NS
         with self._watch.guarding("drive"):
-            self._turn()
+            while self._turn() and self._around.clock.monotonic_ns() < until_ns:
+                pass
         self._project()
         self._save_checkpoint()
         self._refuse_waiting()

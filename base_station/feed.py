@@ -6,6 +6,7 @@ the event of it.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from threading import Condition, Lock
@@ -18,7 +19,9 @@ from shared.mcap_log import LogRecord, read_log
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
-_LATE_SHARE = 0.01  # of the queue, for what can wait: live data stands behind no more of it
+_LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
+_LATE_BYTES = 1024 * 1024
+_LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
 
 
 class SteadyClock:
@@ -52,10 +55,11 @@ class SteadyClock:
 class LiveFeed:
     """A queue from the bus to the one thread that steps the pipeline.
 
-    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  Records
-    come out in the order in which they got in, and station time never goes back in that order.
-    The queue is bounded: beyond it live data is dropped, and counted in ``overflowed``; alerts
-    are dropped only at twice the bound.
+    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  What can
+    wait has a queue of its own, and comes in small portions behind what is live.  Station time is
+    that of getting in for what is live, of coming out for what can wait, and so never goes back
+    in the order in which records come out.  The queues are bounded: beyond it live data is
+    dropped, and counted in ``overflowed``; alerts are dropped only at twice the bound.
     """
 
     def __init__(
@@ -68,6 +72,8 @@ class LiveFeed:
         self._changed = Condition()
         self._queue: list[LogRecord] = []
         self._bytes = 0
+        self._late: deque[tuple[str, bytes]] = deque()
+        self._late_bytes = 0
         self._woken = False
         self._closed = False
         self._overflowed = 0
@@ -91,21 +97,35 @@ class LiveFeed:
                 self._overflowed += 1
 
     def deliver(self, key: str, payload: bytes) -> None:
-        """As ``offer``, for data that can wait: returns when hardly anything waits."""
+        """As ``offer``, for data that can wait: returns when little of it waits.  An alert that
+        comes this way has waited long enough: it goes with what is live.
+        """
         with self._changed:
-            self._changed.wait_for(lambda: self._has_room(_LATE_SHARE) or self._closed)
-            self._append(key, payload)
+            if not self._has_late_room(1.0):  # and then for a good while, not for a record or two
+                self._changed.wait_for(lambda: self._has_late_room(0.5) or self._closed)
+            if _is_alert(key):
+                self._append(key, payload)
+                return
+            self._late.append((key, payload))
+            self._late_bytes += len(payload)
+            if len(self._late) == 1:
+                self._changed.notify_all()
 
     def take(self, timeout_s: float) -> list[LogRecord]:
-        """Everything that came, in order; waits until something comes, ``wake`` or the timeout."""
+        """Everything live that came, in order, and some of what can wait behind it; waits until
+        something comes, ``wake`` or the timeout.
+        """
         with self._changed:
-            self._changed.wait_for(lambda: self._queue or self._woken, timeout_s)
-            if self._queue:  # what comes in quick succession is taken together
+            self._changed.wait_for(lambda: self._queue or self._late or self._woken, timeout_s)
+            if self._queue and not self._late:  # what comes in quick succession is taken together
                 self._changed.wait_for(lambda: self._woken, min(_GATHER_S, timeout_s))
             self._woken = False
             records, self._queue = self._queue, []
             self._bytes = 0
-            self._changed.notify_all()
+            had_room = self._has_late_room(0.5)
+            records += self._take_late()
+            if not had_room and self._has_late_room(0.5):
+                self._changed.notify_all()
             return records
 
     def wake(self) -> None:
@@ -124,6 +144,15 @@ class LiveFeed:
         return (
             len(self._queue) < share * self._records_max and self._bytes < share * self._bytes_max
         )
+
+    def _has_late_room(self, share: float) -> bool:
+        return len(self._late) < share * _LATE_WAITING and self._late_bytes < share * _LATE_BYTES
+
+    def _take_late(self) -> Iterator[LogRecord]:
+        for _ in range(min(len(self._late), _LATE_AT_ONCE)):
+            key, payload = self._late.popleft()
+            self._late_bytes -= len(payload)
+            yield self._clock.utc_ns(), key, payload
 
     def _append(self, key: str, payload: bytes) -> None:
         self._queue.append((self._clock.utc_ns(), key, payload))

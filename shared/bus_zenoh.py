@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import partial
 from queue import SimpleQueue
 from threading import Thread
 from typing import Any
@@ -34,9 +36,10 @@ __all__ = ["ClientEndpoint", "Endpoint", "StationEndpoint", "UnitEndpoint", "Zen
 logger = logging.getLogger(__name__)
 
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
-
+_REPLIES_WAITING = 1024  # to one question
 
 _Samples = zenoh.handlers.Handler[zenoh.Sample]
+_Replies = zenoh.handlers.Handler[zenoh.Reply]
 
 
 class ZenohBus:
@@ -129,14 +132,9 @@ class ZenohBus:
     ) -> None:
         self._require_open()
         require_key_expression(selector.partition("?")[0])
-
-        def take(reply: zenoh.Reply) -> None:
-            if reply.ok is not None:
-                on_reply(reply.ok.payload.to_bytes())
-
-        self._session.get(
+        replies = self._session.get(
             selector,
-            zenoh.handlers.Callback(take, drop=lambda: on_reply(None), indirect=False),
+            zenoh.handlers.FifoChannel(_REPLIES_WAITING),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
             # The replies travel as the query did.  Whoever asks what is urgent does not wait.
@@ -147,6 +145,8 @@ class ZenohBus:
             timeout=timeout_s,
             payload=payload,
         )
+        taking = partial(_hand_replies_over, replies, on_reply)
+        Thread(target=taking, name="bus-replies", daemon=True).start()
 
     def is_linked(self) -> bool:
         if self._session.is_closed():
@@ -205,6 +205,22 @@ def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> Non
                 sample = samples.try_recv()
     except zenoh.ZError:
         return
+
+
+def _hand_replies_over(
+    replies: zenoh.handlers.Handler[zenoh.Reply], on_reply: ReplyHandler
+) -> None:
+    """Until no more come; in a thread of its own for the same reason: live data comes over the
+    same link, behind the replies.
+    """
+    with suppress(zenoh.ZError):
+        while True:
+            reply: zenoh.Reply | None = replies.recv()
+            while reply is not None:
+                if reply.ok is not None:
+                    on_reply(reply.ok.payload.to_bytes())
+                reply = replies.try_recv()
+    on_reply(None)
 
 
 def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:

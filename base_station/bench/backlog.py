@@ -21,10 +21,11 @@ from base_station.bench.station import Membership, PlainTcp, StationProcess, sta
 from base_station.bench.units import BenchUnit, Wearer, speak_in_turn, unit_names
 from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import ROOT, Qos, channel_of
+from shared.channels import CHANNELS, ROOT, Direction, Qos, backfilled_key, channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.errors import BusError, StoreError
+from shared.mcap_log import read_log
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 
 _BACKLOG_UNIT = "bench-backlog"
@@ -35,6 +36,7 @@ _TIMES_SLOWER = 2.0  # to reach, of live data
 _WARM_S = 4.0
 _PIECE_S = 0.5
 _STALLED_S = 15.0  # nothing more comes: what was lost is told
+_TOLD_LATE_S = 2.0  # the console hears so late of how much was stepped, at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,20 +112,22 @@ def _fetch(
     station.begin_measuring()
     backlog.appear()
     progress.update(task, description="fetching")
-    fetched, took_s = 0, 0.0
-    while fetched < backlog.count and time.perf_counter() - began_s - took_s < _STALLED_S:
+    fetched, came_s = 0, began_s
+    nearly = backlog.count - round(_TOLD_LATE_S * rate_hz)
+    while fetched < nearly and time.perf_counter() - came_s < _STALLED_S:
         speak_in_turn(others, rate_hz, _PIECE_S, lambda: None)
         live = sum(unit.sent.messages for unit in others) - live_before
         if watching.messages_stepped - known - live > fetched:
             fetched = watching.messages_stepped - known - live
-            took_s = time.perf_counter() - began_s
+            came_s = time.perf_counter()
         progress.update(task, completed=fetched)
     cpu_share = station.cpu_share()
     end_ns = time.time_ns()
-    time.sleep(1.0)
+    time.sleep(_TOLD_LATE_S)
     watching.close()
     station.stop()
     recorded = station.recorded()
+    fetched, took_s = _fetched(station.log, began_ns)
     sent = sum(unit.sent.messages for unit in others) + backlog.count + 1
     return BackfillReport(
         units=len(others),
@@ -196,6 +200,14 @@ class _Backlog:
                 return
         if entries:
             yield JournalChunk(self._boot_id, first, last, tuple(entries)).to_bytes()
+
+
+def _fetched(log: Path, began_ns: int) -> tuple[int, float]:
+    """How many fetched messages the log has, and how long after that the last of them came."""
+    suffixes = {channel.suffix for channel in CHANNELS if channel.direction is Direction.UP}
+    keys = {backfilled_key(_BACKLOG_UNIT, suffix) for suffix in suffixes}
+    times_ns = [t_ns for t_ns, _, _ in read_log(log, keys=keys)]
+    return len(times_ns), (max(times_ns, default=began_ns) - began_ns) / NS_PER_S
 
 
 def _latency_between(

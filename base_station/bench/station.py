@@ -81,6 +81,10 @@ class StationProcess:
         self._process.send_signal(signal.SIGINT)
         return self._process.wait(_STOP_TIMEOUT_S)
 
+    @property
+    def log(self) -> Path:
+        return self._data.log
+
     def recorded(self) -> Recorded:
         """Read after ``stop``."""
         messages: Counter[tuple[str, int, int]] = Counter()

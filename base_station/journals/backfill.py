@@ -66,7 +66,8 @@ class Backfill:
         self._asking: dict[str, _Asked] = {}
         self._news = Condition()
         self._report: Report | None = None
-        self._replies: list[tuple[_Asked, bytes | None]] = []
+        self._urgent: list[tuple[_Asked, bytes | None]] = []
+        self._replies: deque[tuple[_Asked, bytes | None]] = deque()
         self._closed = False
         self._thread = Thread(target=self._run, name="backfill", daemon=True)
         self.fetched = 0  # messages brought so far
@@ -105,11 +106,17 @@ class Backfill:
             self._ask_by_turns()
 
     def _next(self) -> _News | None:
-        """What is new; waits for it.  None: it is over."""
+        """What is new; waits for it.  None: it is over.  Of answers, all the urgent ones, and one
+        of the others: handing that over may take its time.
+        """
         with self._news:
-            self._news.wait_for(lambda: self._report is not None or self._replies or self._closed)
-            news = _News(self._report, self._replies)
-            self._report, self._replies = None, []
+            self._news.wait_for(
+                lambda: self._report is not None or self._urgent or self._replies or self._closed
+            )
+            news = _News(self._report, self._urgent)
+            self._report, self._urgent = None, []
+            if self._replies:
+                news.replies.append(self._replies.popleft())
             return None if self._closed else news
 
     def _take_report(self, report: Report) -> None:
@@ -170,5 +177,5 @@ class Backfill:
     def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
         """Called by a thread of the bus."""
         with self._news:
-            self._replies.append((asked, reply))
+            (self._urgent if asked.question.urgent else self._replies).append((asked, reply))
             self._news.notify()

@@ -97,26 +97,74 @@ def test_the_bound_holds_for_bytes_too() -> None:
     assert feed.overflowed == 8
 
 
-def test_what_can_wait_leaves_most_of_the_queue_to_what_is_live() -> None:
-    feed = LiveFeed(ManualClock(), records_max=200)
-    feed.deliver(KEY, b"old 1")
-    feed.deliver(KEY, b"old 2")
-    waiting = Thread(target=feed.deliver, args=(KEY, b"old 3"))
-    waiting.start()
-    feed.offer(KEY, b"live")
-    assert [payload for _, _, payload in feed.take(0.0)] == [b"old 1", b"old 2", b"live"]
-    waiting.join()
-    assert [payload for _, _, payload in feed.take(60.0)] == [b"old 3"]
+def payloads_of(records: list[tuple[int, str, bytes]]) -> list[bytes]:
+    return [payload for _, _, payload in records]
+
+
+def deliver(feed: LiveFeed, count: int) -> None:
+    for _ in range(count):
+        feed.deliver(KEY, b"late")
+
+
+def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None:
+    feed = LiveFeed(ManualClock())
+    late = [number.to_bytes(2) for number in range(100)]
+    for payload in late:
+        feed.deliver(KEY, payload)
+    feed.offer(KEY, b"live 1")
+    first = payloads_of(feed.take(60.0))
+    feed.offer(KEY, b"live 2")
+    second = payloads_of(feed.take(60.0))
+    assert [first[0], second[0]] == [b"live 1", b"live 2"]
+    assert 1 < len(first) < 50
+    assert first[1:] + second[1:] == late[: len(first) + len(second) - 2]
+
+
+def test_station_time_never_goes_back_between_what_is_live_and_what_can_wait() -> None:
+    machine = ManualClock()
+    feed = LiveFeed(machine)
+    taken: list[tuple[int, str, bytes]] = []
+    for _ in range(100):
+        feed.deliver(KEY, b"late")
+        machine.advance(0.001)
+        feed.offer(KEY, b"live")
+        machine.advance(0.001)
+        taken += feed.take(0.0)
+    times_ns = [t_ns for t_ns, _, _ in taken]
+    assert times_ns == sorted(times_ns)
+    assert payloads_of(taken).count(b"late") == payloads_of(taken).count(b"live") == 100
+
+
+def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() -> None:
+    feed = LiveFeed(ManualClock(), records_max=10)
+    count = 5000
+    bringing = Thread(target=deliver, args=(feed, count))
+    bringing.start()
+    taken: list[bytes] = []
+    for _ in range(100):
+        feed.offer(KEY, b"live")
+        taken += payloads_of(feed.take(60.0))
+    while len(taken) < count + 100:
+        taken += payloads_of(feed.take(60.0))
+    bringing.join()
     assert feed.overflowed == 0
+    assert taken.count(b"late") == count
+
+
+def test_an_alert_that_was_fetched_waits_behind_nothing_that_can_wait() -> None:
+    feed = LiveFeed(ManualClock())
+    for _ in range(100):
+        feed.deliver(KEY, b"late")
+    feed.deliver(ALERT, b"fell")
+    assert payloads_of(feed.take(60.0))[0] == b"fell"
 
 
 def test_a_closed_feed_lets_go_of_who_waits() -> None:
-    feed = LiveFeed(ManualClock(), records_max=2)
-    feed.deliver(KEY, b"")
-    waiting = Thread(target=feed.deliver, args=(KEY, b""))
-    waiting.start()
+    feed = LiveFeed(ManualClock())
+    bringing = Thread(target=deliver, args=(feed, 5000))
+    bringing.start()
     feed.close()
-    waiting.join()
+    bringing.join()
 
 
 def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) -> None:
