@@ -2,61 +2,29 @@
 
 from __future__ import annotations
 
-import os
-import struct
-import zlib
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import BinaryIO
 
 from mcap.opcode import Opcode
-from mcap.writer import MCAP0_MAGIC
 
-from shared.errors import LogError
 from shared.mcap_log.container import (
-    BETWEEN_CHUNKS,
-    CHUNK,
-    CHUNK_INDEX,
-    CHUNK_MARK,
-    FOOTER_BYTES,
     INDEX_ENTRY,
     INDEX_OFFSET,
     MESSAGE,
     MESSAGE_BYTES,
     NONSENSE,
-    RECORD,
-    learn_topic,
     message_offsets,
-    records_in,
     unpacked,
 )
+from shared.mcap_log.contents import Chunk, contents_of
 from shared.mcap_log.folder import segment_paths, segments_within
 from shared.mcap_log.schemas import DERIVED
+from shared.mcap_log.segment_file import SegmentFile
 from shared.mcap_log.writing import SegmentInfo, SegmentState
 
 LogRecord = tuple[int, str, bytes]  # log time, key, payload
-
-
-@dataclass(frozen=True, slots=True)
-class _Chunk:
-    offset: int  # of the record
-    start_ns: int
-    end_ns: int
-    topic_offsets: bytes | None = None  # of the message indexes; None: not known
-
-
-@dataclass(slots=True)
-class _Contents:
-    """What a segment holds, found without decompressing it."""
-
-    chunks: list[_Chunk] = field(default_factory=list)
-    topics: dict[int, str] = field(default_factory=dict)
-    chunks_learned: int = 0  # of how many chunks, from the first, the topics are known
-    counts: dict[int, int] | None = None  # messages a topic; None: not known
-    is_complete: bool = False
-    readable_bytes: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,19 +63,18 @@ class SegmentReader:
     def __init__(self, path: Path) -> None:
         """Raises LogError when the file cannot be opened."""
         self.path = path
-        self.damage: list[str] = []
-        try:
-            self._file: BinaryIO = path.open("rb")
-        except OSError as error:
-            raise LogError(f"{path} cannot be read: {error.strerror}") from error
-        self._size = os.fstat(self._file.fileno()).st_size
-        self._contents = self._from_summary() or self._from_walk()
+        self._file = SegmentFile(path)
+        self._contents = contents_of(self._file)
 
     def __enter__(self) -> SegmentReader:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._file.close()
+
+    @property
+    def damage(self) -> list[str]:
+        return self._file.damage
 
     @property
     def is_complete(self) -> bool:
@@ -117,7 +84,7 @@ class SegmentReader:
     @property
     def bytes_lost(self) -> int:
         """Behind the last readable record of a file that was not ended in order."""
-        return self._size - self._contents.readable_bytes
+        return self._file.size - self._contents.readable_bytes
 
     def info(self) -> SegmentInfo:
         """Counts the messages of a segment that is not complete by reading it."""
@@ -137,7 +104,7 @@ class SegmentReader:
             min((chunk.start_ns for chunk in chunks), default=0),
             max((chunk.end_ns for chunk in chunks), default=0),
             messages,
-            self._size,
+            self._file.size,
         )
 
     def records(
@@ -172,19 +139,19 @@ class SegmentReader:
         for chunk in self._contents.chunks:
             data = self._chunk_data(chunk)
             if data:
-                _, length = self._record_at(chunk.offset)
-                record = self._read(chunk.offset, 9 + length)
+                _, length = self._file.record_at(chunk.offset)
+                record = self._file.read(chunk.offset, 9 + length)
                 index = self._index_behind(chunk.offset + len(record))
                 yield IntactChunk(record, chunk.start_ns, chunk.end_ns, index, data)
 
     def _index_behind(self, offset: int) -> bytes:
         end = offset
-        while end + 9 <= self._size:
-            opcode, length = self._record_at(end)
+        while end + 9 <= self._file.size:
+            opcode, length = self._file.record_at(end)
             if opcode != Opcode.MESSAGE_INDEX:
                 break
             end += 9 + length
-        return self._read(offset, end - offset) if end <= self._size else b""
+        return self._file.read(offset, end - offset) if end <= self._file.size else b""
 
     def _records_at(self, data: bytes, offsets: list[int], wanted: _Wanted) -> Iterator[LogRecord]:
         topics = {
@@ -200,19 +167,19 @@ class SegmentReader:
             elif topic not in known:
                 unknown += 1
         if unknown:
-            self._note(f"{unknown} records whose key was in a damaged part are lost")
+            self._file.note(f"{unknown} records whose key was in a damaged part are lost")
 
-    def _chunk_data(self, chunk: _Chunk) -> bytes:
+    def _chunk_data(self, chunk: Chunk) -> bytes:
         """The chunk's records; nothing, and a note of the damage, where they are not intact."""
         try:
-            _, length = self._record_at(chunk.offset)
-            return unpacked(self._read(chunk.offset + 9, length))
+            _, length = self._file.record_at(chunk.offset)
+            return unpacked(self._file.read(chunk.offset + 9, length))
         except NONSENSE as error:
-            self._note(f"the chunk at byte {chunk.offset} is lost ({error})")
+            self._file.note(f"the chunk at byte {chunk.offset} is lost ({error})")
             return b""
 
     def _indexed_offsets(
-        self, chunk: _Chunk, keys: Collection[str], data: bytes
+        self, chunk: Chunk, keys: Collection[str], data: bytes
     ) -> list[int] | None:
         """Offsets of the wanted topics' messages inside the chunk, in the order of writing.
 
@@ -226,13 +193,15 @@ class SegmentReader:
                 if self._contents.topics.get(topic) in keys:
                     offsets += self._index_entries(topic, at, data)
         except NONSENSE:
-            self._note(f"the index of the chunk at byte {chunk.offset} is damaged; read without it")
+            self._file.note(
+                f"the index of the chunk at byte {chunk.offset} is damaged; read without it"
+            )
             return None
         return sorted(offsets)
 
     def _index_entries(self, topic: int, at: int, data: bytes) -> list[int]:
-        _, length = self._record_at(at)
-        entries = list(INDEX_ENTRY.iter_unpack(self._read(at + 9, length)[6:]))
+        _, length = self._file.record_at(at)
+        entries = list(INDEX_ENTRY.iter_unpack(self._file.read(at + 9, length)[6:]))
         offsets = [offset for _, offset in entries]
         found = [MESSAGE.unpack_from(data, offset) for offset in offsets]
         if [(topic, t_ns) for t_ns, _ in entries] != [(head[2], head[4]) for head in found]:
@@ -240,92 +209,6 @@ class SegmentReader:
         if any(later <= earlier for earlier, later in pairwise(offsets)):
             raise ValueError("it is out of order")
         return offsets
-
-    def _from_summary(self) -> _Contents | None:
-        """The contents as the end of a complete file lists them; None where it does not."""
-        try:
-            return self._read_summary()
-        except NONSENSE:
-            return None
-
-    def _read_summary(self) -> _Contents | None:
-        if self._size < FOOTER_BYTES + len(MCAP0_MAGIC):
-            return None
-        footer = self._read(self._size - FOOTER_BYTES, FOOTER_BYTES)
-        start, _, expected_crc = struct.unpack_from("<QQI", footer, 9)
-        if not footer.endswith(MCAP0_MAGIC) or footer[0] != Opcode.FOOTER or start == 0:
-            return None
-        summary = self._read(start, self._size - FOOTER_BYTES - start)
-        if zlib.crc32(footer[: 9 + 16], zlib.crc32(summary)) != expected_crc:
-            self._note("its table of contents is damaged and was made again")
-            return None
-        contents = _Contents(is_complete=True, readable_bytes=self._size, counts={})
-        for opcode, body in records_in(summary):
-            if opcode == Opcode.CHANNEL:
-                learn_topic(body, contents.topics)
-            elif opcode == Opcode.CHUNK_INDEX:
-                begin, end, offset, _, count = CHUNK_INDEX.unpack_from(body)
-                topic_offsets = body[CHUNK_INDEX.size : CHUNK_INDEX.size + count]
-                contents.chunks.append(_Chunk(offset, begin, end, topic_offsets or None))
-            elif opcode == Opcode.STATISTICS:
-                contents.counts = dict(struct.iter_unpack("<HQ", body[46:]))
-        contents.chunks_learned = len(contents.chunks)
-        return contents
-
-    def _from_walk(self) -> _Contents:
-        """The contents of a file without an end, as far as it goes."""
-        contents = _Contents()
-        offset = len(MCAP0_MAGIC)
-        while offset + 9 <= self._size:
-            opcode, length = self._record_at(offset)
-            fits = offset + 9 + length <= self._size
-            is_chunk = opcode == Opcode.CHUNK and length >= CHUNK.size
-            if not fits or not (is_chunk or opcode in BETWEEN_CHUNKS):
-                found = self._next_chunk(offset + 1)
-                if found is None:
-                    break
-                self._note(f"bytes {offset} to {found} make no sense")
-                offset = found
-                continue
-            if is_chunk:
-                start_ns, end_ns, *_ = CHUNK.unpack(self._read(offset + 9, CHUNK.size))
-                contents.chunks.append(_Chunk(offset, start_ns, end_ns))
-            offset += 9 + length
-            contents.readable_bytes = offset
-        return contents
-
-    def _next_chunk(self, offset: int) -> int | None:
-        """The next intact chunk record at or behind ``offset``, by the name of its compression."""
-        rest = self._read(offset, self._size - offset)
-        at = -1
-        while (at := rest.find(CHUNK_MARK, at + 1)) >= 0:
-            begin = at - 9 - (CHUNK.size - 4)
-            if begin >= 0 and rest[begin] == Opcode.CHUNK:
-                _, length = RECORD.unpack_from(rest, begin)
-                try:
-                    unpacked(rest[begin + 9 : begin + 9 + length])
-                except NONSENSE:
-                    continue
-                return offset + begin
-        return None
-
-    def _record_at(self, offset: int) -> tuple[int, int]:
-        opcode, length = RECORD.unpack(self._read(offset, 9))
-        return opcode, length
-
-    def _read(self, offset: int, count: int) -> bytes:
-        try:
-            data = os.pread(self._file.fileno(), count, offset)
-        except (OSError, OverflowError) as error:
-            raise ValueError(f"the disk does not give it: {error}") from error
-        if len(data) < count:
-            raise ValueError("the file ends before it")
-        return data
-
-    def _note(self, what: str) -> None:
-        note = f"{self.path.name}: {what}"
-        if note not in self.damage:
-            self.damage.append(note)
 
 
 def read_log(

@@ -25,6 +25,7 @@ from shared.mcap_log import (
     recover_log,
     segment_paths,
 )
+from shared.mcap_log.segment_file import SegmentFile
 from shared.messages import Header, Temperature
 
 T0_NS = 1_700_000_000 * NS_PER_S
@@ -225,3 +226,13 @@ def test_files_that_are_no_segments_are_left_alone(tmp_path: Path) -> None:
     assert recover_log(tmp_path) == []
     assert on_disk(tmp_path) == [b"1"]
     assert (tmp_path / "recording.mcap").read_bytes() == b"mine"
+
+
+def test_a_damaged_length_takes_no_memory_for_what_is_not_there(tmp_path: Path) -> None:
+    path = tmp_path / "short"
+    path.write_bytes(b"123")
+    file = SegmentFile(path)
+    assert file.read(1, 2) == b"23"
+    with pytest.raises(ValueError, match="ends before"):
+        file.read(0, 1 << 60)
+    file.close()

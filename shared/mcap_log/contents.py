@@ -1,0 +1,121 @@
+"""What a segment holds: its chunks and topics, from its table of contents or from its records."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass, field
+
+from mcap.opcode import Opcode
+from mcap.writer import MCAP0_MAGIC
+
+from shared.mcap_log.container import (
+    BETWEEN_CHUNKS,
+    CHUNK,
+    CHUNK_INDEX,
+    CHUNK_MARK,
+    FOOTER_BYTES,
+    NONSENSE,
+    RECORD,
+    learn_topic,
+    records_in,
+    unpacked,
+)
+from shared.mcap_log.segment_file import SegmentFile
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    offset: int  # of the record
+    start_ns: int
+    end_ns: int
+    topic_offsets: bytes | None = None  # of the message indexes; None: not known
+
+
+@dataclass(slots=True)
+class Contents:
+    """What a segment holds, found without decompressing it."""
+
+    chunks: list[Chunk] = field(default_factory=list)
+    topics: dict[int, str] = field(default_factory=dict)
+    chunks_learned: int = 0  # of how many chunks, from the first, the topics are known
+    counts: dict[int, int] | None = None  # messages a topic; None: not known
+    is_complete: bool = False
+    readable_bytes: int = 0
+
+
+def contents_of(file: SegmentFile) -> Contents:
+    """Whatever the bytes may be; what makes no sense is noted as damage of the file."""
+    return _from_summary(file) or _from_walk(file)
+
+
+def _from_summary(file: SegmentFile) -> Contents | None:
+    """The contents as the end of a complete file lists them; None where it does not."""
+    try:
+        return _read_summary(file)
+    except NONSENSE:
+        return None
+
+
+def _read_summary(file: SegmentFile) -> Contents | None:
+    if file.size < FOOTER_BYTES + len(MCAP0_MAGIC):
+        return None
+    footer = file.read(file.size - FOOTER_BYTES, FOOTER_BYTES)
+    start, _, expected_crc = struct.unpack_from("<QQI", footer, 9)
+    if not footer.endswith(MCAP0_MAGIC) or footer[0] != Opcode.FOOTER or start == 0:
+        return None
+    summary = file.read(start, file.size - FOOTER_BYTES - start)
+    if zlib.crc32(footer[: 9 + 16], zlib.crc32(summary)) != expected_crc:
+        file.note("its table of contents is damaged and was made again")
+        return None
+    contents = Contents(is_complete=True, readable_bytes=file.size, counts={})
+    for opcode, body in records_in(summary):
+        if opcode == Opcode.CHANNEL:
+            learn_topic(body, contents.topics)
+        elif opcode == Opcode.CHUNK_INDEX:
+            begin, end, offset, _, count = CHUNK_INDEX.unpack_from(body)
+            topic_offsets = body[CHUNK_INDEX.size : CHUNK_INDEX.size + count]
+            contents.chunks.append(Chunk(offset, begin, end, topic_offsets or None))
+        elif opcode == Opcode.STATISTICS:
+            contents.counts = dict(struct.iter_unpack("<HQ", body[46:]))
+    contents.chunks_learned = len(contents.chunks)
+    return contents
+
+
+def _from_walk(file: SegmentFile) -> Contents:
+    """The contents of a file without an end, as far as it goes."""
+    contents = Contents()
+    offset = len(MCAP0_MAGIC)
+    while offset + 9 <= file.size:
+        opcode, length = file.record_at(offset)
+        fits = offset + 9 + length <= file.size
+        is_chunk = opcode == Opcode.CHUNK and length >= CHUNK.size
+        if not fits or not (is_chunk or opcode in BETWEEN_CHUNKS):
+            found = _next_chunk(file, offset + 1)
+            if found is None:
+                break
+            file.note(f"bytes {offset} to {found} make no sense")
+            offset = found
+            continue
+        if is_chunk:
+            start_ns, end_ns, *_ = CHUNK.unpack(file.read(offset + 9, CHUNK.size))
+            contents.chunks.append(Chunk(offset, start_ns, end_ns))
+        offset += 9 + length
+        contents.readable_bytes = offset
+    return contents
+
+
+def _next_chunk(file: SegmentFile, offset: int) -> int | None:
+    """The next intact chunk record at or behind ``offset``, by the name of its compression."""
+    rest = file.read(offset, file.size - offset)
+    at = -1
+    while (at := rest.find(CHUNK_MARK, at + 1)) >= 0:
+        begin = at - 9 - (CHUNK.size - 4)
+        if begin >= 0 and rest[begin] == Opcode.CHUNK:
+            _, length = RECORD.unpack_from(rest, begin)
+            try:
+                unpacked(rest[begin + 9 : begin + 9 + length])
+            except NONSENSE:
+                continue
+            return offset + begin
+    return None
