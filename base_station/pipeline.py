@@ -51,7 +51,6 @@ from shared.messages import (
     Message,
     OperatorAction,
     Position,
-    RawImu,
     Sighting,
     Status,
     Temperature,
@@ -61,8 +60,6 @@ from shared.messages import (
 )
 from shared.quality import Quality
 
-# Many a second of these, and what they tell of can wait for the next tick to be judged.
-_STREAMED = (Position, GpsFix, RawImu)
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
 LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
 _COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
@@ -187,8 +184,7 @@ class StationPipeline:
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
         outputs.append(UnitTouched(unit_id))
-        if not isinstance(message, _STREAMED):
-            outputs.extend(self._review(unit))
+        outputs.extend(self._review(unit, type(message)))
         return outputs
 
     def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:
@@ -216,8 +212,7 @@ class StationPipeline:
         else:
             return []
         outputs.append(UnitTouched(unit.unit_id))
-        if not isinstance(message, _STREAMED):
-            outputs.extend(self._review(unit))
+        outputs.extend(self._review(unit, type(message)))
         return outputs
 
     def _stranger(self, unit_id: str) -> UnitState | None:
@@ -288,8 +283,8 @@ class StationPipeline:
         fused = self._positioning.recalled(self.state, unit, position, self._header())
         return [] if fused is None else [fused, TrailFilled(unit.unit_id)]
 
-    def _review(self, unit: UnitState) -> list[Output]:
-        return [self._change(alarm) for alarm in self._book.review(self.state, unit)]
+    def _review(self, unit: UnitState, came: type[Message] | None = None) -> list[Output]:
+        return [self._change(alarm) for alarm in self._book.review(self.state, unit, came)]
 
     def _change(self, alarm: Alarm) -> AlarmChange:
         return AlarmChange(

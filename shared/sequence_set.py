@@ -26,6 +26,8 @@ class SequenceSet(msgspec.Struct, array_like=True):
     lasts: list[int] = msgspec.field(default_factory=list)
 
     def __contains__(self, number: int) -> bool:
+        if not self.lasts or number > self.lasts[-1]:  # nearly always
+            return False
         place = bisect_right(self.firsts, number) - 1
         return place >= 0 and number <= self.lasts[place]
 

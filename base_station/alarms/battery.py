@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
+from shared.messages import Message, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +18,7 @@ class Battery:
     clear_after_s: float = 30.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = (Status,)
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None or unit.status.battery is None:

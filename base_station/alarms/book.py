@@ -13,8 +13,19 @@ from collections.abc import Iterator, Sequence
 from base_station.alarms.port import SOON, AlarmRule, Clear, Finding, Verdict
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_S
-from shared.messages import AlarmState
+from shared.messages import (
+    AlarmState,
+    GpsFix,
+    Heartbeat,
+    Message,
+    Position,
+    RawImu,
+    Status,
+    Temperature,
+)
 
+# What comes all the time: only who heeds it looks at it before the next tick.
+ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
 
@@ -24,10 +35,15 @@ class AlarmBook:
 
     def __init__(self, rules: Sequence[AlarmRule]) -> None:
         self._rules = tuple(rules)
+        self._heeding = {
+            kind: tuple(rule for rule in rules if kind in rule.heeds) for kind in ROUTINE
+        }
 
-    def review(self, state: StationState, unit: UnitState) -> Iterator[Alarm]:
-        """Let every rule judge the unit as it is now."""
-        for rule in self._rules:
+    def review(
+        self, state: StationState, unit: UnitState, came: type[Message] | None = None
+    ) -> Iterator[Alarm]:
+        """Let the rules judge the unit as it is now: those that heed what just came, or all."""
+        for rule in self._rules if came is None else self._heeding.get(came, self._rules):
             if not (unit.registered or rule.for_strangers):
                 continue
             key = f"{rule.name}|{unit.unit_id}"

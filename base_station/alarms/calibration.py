@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from base_station.alarms.port import INFORMATION, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.messages import Message
 
 _DAY_S = 86_400
 
@@ -22,6 +23,7 @@ class Calibration:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         description = unit.description

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,7 @@ class ClonedUnit:
     clear_after_s: float = 3.0
     rearm_after_s: float | None = None
     for_strangers: bool = True
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         speakers = (unit, unit.tracker) if unit.tracker is not None else (unit,)

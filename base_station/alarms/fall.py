@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from base_station.alarms.port import IMMEDIATE, Finding, Verdict
 from base_station.live_state import UnitState
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,6 +16,7 @@ class Fall:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.fall_ns is None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from base_station.thermal import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
+from shared.messages import Message, Temperature
 
 _PRIORITIES = {"caution": INFORMATION, "warning": SOON, "critical": IMMEDIATE}
 
@@ -26,6 +27,7 @@ class Heat:
     clear_after_s: float = 10.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = (Temperature,)
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.temperature is None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from base_station.alarms.port import IMMEDIATE, SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.messages import Message, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +23,7 @@ class NoMotion:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = 30.0
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = (Status,)
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None:

@@ -7,6 +7,7 @@ from typing import Protocol
 import msgspec
 
 from base_station.live_state import UnitState
+from shared.messages import Message
 
 IMMEDIATE, SOON, INFORMATION = 1, 2, 3  # priorities
 
@@ -60,6 +61,13 @@ class AlarmRule(Protocol):
     @property
     def for_strangers(self) -> bool:
         """Whether it judges units that nobody registered."""
+        ...
+
+    @property
+    def heeds(self) -> tuple[type[Message], ...]:
+        """Messages that come all the time and are judged as they come.  Besides, every rule
+        judges at every tick, and whenever something comes that does not come all the time.
+        """
         ...
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from base_station.alarms.port import INFORMATION, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +17,7 @@ class RestDue:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = 600.0
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         duty = unit.duty

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import LOST_AFTER_S, STALE_AFTER_S, UnitState
 from shared.clock import NS_PER_S
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +22,7 @@ class TrackerGone:
     clear_after_s: float = 3.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.heard_ns is None or unit.description is None:

@@ -17,7 +17,7 @@ from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
-from shared.messages import Position
+from shared.messages import Message, Position
 from shared.messages.station import RegisterUnit
 from tests.live_station import LiveStation, until
 from tests.station_script import Script
@@ -97,6 +97,7 @@ class FailsFor:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
         if unit.unit_id == self.unit_id:

@@ -12,7 +12,7 @@ from base_station.events import Refused
 from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
-from shared.messages import AlarmState, EventKind, UnitEvent
+from shared.messages import AlarmState, EventKind, Message, Position, Status, UnitEvent
 from shared.messages.station import (
     AcknowledgeAlarm,
     RegisterUnit,
@@ -224,6 +224,7 @@ class Broken:
     clear_after_s: float = 0.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
         raise ZeroDivisionError("nothing to divide")
@@ -236,3 +237,34 @@ def test_a_failing_rule_is_reported_and_the_others_go_on() -> None:
     assert [a.rule for a in script.alarms] == ["station", "mayday"]
     assert "'broken'" in script.alarms[0].text
     assert "ZeroDivisionError" in script.alarms[0].text
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Keeps nothing of itself: it notes in a list when it was asked."""
+
+    asked: list[int]
+    name: str = "asked"
+    levels: tuple[str, ...] = ("x",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
+        self.asked.append(t_ns)
+        return None
+
+
+@pytest.mark.parametrize(("heeds", "times"), [((), 0), ((Status,), 1), ((Position,), 0)])
+def test_a_rule_looks_at_what_comes_all_the_time_only_where_it_heeds_it(
+    heeds: tuple[type[Message], ...], times: int
+) -> None:
+    rule = Asked([], heeds=heeds)
+    script = Script(StationPipeline((rule,), FUSERS[0]))
+    script.register(U)
+    rule.asked.clear()
+    script.status(U)
+    assert len(rule.asked) == times
+    script.event(U, EventKind.FALL)
+    assert len(rule.asked) == times + 1
