@@ -15,6 +15,7 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
+from base_station import collector
 from base_station.bench.bus import Latency, latency_of
 from base_station.bench.console import Console, latencies_ms
 from base_station.bench.station import Membership, PlainTcp, StationProcess, station_process
@@ -72,6 +73,7 @@ def bench_backfill(
 def measure(
     backlog: int, units: int, seconds: float, progress: Progress, *, plain: bool = False
 ) -> BackfillReport:
+    collector.relax()  # units, journal and console share this process, as no station's do
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
         names = unit_names(units)
         members = Membership(Path(folder), [*names, _BACKLOG_UNIT], plain=plain)
