@@ -117,7 +117,7 @@ class HeightFilter:
         self._air_t_mono_ns = air.t_mono_ns
         wander_m = kind.air_m_per_sqrt_s if air.referenced else kind.weather_m_per_sqrt_s
         kernels.feel_air(
-            self._filter.x[:, 0],
+            self._filter.x,
             self._filter.P,
             air.down_m,
             wander_m**2 * since_s,

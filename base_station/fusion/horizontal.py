@@ -85,7 +85,7 @@ class HorizontalFilter:
     def placed_before(self, north_m: float, east_m: float) -> Placed:
         """Place before this much of own path was walked, and turn, as it looks now."""
         now = self._current()
-        return kernels.placed_before(now.x[:, 0], now.P, north_m, east_m)
+        return Placed(*kernels.placed_before(now.x, now.P, north_m, east_m))
 
     def adopt(self, mean: Floats, covariance: Floats) -> None:
         """Go on from what another filter of the same state came to."""
@@ -159,7 +159,7 @@ class HorizontalFilter:
             self._bank.walk(north_m, east_m, place_var_m2, turn_var)
             self._stale = True
             return
-        mean, covariance = self._filter.x[:, 0], self._filter.P
+        mean, covariance = self._filter.x, self._filter.P
         drift_var = self._wander_var * moving_s
         kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
 

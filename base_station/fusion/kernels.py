@@ -2,7 +2,7 @@
 
 The filters are ``filterpy``'s, and whatever is fused into the path (fixes, their heights, storeys)
 goes through its update.  What happens five times a second a unit is done here, in place, on the
-arrays of those filters: ``mean`` (n,) and ``covariance`` (n, n).  Each of these equals filterpy's
+arrays of those filters: ``mean`` (n, 1) and ``covariance`` (n, n).  Each of these equals filterpy's
 ``predict`` or ``update`` with the matrices that its text names.
 
 The types stand with the functions, so that nothing is ever compiled while the station is live: it
@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.core.types import NamedUniTuple, float64, void
+from numba.core.types import UniTuple, float64, void
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -50,8 +50,8 @@ class Placed(NamedTuple):
         )
 
 
-_VECTOR, _MATRIX = float64[:], float64[:, :]
-_PLACED = NamedUniTuple(float64, len(Placed._fields), Placed)  # type: ignore[no-untyped-call]
+_VECTOR, _MATRIX = float64[:], float64[:, :]  # of any layout: filterpy makes new ones
+_PLACED = UniTuple(float64, len(Placed._fields))  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 
@@ -65,7 +65,7 @@ def _between(one: Floats, covariance: Floats, other: Floats) -> float:
     return total
 
 
-@_compiled(void(_VECTOR, _MATRIX, float64, float64, float64, float64, float64, float64))
+@_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64, float64, float64))
 def walk(
     mean: Floats,
     covariance: Floats,
@@ -86,10 +86,10 @@ def walk(
 
     and the noise is that of the place, of the turn across ``(c, s)``, and of the drift rate.
     """
-    drifted_rad = mean[_DRIFT] * moving_s
+    drifted_rad = mean[_DRIFT, 0] * moving_s
     cosine, sine = math.cos(drifted_rad), math.sin(drifted_rad)
-    c = cosine * mean[2] - sine * mean[3]
-    s = sine * mean[2] + cosine * mean[3]
+    c = cosine * mean[2, 0] - sine * mean[3, 0]
+    s = sine * mean[2, 0] + cosine * mean[3, 0]
     by_drift_c, by_drift_s = -s * moving_s, c * moving_s
     for column in range(7):
         of_c, of_s, of_drift = covariance[2, column], covariance[3, column], covariance[6, column]
@@ -110,12 +110,12 @@ def walk(
     covariance[2, 3] -= turn_var * c * s
     covariance[3, 2] -= turn_var * c * s
     covariance[6, 6] += drift_var
-    mean[0] += c * north_m - s * east_m
-    mean[1] += s * north_m + c * east_m
-    mean[2], mean[3] = c, s
+    mean[0, 0] += c * north_m - s * east_m
+    mean[1, 0] += s * north_m + c * east_m
+    mean[2, 0], mean[3, 0] = c, s
 
 
-@_compiled(void(_VECTOR, _MATRIX, float64, float64, float64, float64))
+@_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64))
 def feel_air(
     mean: Floats,
     covariance: Floats,
@@ -130,7 +130,7 @@ def feel_air(
     ``gate2`` (squared standard deviations) is a step of pressure and widens the shift first.
     """
     covariance[2, 2] += wander_m2
-    innovation_m = down_m - mean[0] - mean[2]
+    innovation_m = down_m - mean[0, 0] - mean[2, 0]
     spread_m2 = covariance[0, 0] + covariance[0, 2] + covariance[2, 0] + covariance[2, 2] + noise_m2
     if innovation_m * innovation_m > gate2 * spread_m2:
         covariance[2, 2] += innovation_m * innovation_m
@@ -138,7 +138,7 @@ def feel_air(
     gain = np.empty(3)
     for i in range(3):
         gain[i] = (covariance[i, 0] + covariance[i, 2]) / spread_m2
-        mean[i] += gain[i] * innovation_m
+        mean[i, 0] += gain[i] * innovation_m
     for column in range(3):  # (1 - K H) P
         seen = covariance[0, column] + covariance[2, column]
         for i in range(3):
@@ -149,12 +149,14 @@ def feel_air(
             covariance[row, j] += gain[j] * (noise_m2 * gain[row] - seen)
 
 
-@_compiled(_PLACED(_VECTOR, _MATRIX, float64, float64))
-def placed_before(mean: Floats, covariance: Floats, north_m: float, east_m: float) -> Placed:
-    """What a state of ``HorizontalFilter`` says of the place before this much of own path was
-    walked, which is ``[1, 0, -dn, de, 0, 0, 0]`` and ``[0, 1, -de, -dn, 0, 0, 0]`` of it.
+@_compiled(_PLACED(_MATRIX, _MATRIX, float64, float64))
+def placed_before(
+    mean: Floats, covariance: Floats, north_m: float, east_m: float
+) -> tuple[float, ...]:
+    """What ``Placed`` holds, by a state of ``HorizontalFilter``.  The place is that before so much
+    of own path was walked: ``[1, 0, -dn, de, 0, 0, 0]`` and ``[0, 1, -de, -dn, 0, 0, 0]`` of it.
     """
-    c, s = mean[2], mean[3]
+    c, s = mean[2, 0], mean[3, 0]
     north = np.array([1.0, 0.0, -north_m, east_m])
     east = np.array([0.0, 1.0, -east_m, -north_m])
     across = np.array([0.0, 0.0, -s, c])
@@ -167,9 +169,9 @@ def placed_before(mean: Floats, covariance: Floats, north_m: float, east_m: floa
         turn_rad = math.atan2(s, c)
         turn_var = max(_between(across, covariance, across), 0.0) / (scale2 * scale2)
         turn_std_rad = min(math.sqrt(turn_var), math.pi)
-    return Placed(
-        mean[0] - c * north_m + s * east_m,
-        mean[1] - s * north_m - c * east_m,
+    return (
+        mean[0, 0] - c * north_m + s * east_m,
+        mean[1, 0] - s * north_m - c * east_m,
         std_north_m,
         std_east_m,
         _between(north, covariance, east) / product if product > 0.0 else 0.0,

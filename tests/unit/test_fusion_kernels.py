@@ -10,6 +10,7 @@ from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
+from base_station.fusion.kernels import Placed
 
 Floats = NDArray[np.float64]
 
@@ -27,10 +28,14 @@ def filter_of(states: int, seed: int) -> KalmanFilter:
     return found
 
 
+def placed_before(mean: Floats, covariance: Floats, north_m: float, east_m: float) -> Placed:
+    return Placed(*kernels.placed_before(mean, covariance, north_m, east_m))
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
     expected = filter_of(7, seed)
-    mean, covariance = expected.x[:, 0].copy(), expected.P.copy()
+    mean, covariance = expected.x.copy(), expected.P.copy()
     north_m, east_m, moving_s, place_var_m2, turn_var, drift_var = 0.7, -0.4, 0.5, 0.02, 0.03, 0.04
     drifted_rad = float(expected.x[6, 0]) * moving_s
     a, b = math.cos(drifted_rad), math.sin(drifted_rad)
@@ -51,23 +56,28 @@ def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
 
     same(covariance, expected.P)
     moved = (c * north_m - s * east_m, s * north_m + c * east_m)
-    same(mean[:2] - filter_of(7, seed).x[:2, 0], moved)
-    same(mean[2:4], (c, s))
+    same(mean[:2, 0] - filter_of(7, seed).x[:2, 0], moved)
+    same(mean[2:4, 0], (c, s))
 
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("step_m", [0.0, 40.0], ids=["steady", "a step of pressure"])
 def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
     expected = filter_of(3, seed)
-    mean, covariance = expected.x[:, 0].copy(), expected.P.copy()
-    down_m, wander_m2, noise_m2, gate2 = float(mean[0] + mean[2]) + 0.1 + step_m, 0.01, 0.09, 9.0
+    mean, covariance = expected.x.copy(), expected.P.copy()
+    down_m, wander_m2, noise_m2, gate2 = (
+        float(mean[0, 0] + mean[2, 0]) + 0.1 + step_m,
+        0.01,
+        0.09,
+        9.0,
+    )
     expected.P[2, 2] += wander_m2 + ((0.1 + step_m) ** 2 if step_m else 0.0)
 
     kernels.feel_air(mean, covariance, down_m, wander_m2, noise_m2, gate2)
     observe = np.array([[1.0, 0.0, 1.0]])
     expected.update(np.array([[down_m]]), R=np.array([[noise_m2]]), H=observe)
 
-    same(mean, expected.x[:, 0])
+    same(mean, expected.x)
     same(covariance, expected.P)
 
 
@@ -78,7 +88,7 @@ def test_the_place_before_is_the_present_one_less_the_path() -> None:
     back[:, :2], back[:, 2:4] = np.eye(2), [[-north_m, east_m], [-east_m, -north_m]]
     place, spread = back @ now.x[:, 0], back @ now.P @ back.T
 
-    placed = kernels.placed_before(now.x[:, 0], now.P, north_m, east_m)
+    placed = placed_before(now.x, now.P, north_m, east_m)
 
     same((placed.north_m, placed.east_m), place)
     stds = np.array([placed.std_north_m, placed.std_east_m])
@@ -88,20 +98,20 @@ def test_the_place_before_is_the_present_one_less_the_path() -> None:
 
 
 def test_a_state_without_a_direction_has_no_turn() -> None:
-    placed = kernels.placed_before(np.zeros(7), np.eye(7), 0.0, 0.0)
+    placed = placed_before(np.zeros((7, 1)), np.eye(7), 0.0, 0.0)
     assert (placed.turn_rad, placed.turn_std_rad) == (0.0, math.pi)
 
 
 def test_a_place_is_less_sure_by_what_is_added() -> None:
-    placed = kernels.placed_before(np.array([0.0, 0, 1, 0, 0, 0, 0]), 9.0 * np.eye(7), 0.0, 0.0)
+    placed = placed_before(np.eye(7)[:, 2:3], 9.0 * np.eye(7), 0.0, 0.0)
     assert placed.widened(16.0).std_north_m == pytest.approx(5.0)
 
 
 def test_arrays_of_any_layout_will_do() -> None:
     """``filterpy`` makes new ones, and nothing must be compiled while the station is live."""
     one, other = filter_of(7, 2), filter_of(7, 2)
-    kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
-    kernels.walk(other.x[:, 0], np.asfortranarray(other.P), 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+    kernels.walk(one.x, one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+    kernels.walk(other.x, np.asfortranarray(other.P), 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
     assert np.array_equal(one.x, other.x)
     with pytest.raises(TypeError):
-        kernels.walk(one.x, one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+        kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
