@@ -47,26 +47,11 @@ class BootState(msgspec.Struct):
     def station_ns(self, t_mono_ns: int) -> int:
         return t_mono_ns + self.offset_ns
 
-    def note_clock(self, t_ns: int, header: Header) -> None:
-        """The least delayed message bounds the offset, which may drift by what clocks do; within
-        that bound the unit's own estimate is better.
+    def note(self, t_ns: int, header: Header) -> bool:
+        """Judge the clock by a message, and say whether it is of now, neither held up nor said
+        again: its unit is there.
         """
-        offset_ns = t_ns - header.t_mono_ns
-        drifted_ns = self._drifted_ns(t_ns)
-        self.late = self.late + 1 if offset_ns > drifted_ns + CLOCK_SET_NS else 0
-        was_set = self.late >= CLOCK_SET_MESSAGES
-        if not self.is_placed or offset_ns < drifted_ns or was_set:
-            self.fastest_ns, self.fastest_t_ns, self.late = offset_ns, t_ns, 0
-        self.clock_std_s = header.utc_std_s
-        said_ns = header.t_utc_ns - header.t_mono_ns
-        slack_ns = SAID_SLACK_NS + round(3.0 * header.utc_std_s * NS_PER_S)
-        slower_ns = self._drifted_ns(t_ns) - said_ns
-        usable = header.utc_std_s > 0.0 and -slack_ns <= slower_ns <= SLOWEST_NS
-        self.said_ns = said_ns if usable else None
-
-    def note_there(self, t_ns: int, header: Header) -> bool:
-        """Whether a message is of now, neither held up nor said again: its unit is there."""
-        slower_ns = t_ns - header.t_mono_ns - self._drifted_ns(t_ns)
+        slower_ns = t_ns - header.t_mono_ns - self._bound_clock(t_ns, header)
         if slower_ns > PROMPT_NS:
             return False
         if header.utc_std_s > 0.0 and abs(t_ns - header.t_utc_ns) > BACKDATED_NS:
@@ -77,11 +62,26 @@ class BootState(msgspec.Struct):
         self.there_to_ns = max(self.there_to_ns, captured_ns)
         return True
 
+    def _bound_clock(self, t_ns: int, header: Header) -> int:
+        """The least delayed message bounds the offset, which may drift by what clocks do; within
+        that bound the unit's own estimate is better.  Gives the bound of now.
+        """
+        offset_ns = t_ns - header.t_mono_ns
+        drifted_ns = self.fastest_ns + round((t_ns - self.fastest_t_ns) * CLOCK_DRIFT)
+        self.late = self.late + 1 if offset_ns > drifted_ns + CLOCK_SET_NS else 0
+        was_set = self.late >= CLOCK_SET_MESSAGES
+        if not self.is_placed or offset_ns < drifted_ns or was_set:
+            self.fastest_ns, self.fastest_t_ns, self.late = offset_ns, t_ns, 0
+            drifted_ns = offset_ns
+        self.clock_std_s = header.utc_std_s
+        said_ns = header.t_utc_ns - header.t_mono_ns
+        slack_ns = SAID_SLACK_NS + round(3.0 * header.utc_std_s * NS_PER_S)
+        usable = header.utc_std_s > 0.0 and -slack_ns <= drifted_ns - said_ns <= SLOWEST_NS
+        self.said_ns = said_ns if usable else None
+        return drifted_ns
+
     def together_ns(self, other: BootState) -> int:
         """How long both were there at once; not positive: one after the other."""
         return min(self.there_to_ns, other.there_to_ns) - max(
             self.there_from_ns, other.there_from_ns
         )
-
-    def _drifted_ns(self, t_ns: int) -> int:
-        return self.fastest_ns + round((t_ns - self.fastest_t_ns) * CLOCK_DRIFT)

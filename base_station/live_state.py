@@ -15,6 +15,7 @@ from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
+from base_station.fusion.sky import Sky
 from base_station.fusion.weather import Barometers
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.site.plan import Plan, Ring
@@ -175,10 +176,9 @@ class UnitState(msgspec.Struct):
             return "repeat"
         self.heard_ns = t_ns
         if channel is not GPS:  # a receiver may be wrong about when its fix was valid
-            boot.note_clock(t_ns, header)
             running = self.boots[-1]
             silent = t_ns - running.there_to_ns >= STALE_AFTER_S * NS_PER_S
-            if boot.note_there(t_ns, header) and boot is not running and silent:
+            if boot.note(t_ns, header) and boot is not running and silent:
                 self._let_run(boot)
         latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
         if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
@@ -333,6 +333,7 @@ class StationState(msgspec.Struct):
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    sky: Sky = msgspec.field(default_factory=Sky)
     barometers: Barometers = msgspec.field(default_factory=Barometers)
     start_set: bool = False  # somebody said where a unit began
     paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units

@@ -73,13 +73,13 @@ def decode(channel: Channel, payload: bytes) -> Message:
     Raises WireError when the bytes are no such message, UnknownSchemaError when a newer
     program wrote them.
     """
-    wire: Any = WIRE_TYPES[channel.message]()
     try:
-        wire.ParseFromString(payload)
+        wire: Any = WIRE_TYPES[channel.message].FromString(payload)
     except DecodeError as error:
         raise WireError(f"{len(payload)} bytes are no {channel.name} message: {error}") from error
-    schema = wire.header.schema
-    if schema == 0 or not wire.header.unit_id:
+    header = wire.header
+    schema = header.schema
+    if schema == 0 or not header.unit_id:
         raise WireError(f"{len(payload)} bytes are no {channel.name} message: no header")
     if schema > SCHEMA_REVISION:
         raise UnknownSchemaError(

@@ -48,12 +48,12 @@ class Anchor:
     ) -> tuple[float, float, float]:
         """Latitude and longitude in degrees, height above the ellipsoid in metres."""
         north_m, east_m = rotate(north_m, east_m, self.rotation_rad)
-        origin_m, axes = _frame_at(self.lat_deg, self.lon_deg, self.height_m)
-        x_m, y_m, z_m = (
-            at_m + to_north * north_m + to_east * east_m + to_down * down_m
-            for at_m, (to_north, to_east, to_down) in zip(origin_m, axes, strict=True)
+        (x0_m, y0_m, z0_m), (x, y, z) = _frame_at(self.lat_deg, self.lon_deg, self.height_m)
+        return _geodetic_of(
+            x0_m + x[0] * north_m + x[1] * east_m + x[2] * down_m,
+            y0_m + y[0] * north_m + y[1] * east_m + y[2] * down_m,
+            z0_m + z[0] * north_m + z[1] * east_m + z[2] * down_m,
         )
-        return _geodetic_of(x_m, y_m, z_m)
 
 
 _Triple = tuple[float, float, float]

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -63,7 +62,7 @@ def _location(fused: FusedPosition, anchor: Anchor) -> LocationFix:
         latitude=lat_deg,
         longitude=lon_deg,
         altitude=height_m,
-        position_covariance=_covariance_enu_m2(fused, anchor.rotation_rad).ravel().tolist(),
+        position_covariance=_covariance_enu_m2(fused, anchor.rotation_rad),
         position_covariance_type=LocationFix.KNOWN,
     )
     if fused.heading_std_rad < math.pi:
@@ -71,19 +70,17 @@ def _location(fused: FusedPosition, anchor: Anchor) -> LocationFix:
     return fix
 
 
-def _covariance_enu_m2(fused: FusedPosition, rotation_rad: float) -> np.ndarray:
-    """3 x 3, true east, true north, up."""
+def _covariance_enu_m2(fused: FusedPosition, rotation_rad: float) -> tuple[float, ...]:
+    """3 x 3 by rows, true east, true north, up."""
     sine, cosine = math.sin(rotation_rad), math.cos(rotation_rad)
+    north_m2, east_m2 = fused.std_north_m**2, fused.std_east_m**2
     mixed_m2 = fused.correlation_ne * fused.std_north_m * fused.std_east_m
-    of_frame = np.array(
-        [
-            [fused.std_north_m**2, mixed_m2, 0.0],
-            [mixed_m2, fused.std_east_m**2, 0.0],
-            [0.0, 0.0, fused.std_down_m**2],
-        ]
-    )
-    rotation_enu_frame = np.array([[sine, cosine, 0.0], [cosine, -sine, 0.0], [0.0, 0.0, -1.0]])
-    return np.asarray(rotation_enu_frame @ of_frame @ rotation_enu_frame.T)
+    turned_m2 = 2.0 * sine * cosine * mixed_m2
+    true_east_m2 = sine * sine * north_m2 + cosine * cosine * east_m2 + turned_m2
+    true_north_m2 = cosine * cosine * north_m2 + sine * sine * east_m2 - turned_m2
+    true_mixed_m2 = sine * cosine * (north_m2 - east_m2) + (cosine**2 - sine**2) * mixed_m2
+    up_m2 = fused.std_down_m**2
+    return (true_east_m2, true_mixed_m2, 0.0, true_mixed_m2, true_north_m2, 0.0, 0.0, 0.0, up_m2)
 
 
 def _timestamp(t_ns: int) -> Timestamp:

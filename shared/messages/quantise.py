@@ -13,7 +13,10 @@ _UNSIGNED_MOST = 2**32 - 1
 
 def signed32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a sint32; NaN is a caller's mistake and raises ValueError."""
-    number = _rounded(value * scale)
+    try:
+        number = round(value * scale)
+    except OverflowError:  # infinite
+        return _SIGNED_MOST if value > 0.0 else -_SIGNED_MOST
     if -_SIGNED_MOST <= number <= _SIGNED_MOST:
         return number
     return _SIGNED_MOST if number > 0 else -_SIGNED_MOST
@@ -21,7 +24,10 @@ def signed32(value: float, scale: float) -> int:
 
 def unsigned32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a uint32; negative becomes 0."""
-    number = _rounded(value * scale)
+    try:
+        number = round(value * scale)
+    except OverflowError:  # infinite
+        return _UNSIGNED_MOST if value > 0.0 else 0
     if 0 <= number <= _UNSIGNED_MOST:
         return number
     return _UNSIGNED_MOST if number > 0 else 0
@@ -34,7 +40,7 @@ def unsigned_known(value: float, scale: float) -> int:
 
 def heading_to_cdeg(heading_rad: float) -> int:
     """Any heading into 0..35999 hundredths of a degree."""
-    return _rounded(math.fmod(heading_rad, _TWO_PI) * _CDEG_PER_RAD) % 36_000
+    return round(math.fmod(heading_rad, _TWO_PI) * _CDEG_PER_RAD) % 36_000
 
 
 def cdeg_to_heading(cdeg: int) -> float:
@@ -49,10 +55,3 @@ def angle_std_to_cdeg(std_rad: float) -> int:
 def angle_std_known_to_cdeg(std_rad: float) -> int:
     """The same where 0 says that there is no such angle: what is known is at least 1."""
     return max(angle_std_to_cdeg(std_rad), 1)
-
-
-def _rounded(value: float) -> int:
-    try:
-        return round(value)
-    except OverflowError:  # infinite
-        return 2**62 if value > 0.0 else -(2**62)
