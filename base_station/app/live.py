@@ -17,36 +17,27 @@ from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.services import Services
+from base_station.app.disk import Disk, open_disk
 from base_station.app.folder import rebuild
 from base_station.app.parts import (
     Announce,
     announce_first_login,
     new_pipeline,
-    project_whole_log,
     replay_starter,
 )
 from base_station.clock_server import ClockServer
 from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
-from base_station.db.accounts import Accounts
 from base_station.db.kept import KeptTables
-from base_station.db.projection import SqlProjection
-from base_station.db.records import Records
-from base_station.db.roster import Roster
-from base_station.db.smoothed import SmoothedTracks
-from base_station.db.store import Store
 from base_station.drive import StationDrive
-from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.feed import LiveFeed, LogFeed
 from base_station.forgetting.forgetter import Forgetter
-from base_station.fusion.smoother import SMOOTHERS
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
+from base_station.live.sinks import OperatorGate
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
-from base_station.past.checkpoints import Checkpoints
-from base_station.past.hindsight import Hindsight
-from base_station.past.playback import Archive
 from base_station.pki.expiry import ExpiryWatch
 from base_station.pki.folder import PkiFolder
 from base_station.pki.members import EnrolledUnits
@@ -98,13 +89,8 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         )
         closing.callback(recorder.close)
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-        store = _open_store(folder, recorder, announce, closing)
-        accounts, records = Accounts(store, clock), Records(store, clock)
-        roster, hub = Roster(store, clock), Hub()
-        projection = SqlProjection(store)
-        closing.callback(projection.close)
-        steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
-        feed = LiveFeed(steady)
+        disk = open_disk(folder, recorder, clock, announce, closing)
+        steady, hub, feed = disk.clock, Hub(), LiveFeed(disk.clock)
         router = RouterProcess(folder.path, config.bus.listen, config.standby.peer)
         closing.callback(router.close)
         bus = ZenohBus(joining)
@@ -116,26 +102,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             server.stop()
 
         pki = PkiFolder(folder.path)
-        side = _side(
-            config,
-            Parts(
-                data=folder.path,
-                bus=bus,
-                log=recorder,
-                disk=LogFeed(folder.log, recorder.flush),
-                live=feed,
-                clock=steady,
-                tables=KeptTables(store),
-                records=records,
-                pki=pki,
-                on_people=roster.read_again,
-                on_lead=lambda: announce_first_login(accounts, folder.first_login, announce),
-                start_again=start_again,
-                forget=lambda what: _forget_too(
-                    Forgetter(recorder, store, checkpoints, records, steady), what
-                ),
-            ),
-        )
+        side = _side(config, _parts(disk, bus, feed, pki, announce, start_again))
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
         recordings = _beside_messages(bus, folder, steady, side, closing)
         backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
@@ -145,17 +112,16 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             side.note_report()
             backfill.report(held)
 
-        checkpoints = Checkpoints(folder.checkpoints)
         expiry = ExpiryWatch(pki, clock)
         drive = _start_drive(
-            LogFeed(folder.log, recorder.flush),
+            disk.log,
             Surroundings(
                 feed=side.feed,
                 log=side.log,
                 live=hub,
-                projection=projection,
-                checkpoints=checkpoints,
-                photo_urls=roster.photo_url,
+                projection=disk.projection,
+                checkpoints=disk.checkpoints,
+                photo_urls=disk.roster.photo_url,
                 facts=lambda: msgspec.structs.replace(
                     _facts(config, recorder, feed, router, expiry, side),
                     recordings=recordings.views(),
@@ -172,31 +138,14 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         beside = closing.enter_context(ExitStack())  # ends behind the drive: the other gets all
         closing.callback(drive.stop)
         closing.callback(hearing.close)  # first: what still comes is stepped before the end
-        backfill.start()
-        closing.callback(backfill.close)
-        downlink.start()
-        closing.callback(downlink.close)
+        for thread in (backfill, downlink):
+            thread.start()
+            closing.callback(thread.close)
         closing.callback(side.feed.close)
-        archive = Archive(LogFeed(folder.log, recorder.flush).records, checkpoints, new_pipeline)
-        services = Services(
-            accounts=accounts,
-            roster=roster,
-            records=records,
-            hub=hub,
-            gate=gate,
-            settle=projection.flush,
-            replays=Replays(replay_starter(archive, roster, steady)),
-            forgetter=Forgetter(recorder, store, checkpoints, records, steady, drive.submit),
-            clock=steady,
-            secure=config.http.certificate is not None,
-            standing=side.standing,
-            recordings=recordings,
-            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), steady),
-            accountability=config.accountability,
-        )
+        services = _services(config, disk, hub, gate, drive, side, recordings)
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
         keep_house = _housekeeping(
-            recorder, services, EnrolledUnits(pki, gate, roster.registered_units), side
+            recorder, services, EnrolledUnits(pki, gate, disk.roster.registered_units), side
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
@@ -204,15 +153,57 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         return again[0] if again else None
 
 
-def _open_store(
-    folder: DataFolder, recorder: Recorder, announce: Announce, closing: ExitStack
-) -> Store:
-    is_new = not folder.database.exists()
-    store = closing.enter_context(Store(folder.database))
-    if is_new and recorder.segments():
-        announce("the database is new; it is made again from the log")
-        project_whole_log(store, folder.log, lambda _: None)
-    return store
+def _parts(
+    disk: Disk,
+    bus: ZenohBus,
+    feed: LiveFeed,
+    pki: PkiFolder,
+    announce: Announce,
+    start_again: Callable[[Place | None], None],
+) -> Parts:
+    """What a station has, however it stands to another one."""
+    return Parts(
+        data=disk.folder.path,
+        bus=bus,
+        log=disk.recorder,
+        disk=disk.log,
+        live=feed,
+        clock=disk.clock,
+        tables=KeptTables(disk.store),
+        records=disk.records,
+        pki=pki,
+        on_people=disk.roster.read_again,
+        on_lead=lambda: announce_first_login(disk.accounts, disk.folder.first_login, announce),
+        start_again=start_again,
+        forget=lambda what: _forget_too(disk.forgetter(), what),
+    )
+
+
+def _services(
+    config: StationConfig,
+    disk: Disk,
+    hub: Hub,
+    gate: OperatorGate,
+    drive: StationDrive,
+    side: Side,
+    recordings: RecordingDesk,
+) -> Services:
+    return Services(
+        accounts=disk.accounts,
+        roster=disk.roster,
+        records=disk.records,
+        hub=hub,
+        gate=gate,
+        settle=disk.projection.flush,
+        replays=Replays(replay_starter(disk.archive, disk.roster, disk.clock)),
+        forgetter=disk.forgetter(drive.submit),
+        clock=disk.clock,
+        secure=config.http.certificate is not None,
+        standing=side.standing,
+        recordings=recordings,
+        hindsight=disk.hindsight(),
+        accountability=config.accountability,
+    )
 
 
 def _housekeeping(

@@ -1,0 +1,80 @@
+"""What a live station keeps on its disk: the log, the database, and what is made from both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from base_station.app.parts import Announce, new_pipeline, project_whole_log
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Accounts
+from base_station.db.projection import SqlProjection
+from base_station.db.records import Records
+from base_station.db.roster import Roster
+from base_station.db.smoothed import SmoothedTracks
+from base_station.db.store import Store
+from base_station.feed import LogFeed, SteadyClock
+from base_station.forgetting.forgetter import Forgetter
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.playback import Archive
+from base_station.recorder import Recorder
+from shared.clock import Clock
+from shared.messages.station import Action
+
+
+@dataclass(frozen=True)
+class Disk:
+    folder: DataFolder
+    recorder: Recorder
+    store: Store
+    accounts: Accounts
+    records: Records
+    roster: Roster
+    projection: SqlProjection
+    checkpoints: Checkpoints
+    clock: SteadyClock  # station time, behind all that is in the log
+
+    @property
+    def log(self) -> LogFeed:
+        """What is written up to the moment of reading."""
+        return LogFeed(self.folder.log, self.recorder.flush)
+
+    @property
+    def archive(self) -> Archive:
+        return Archive(self.log.records, self.checkpoints, new_pipeline)
+
+    def hindsight(self) -> Hindsight:
+        return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
+
+    def forgetter(
+        self, act: Callable[[str, Action], object] = lambda _by, _action: None
+    ) -> Forgetter:
+        """``act`` has the running station forget what it holds in memory."""
+        return Forgetter(self.recorder, self.store, self.checkpoints, self.records, self.clock, act)
+
+
+def open_disk(
+    folder: DataFolder, recorder: Recorder, clock: Clock, announce: Announce, closing: ExitStack
+) -> Disk:
+    """The database is made from the log where there is none."""
+    is_new = not folder.database.exists()
+    store = closing.enter_context(Store(folder.database))
+    if is_new and recorder.segments():
+        announce("the database is new; it is made again from the log")
+        project_whole_log(store, folder.log, lambda _: None)
+    projection = SqlProjection(store)
+    closing.callback(projection.close)
+    return Disk(
+        folder=folder,
+        recorder=recorder,
+        store=store,
+        accounts=Accounts(store, clock),
+        records=Records(store, clock),
+        roster=Roster(store, clock),
+        projection=projection,
+        checkpoints=Checkpoints(folder.checkpoints),
+        clock=SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0)),
+    )
