@@ -14,6 +14,7 @@ from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import PinsTouched
 from base_station.fusion.port import Start
+from base_station.fusion.sky import Sky
 from base_station.live_state import Alarm, Person, StationState, UnitState
 from base_station.pins import book as pin_book
 from base_station.pins.book import PinAction, change_pins
@@ -95,6 +96,7 @@ class Actions:
             _require_finite(action.down_m)
             unit_id = _registered(state, action.unit_id).unit_id if action.unit_id else None
             state.barometers.refer_to(unit_id, action.down_m)
+            state.sky = Sky()
         else:
             state.plan = read_plan(action.geojson)
             self._positioning.consider(state.plan)

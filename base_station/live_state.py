@@ -15,6 +15,7 @@ from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
+from base_station.fusion.sky import Sky
 from base_station.fusion.weather import Barometers
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.site.plan import Plan, Ring
@@ -332,6 +333,7 @@ class StationState(msgspec.Struct):
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    sky: Sky = msgspec.field(default_factory=Sky)
     barometers: Barometers = msgspec.field(default_factory=Barometers)
     start_set: bool = False  # somebody said where a unit began
     paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units

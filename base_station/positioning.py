@@ -12,8 +12,9 @@ import msgspec
 
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
-from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, Start
+from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
+from base_station.fusion.sky import Sky
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
 from base_station.pins.book import has_pins, reframe_pins
@@ -29,6 +30,7 @@ from shared.quality import Quality
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
 OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
+STAYS_M = 5.0  # walked by what stays where it is: nobody carries it about
 WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
 
 
@@ -119,6 +121,8 @@ class Positioning:
 
     def start(self, state: StationState, unit: UnitState, start: Start) -> None:
         state.start_set = True
+        if unit.unit_id == state.barometers.reference_id:
+            state.sky = Sky()
         self._fuser(unit).start(start)
         state.paths.setdefault(unit.unit_id, PathHistory()).begin_with(start)
         self.solve_pins(state, [unit.unit_id])
@@ -139,7 +143,7 @@ class Positioning:
         if old is not None and state.anchor_by_gps:
             shift = anchor.to_incident_m(old.lat_deg, old.lon_deg, old.height_m)
             self._reframe(state, old.rotation_rad - anchor.rotation_rad, shift)
-        state.anchor, state.anchor_by_gps = anchor, False
+        state.anchor, state.anchor_by_gps, state.sky = anchor, False, Sky()
 
     def fused(self, state: StationState, unit: UnitState, header: Header) -> FusedPosition | None:
         """The unit's place as it is now; the live state, its trail included, follows it."""
@@ -226,6 +230,7 @@ class Positioning:
         place = in_incident_frame(_in_clock_of_path(unit, fix), state.anchor)
         if isinstance(place, FixVerdict):
             return place
+        place = _without_sky(state, unit, place)
         verdict = self._fuser(unit).correct(place)
         pinned = self._pinned.get(unit.unit_id)
         if pinned is not None:
@@ -267,6 +272,22 @@ class Positioning:
 def _moved(step: TrailStep, turn_rad: float, shift_m: tuple[float, float, float]) -> TrailStep:
     north_m, east_m = rotate(step.north_m, step.east_m, turn_rad)
     return msgspec.structs.replace(step, north_m=north_m + shift_m[0], east_m=east_m + shift_m[1])
+
+
+def _without_sky(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFix:
+    """The fix without what all receivers err by, as the unit tells that stays at the station and
+    whose place somebody has said.
+    """
+    t_ns = _station_ns(state, unit, fix.t_mono_ns)
+    if unit.unit_id != state.barometers.reference_id:
+        return state.sky.corrected(fix, t_ns)
+    history = state.paths.get(unit.unit_id)
+    start = None if history is None else history.start
+    walked_m = unit.position.distance_m if unit.position is not None else 0.0
+    if start is not None and walked_m < STAYS_M:
+        off_m = fix.north_m - start.north_m, fix.east_m - start.east_m
+        state.sky.note(t_ns, off_m, fix.horizontal_std_m, start.std_m)
+    return fix
 
 
 def _in_clock_of_path(unit: UnitState, fix: GpsFix) -> GpsFix:

@@ -1,8 +1,9 @@
 """``muster bench fusion``: how well the station knows where people are, beside simpler ways.
 
 Simulated incidents, each with a seed of its own: a building, six people, twenty minutes
-(``incident_building``, ``incident_people``, ``incident_sensors``).  The peers are given a heading
-that is right to some five degrees; the fuser has to find it.
+(``incident_building``, ``incident_people``, ``incident_sensors``).  All begin at the engine, whose
+place the commander has said and whose receiver the station hears; once nobody says so.  The peers
+are given a heading that is right to some five degrees; the fuser has to find it.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from base_station.bench import smoothing
 from base_station.bench.fusion_recorded import print_recorded
 from base_station.bench.incident_bound import bound_m2, draw_errors_m
 from base_station.bench.incident_people import PEOPLE
-from base_station.bench.incident_run import Person, Timing, draw_incident, fuse_all
+from base_station.bench.incident_run import Known, Person, Timing, draw_incident, fuse_all
 from base_station.bench.incident_scores import ERROR_STAGES, HELD_STAGES, FloorScores, Scores
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
@@ -34,7 +35,9 @@ Floats = NDArray[np.float64]
 
 PEER_HEADING_STD_RAD = math.radians(5.0)
 WITH_PLAN, WITHOUT = "with the plan", "without a plan"
-BOUND = "the best possible without a plan"
+UNTOLD = "without a plan, nor where the engine is"
+KNOWN = {WITH_PLAN: Known(plan=True), WITHOUT: Known(plan=False), UNTOLD: Known(False, False)}
+BOUND = "best by path and fixes, without a plan"
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +84,7 @@ def bench_fusion(
 
 
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
-    names = (WITH_PLAN, WITHOUT, BOUND, "fixes alone", "path alone", "switching")
+    names = (*KNOWN, BOUND, "fixes alone", "path alone", "switching")
     ways = {name: Scores() for name in names}
     timing, right = Timing(), FloorScores()
     afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
@@ -91,23 +94,21 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
     ):
         rng = np.random.default_rng(seed + number)
         people = draw_incident(rng)
-        shown_m: dict[str, list[Floats]] = {WITH_PLAN: [], WITHOUT: []}
-        kinds = {name: smoothing.RecordingKind(kind) for name in shown_m}
-        for name, recording in kinds.items():
-            runs = fuse_all(recording, people, timing, with_plan=name == WITH_PLAN)
+        kinds = {name: smoothing.RecordingKind(kind) for name in KNOWN}
+        for name, known in KNOWN.items():
+            runs = fuse_all(kinds[name], people, timing, known)
+            shown_m = [run.places_m for run in runs]
             for person, run in zip(people, runs, strict=True):
-                shown_m[name].append(run.places_m)
                 ways[name].note(person.truth, run.places_m, run.normalised2)
-                if name == WITH_PLAN:
+                if known.plan:
                     right.note(person.truth, person.building, run.floors, run.surenesses)
                 else:
                     walked_m.append(run.heading_walked_m)
+            truths = [person.truth for person in people]
+            afterwards.note(name, truths, shown_m, kinds[name].histories, rng)
         for person in people:
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
-        for name, recording in kinds.items():
-            truths = [person.truth for person in people]
-            afterwards.note(name, truths, shown_m[name], recording.histories, rng)
     return FusionReport(
         fuser=kind.name,
         incidents=incidents,
@@ -115,8 +116,7 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
         ce95_m={name: _percentiles(way, 95.0) for name, way in ways.items()},
         seam_95_m={name: float(np.percentile(way.seams_m, 95.0)) for name, way in ways.items()},
         held_95={
-            name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES}
-            for name in (WITH_PLAN, WITHOUT)
+            name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES} for name in KNOWN
         },
         floor_right=right.part_right(),
         floor_stated=right.part_stated(),
@@ -149,7 +149,7 @@ def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
         alone[row] = last
         switching[row] = last + path_m[row] - last_path_m
     begin = truth.place_m[0, :2] - path_m[0]
-    best_m = draw_errors_m(rng, bound_m2(truth, person.fixes, person.building))
+    best_m = draw_errors_m(rng, bound_m2(truth, person.fixes, person.engine_fixes, person.building))
     return {
         BOUND: truth.place_m[:, :2] + best_m,
         "fixes alone": alone,

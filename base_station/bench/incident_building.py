@@ -1,7 +1,7 @@
 """A four-storey steel building that a seed draws: rooms on both sides of a corridor, one stairwell
-and one way in.
+or two, and one way in.
 
-All floors have the stairwell at the same place; the other partitions differ.  North and east in
+All floors have the stairwells at the same places; the other partitions differ.  North and east in
 metres; the south wall lies on north 0 and the west wall on east 0.  The plan that is loaded is not
 the building: it lies some decimetres aside, and some doors were made after it was drawn.
 """
@@ -19,6 +19,7 @@ STOREYS = 4
 CORRIDOR_M = 2.0
 DOOR_M = 1.0
 STAIRWELL_M = 3.0
+TWO_STAIRWELLS, APART_M = 0.5, 8.0
 WAY_IN_M = 1.6
 PLAN_OFF_M = 0.25  # standard deviation, each axis
 NEW_DOORS = 0.04  # of the doors: on the plan there is a wall
@@ -40,7 +41,7 @@ class SteelBuilding:
     length_m: float  # west to east
     depth_m: float  # south to north
     storey_m: float
-    stairs_east_m: float  # of the stairwell's west wall
+    stairs_east_m: tuple[float, ...]  # of each stairwell's west wall
     entrance_east_m: float  # of the middle of the south entrance
     rooms: tuple[Room, ...]
     walls: tuple[Wall, ...]
@@ -64,12 +65,11 @@ class SteelBuilding:
         floors = [{"floor": k, "down_m": self.down_m(k)} for k in range(STOREYS)]
         ring = [(0.0, 0.0), (0.0, self.length_m), (self.depth_m, self.length_m)]
         ring += [(self.depth_m, 0.0), (0.0, 0.0)]
-        south_m, west_m = self.corridor_north_m + CORRIDOR_M / 2.0, self.stairs_east_m
-        stairwell = [(south_m, west_m), (south_m, west_m + STAIRWELL_M)]
-        stairwell += [(self.depth_m, west_m + STAIRWELL_M), (self.depth_m, west_m)]
         features = [_feature("outline", 0, "Polygon", ring)]
         features += [
-            _feature("stairs", k, "Polygon", [*stairwell, stairwell[0]]) for k in range(STOREYS)
+            _feature("stairs", k, "Polygon", self._stairwell(west_m))
+            for k in range(STOREYS)
+            for west_m in self.stairs_east_m
         ]
         features += [
             _feature("wall", k, "LineString", [one, other]) for k, one, other in self.drawn_walls
@@ -79,6 +79,12 @@ class SteelBuilding:
             self._shift(feature["geometry"]["coordinates"])
         plan = {"type": "FeatureCollection", "muster": site, "features": features}
         return msgspec.json.encode(plan)
+
+    def _stairwell(self, west_m: float) -> list[Place]:
+        south_m, east_m = self.corridor_north_m + CORRIDOR_M / 2.0, west_m + STAIRWELL_M
+        north_m = self.depth_m
+        return [(south_m, west_m), (south_m, east_m), (north_m, east_m), (north_m, west_m),
+                (south_m, west_m)]  # fmt: skip
 
     def _shift(self, coordinates: list[Any]) -> None:
         """Put a line or polygon where the plan has it."""
@@ -93,7 +99,7 @@ class SteelBuilding:
 def draw_building(rng: np.random.Generator) -> SteelBuilding:
     length_m = round(float(rng.uniform(30.0, 44.0)), 1)
     depth_m = round(float(rng.uniform(14.0, 18.0)), 1)
-    stairs_m = round(float(rng.uniform(0.25, 0.7)) * length_m, 1)
+    stairs_m = _draw_stairs_m(rng, length_m)
     hall_m = round(float(rng.uniform(0.3, 0.6)) * length_m, 1)
     south_m, north_m = depth_m / 2.0 - CORRIDOR_M / 2.0, depth_m / 2.0 + CORRIDOR_M / 2.0
     rooms: list[Room] = []
@@ -104,7 +110,7 @@ def draw_building(rng: np.random.Generator) -> SteelBuilding:
         hall = [(hall_m, hall_m + STAIRWELL_M)] if floor == 0 else []
         for side_m, outer_m, kept in (
             (south_m, 0.0, hall),
-            (north_m, depth_m, [(stairs_m, stairs_m + STAIRWELL_M)]),
+            (north_m, depth_m, [(west_m, west_m + STAIRWELL_M) for west_m in stairs_m]),
         ):
             gaps = known = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
             for west_m, east_m in _partition(rng, length_m, kept):
@@ -115,16 +121,17 @@ def draw_building(rng: np.random.Generator) -> SteelBuilding:
                 rooms.append(Room(floor, (low_m, west_m), (high_m, east_m), (side_m, door_m)))
                 if east_m < length_m:
                     walls.append((floor, (low_m, east_m), (high_m, east_m)))
-            for _, east_m in kept:
-                walls.append((floor, (side_m, east_m), (outer_m, east_m)))
+            for span in kept:
+                walls += [(floor, (side_m, end_m), (outer_m, end_m)) for end_m in span[1:]]
             on_corridor += _along_east(floor, side_m, length_m, gaps)
             on_plan += _along_east(floor, side_m, length_m, known)
         way_in = [(hall_m + STAIRWELL_M / 2.0, WAY_IN_M)] if floor == 0 else []
         walls += _along_east(floor, 0.0, length_m, way_in)
         walls += _along_east(floor, depth_m, length_m, [])
         walls += [(floor, (0.0, east_m), (depth_m, east_m)) for east_m in (0.0, length_m)]
-        banister_m = stairs_m + STAIRWELL_M / 2.0
-        walls.append((floor, (north_m + 1.7, banister_m), (depth_m - 1.3, banister_m)))
+        for stairwell_m in stairs_m:
+            banister_m = stairwell_m + STAIRWELL_M / 2.0
+            walls.append((floor, (north_m + 1.7, banister_m), (depth_m - 1.3, banister_m)))
     return SteelBuilding(
         length_m=length_m,
         depth_m=depth_m,
@@ -136,6 +143,15 @@ def draw_building(rng: np.random.Generator) -> SteelBuilding:
         drawn_walls=(*walls, *on_plan),
         plan_off_m=(float(rng.normal(0.0, PLAN_OFF_M)), float(rng.normal(0.0, PLAN_OFF_M))),
     )
+
+
+def _draw_stairs_m(rng: np.random.Generator, length_m: float) -> tuple[float, ...]:
+    """One stairwell, or a second one nearer the other end."""
+    one_m = round(float(rng.uniform(0.25, 0.7)) * length_m, 1)
+    two = rng.random() < TWO_STAIRWELLS
+    end_m = float(rng.uniform(5.0, 8.0))
+    other_m = round(length_m - end_m - STAIRWELL_M if one_m < length_m / 2.0 else end_m, 1)
+    return tuple(sorted((one_m, other_m))) if two and abs(one_m - other_m) > APART_M else (one_m,)
 
 
 def _partition(

@@ -1,7 +1,6 @@
 """What six people do in an incident: outside, through the door, searching rooms, and out again.
 
-Half of them walk about outside first and nobody says where they began; the others go straight
-in from the engine, whose place is known.
+All begin at the engine.  Half of them walk about outside first, the others go straight in.
 """
 
 from __future__ import annotations
@@ -26,7 +25,10 @@ LASTS_S = 1200.0
 RATE_HZ = 2
 OUT_AGAIN_S = 150.0  # the last so many seconds are spent outside
 INSIDE_LEAST_S = 720.0
+FAR_STAIRS = 0.4  # any stairs are taken, not the nearest
 WALK_MPS, SEARCH_MPS, STAIRS_MPS = 1.2, 0.6, 0.45
+ACROSS = 0.25  # corners from which the wall is left, for the middle of the room
+BESIDE_ENGINE_M = 0.3  # each axis
 ASIDE_M = 0.15  # people do not walk on lines
 
 
@@ -36,7 +38,7 @@ class Truth:
 
     t_s: Floats
     place_m: Floats  # (n, 3) north, east, down
-    from_engine: bool
+    from_engine: bool  # straight in
     goes_in_s: float
     comes_out_s: float
 
@@ -83,10 +85,19 @@ class _Script:
         return t_s, np.stack(columns, axis=1)
 
 
-def live_through(rng: np.random.Generator, building: SteelBuilding, from_engine: bool) -> Truth:
+def draw_engine(rng: np.random.Generator, building: SteelBuilding) -> Place:
+    """Where the engine stands."""
+    east_m = building.entrance_east_m + float(rng.uniform(-15.0, 15.0))
+    return float(rng.uniform(-38.0, -25.0)), east_m
+
+
+def live_through(
+    rng: np.random.Generator, building: SteelBuilding, engine_m: Place, *, from_engine: bool
+) -> Truth:
     """One person's twenty minutes."""
     door_m = building.entrance_east_m
-    begin = (float(rng.uniform(-38.0, -25.0)), door_m + float(rng.uniform(-15.0, 15.0)))
+    beside_m = rng.normal(0.0, BESIDE_ENGINE_M, 2)
+    begin = engine_m[0] + float(beside_m[0]), engine_m[1] + float(beside_m[1])
     script = _Script(rng, begin)
     if from_engine:
         script.rest(float(rng.uniform(5.0, 20.0)))
@@ -128,11 +139,11 @@ def _search(
     while True:
         if rng.random() < 0.3:
             to_floor = int(rng.integers(STOREYS))
-            floor = _climb(script, building, floor, to_floor)
+            floor = _climb(rng, script, building, floor, to_floor)
         rooms = [room for room in building.rooms if room.floor == floor]
         _search_room(rng, script, building, rooms[int(rng.integers(len(rooms)))])
         if script.now_s > until_s:
-            _climb(script, building, floor, 0)
+            _climb(rng, script, building, floor, 0)
             return
 
 
@@ -155,21 +166,31 @@ def _search_room(
     ring = [corners[(first + k) % 4] for k in range(int(rng.integers(2, 6)))]
     for corner in ring if rng.random() < 0.5 else ring[::-1]:
         script.go(corner, SEARCH_MPS)
+        if rng.random() < ACROSS:
+            inner = rng.uniform(south_m + inset_m, north_m - inset_m)
+            script.go(
+                (float(inner), float(rng.uniform(west_m + inset_m, east_m - inset_m))), SEARCH_MPS
+            )
         if rng.random() < 0.3:
             script.rest(float(rng.uniform(2.0, 25.0)))
     script.go((door_north_m + 0.8 * into, door_m), SEARCH_MPS)
     script.go((building.corridor_north_m, door_m), SEARCH_MPS)
 
 
-def _climb(script: _Script, building: SteelBuilding, floor: int, to_floor: int) -> int:
-    """Up one lane of the stairwell and on in the other, or the same way down."""
+def _climb(
+    rng: np.random.Generator, script: _Script, building: SteelBuilding, floor: int, to_floor: int
+) -> int:
+    """Up one lane of a stairwell and on in the other, or the same way down."""
     if floor == to_floor:
         return floor
+    stairs_m = min(building.stairs_east_m, key=lambda east_m: abs(east_m - script.here[1]))
+    if rng.random() < FAR_STAIRS:
+        stairs_m = building.stairs_east_m[int(rng.integers(len(building.stairs_east_m)))]
     near_m = building.corridor_north_m + 2.0
     far_m = building.depth_m - 0.8
-    west_m = building.stairs_east_m + 0.25 * STAIRWELL_M
-    east_m = building.stairs_east_m + 0.75 * STAIRWELL_M
-    script.go((building.corridor_north_m, building.stairs_east_m + STAIRWELL_M / 2.0), WALK_MPS)
+    west_m = stairs_m + 0.25 * STAIRWELL_M
+    east_m = stairs_m + 0.75 * STAIRWELL_M
+    script.go((building.corridor_north_m, stairs_m + STAIRWELL_M / 2.0), WALK_MPS)
     step = 1 if to_floor > floor else -1
     lanes = (west_m, east_m) if step > 0 else (east_m, west_m)
     while floor != to_floor:
@@ -179,5 +200,5 @@ def _climb(script: _Script, building: SteelBuilding, floor: int, to_floor: int) 
         script.go((far_m, lanes[1]), WALK_MPS)
         floor += step
         script.go((near_m, lanes[1]), STAIRS_MPS, building.down_m(floor))
-    script.go((building.corridor_north_m, building.stairs_east_m + STAIRWELL_M / 2.0), WALK_MPS)
+    script.go((building.corridor_north_m, stairs_m + STAIRWELL_M / 2.0), WALK_MPS)
     return floor

@@ -10,12 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.bench.incident_bound import ENGINE_STD_M
-from base_station.bench.incident_building import SteelBuilding, draw_building
-from base_station.bench.incident_people import PEOPLE, Truth, live_through
+from base_station.bench.incident_bound import ENGINE_SAID_STD_M, ENGINE_STD_M
+from base_station.bench.incident_building import Place, SteelBuilding, draw_building
+from base_station.bench.incident_people import PEOPLE, Truth, draw_engine, live_through
 from base_station.bench.incident_sensors import (
     OwnPath,
     draw_air,
+    draw_sky_m,
+    engine_fixes_of,
     fixes_of,
     mono_ns,
     position_of,
@@ -25,6 +27,7 @@ from base_station.bench.incident_sensors import (
 )
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.port import AirHeight, Estimate, FuserKind, PlaceFix, Start
+from base_station.fusion.sky import Sky
 from base_station.fusion.weather import Weather
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
@@ -45,21 +48,29 @@ class Person:
     fixes: dict[int, PlaceFix]
     pressures_pa: Floats
     weather_m: Floats  # as the station's own barometer tells it, row by row
+    engine_m: Place  # where the engine stands, as the commander said
+    engine_fixes: dict[int, PlaceFix]  # of the receiver on its roof, which is the station's
 
 
 def draw_incident(rng: np.random.Generator) -> list[Person]:
     building = draw_building(rng)
-    truths = [live_through(rng, building, from_engine=n % 2 == 1) for n in range(PEOPLE)]
-    air = draw_air(rng, truths[0].t_s)
-    weather_m = _weather_m(truths[0].t_s, reference_pa(rng, air))
+    engine_m = draw_engine(rng, building)
+    truths = [live_through(rng, building, engine_m, from_engine=n % 2 == 1) for n in range(PEOPLE)]
+    t_s = truths[0].t_s
+    air, sky_m = draw_air(rng, t_s), draw_sky_m(rng, t_s)
+    weather_m = _weather_m(t_s, reference_pa(rng, air))
+    engine_fixes = engine_fixes_of(rng, t_s, engine_m, sky_m)
+    said_m = rng.normal(engine_m, ENGINE_SAID_STD_M)
     return [
         Person(
             building,
             truth,
             walk_it(rng, truth),
-            fixes_of(rng, truth, building),
+            fixes_of(rng, truth, building, sky_m),
             pressures_pa(rng, air, truth),
             weather_m,
+            (float(said_m[0]), float(said_m[1])),
+            engine_fixes,
         )
         for truth in truths
     ]
@@ -91,24 +102,44 @@ class Run:
     surenesses: Floats  # (n,) the stated probability of that floor
 
 
+@dataclass(frozen=True)
+class Known:
+    """What somebody told the station."""
+
+    plan: bool
+    engine: bool = True  # where it stands, and so where all begin; it has a receiver
+
+
+@dataclass
+class Site:
+    """What the station knows beside each person's own."""
+
+    learnt: LearntBuilding = field(default_factory=LearntBuilding)
+    sky: Sky = field(default_factory=Sky)
+
+    def hear_engine(self, person: Person, row: int) -> None:
+        """The receiver on the engine's roof."""
+        fix = person.engine_fixes.get(row)
+        if fix is not None:
+            off_m = fix.north_m - person.engine_m[0], fix.east_m - person.engine_m[1]
+            self.sky.note(fix.t_mono_ns, off_m, fix.horizontal_std_m, ENGINE_SAID_STD_M)
+
+
 class Follower:
     """One person through a fuser of the station."""
 
-    def __init__(self, kind: FuserKind, person: Person, timing: Timing, *, with_plan: bool) -> None:
+    def __init__(self, kind: FuserKind, person: Person, timing: Timing, known: Known) -> None:
         self._person, self._timing = person, timing
         self._fuser = kind.new()
         self._plan = read_plan(person.building.geojson())
-        if with_plan:
+        if known.plan:
             self._fuser.consider(FloorGrid.of(self._plan))
-        truth = person.truth
-        if truth.from_engine:
-            north_m, east_m = truth.place_m[0, :2]
-            self._fuser.start(Start(north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
-        count = len(truth.t_s)
+        if known.engine:
+            self._fuser.start(Start(*person.engine_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
+        count = len(person.truth.t_s)
         self.run = Run(np.zeros((count, 2)), np.zeros(count), math.inf, [], np.zeros(count))
 
-    def step(self, row: int, learnt: LearntBuilding) -> LearntBuilding:
-        """Gives what is known of the building then."""
+    def step(self, row: int, site: Site) -> None:
         person, fuser = self._person, self._fuser
         position = position_of(person.truth, person.own, person.pressures_pa, row)
         altitude_m = pressure_altitude_m(float(person.pressures_pa[row]))
@@ -117,15 +148,14 @@ class Follower:
         began_ns = time.thread_time_ns()
         fuser.advance(position)
         fuser.feel(AirHeight(position.header.t_mono_ns, air_down_m, referenced=True))
-        learnt = fuser.recognise(learnt)
+        site.learnt = fuser.recognise(site.learnt)
         if fix is not None:
-            fuser.correct(fix)
+            fuser.correct(site.sky.corrected(fix, fix.t_mono_ns))
         estimate = fuser.estimate()
         took_ns = time.thread_time_ns() - began_ns
         (self._timing.steps_ns if fix is None else self._timing.fixes_ns).append(took_ns)
         assert estimate is not None
         self._note(row, estimate)
-        return learnt
 
     def _note(self, row: int, estimate: Estimate) -> None:
         run, person = self.run, self._person
@@ -142,18 +172,17 @@ class Follower:
             run.heading_walked_m = float(person.own.distance_m[row])
 
 
-def fuse_all(
-    kind: FuserKind, people: Sequence[Person], timing: Timing, *, with_plan: bool
-) -> list[Run]:
+def fuse_all(kind: FuserKind, people: Sequence[Person], timing: Timing, known: Known) -> list[Run]:
     """All at the same time, as at a station: what one learns of the building, the others hear."""
-    followers = [Follower(kind, person, timing, with_plan=with_plan) for person in people]
-    learnt = LearntBuilding()
+    followers, site = [Follower(kind, person, timing, known) for person in people], Site()
     for row in range(len(people[0].truth.t_s)):
+        if known.engine:
+            site.hear_engine(people[0], row)
         for follower in followers:
-            learnt = follower.step(row, learnt)
+            follower.step(row, site)
     return [follower.run for follower in followers]
 
 
 def fuse(kind: FuserKind, person: Person, timing: Timing, *, with_plan: bool) -> Run:
     """One of them alone."""
-    return fuse_all(kind, [person], timing, with_plan=with_plan)[0]
+    return fuse_all(kind, [person], timing, Known(plan=with_plan))[0]

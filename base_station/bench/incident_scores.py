@@ -14,7 +14,8 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 CHI2_95_2DOF = 5.991
-FOUND_S = 60.0  # of fixes, after which somebody whose start is unknown should be found
+FOUND_S = 60.0  # of fixes, after which somebody who walks about outside should be found
+LEFT_M = 1.0  # from the engine: standing where one is known to be is not scored
 SETTLED_S = 30.0  # after coming out
 ON_FLOOR_M = 0.3  # nearer than this to a storey: not on the stairs
 SEAM_S = 20.0  # about the door
@@ -26,7 +27,8 @@ HELD_STAGES = ("outside", "at the door", "1 min", "5 min", "10 min inside", "bac
 def stages(truth: Truth) -> dict[str, Flags]:
     """Which rows belong to which stage."""
     t_s, into_s, out_s = truth.t_s, truth.goes_in_s, truth.comes_out_s
-    found_s = 0.0 if truth.from_engine else FOUND_S
+    left = np.linalg.norm(truth.place_m[:, :2] - truth.place_m[0, :2], axis=1) > LEFT_M
+    found_s = float(t_s[left.argmax()]) if truth.from_engine else FOUND_S
     return {
         "outside": (t_s >= found_s) & (t_s < into_s - 5.0),
         "at the door": np.abs(t_s - into_s) <= 5.0,

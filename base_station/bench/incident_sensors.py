@@ -9,8 +9,13 @@ Where the magnitudes come from:
   it acts while the wearer moves.  Half of the trackers say how uncertain their heading is; the
   other half are one and a half times too sure.
 - The receiver: 1.27 m an axis under the open sky, as data sheets of single-frequency receivers
-  have it (CEP 1.5 m), nearly all of it slow; the same as in ``edge.simulation.gps``.  Walls add
-  an error that the stated accuracy tells a third of.  Through the door the last fixes are rubbish.
+  have it (CEP 1.5 m), nearly all of it slow; the same as in ``edge.simulation.gps``.  Half of the
+  slow part is everybody's at the site: orbits, clocks and the air.  By the error budgets it is far
+  more (National Research Council 1995, The Global Positioning System, table C-1: 7.9 m of range
+  against 1.3 m of multipath and noise), but corrections from satellites have taken off much of it,
+  and receivers on bodies do not all see the same satellites.  The receiver of the engine stands on
+  its roof; what its surroundings add lasts longer, because it does not move.  Walls add an error
+  that the stated accuracy tells a third of.  Through the door the last fixes are rubbish.
 - Pressure: a trend of up to 350 Pa an hour, the offset of each barometer, and steps when doors
   open or a fan is started.
 """
@@ -22,6 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from base_station.bench import said
 from base_station.bench.incident_building import SteelBuilding
@@ -46,7 +52,10 @@ MISSED_FLIGHT = 0.015  # of flights: seen a metre too high or too low
 TOO_SURE = 1.5
 MOVING_MPS = 0.1
 
-OPEN_SLOW_M, OPEN_WHITE_M, OPEN_SLOW_S = 1.2, 0.4, 40.0
+COMMON_M, COMMON_S = 0.85, 1200.0
+OPEN_SLOW_M, OPEN_WHITE_M, OPEN_SLOW_S = 0.85, 0.4, 40.0
+ROOF_SLOW_M, ROOF_WHITE_M, ROOF_SLOW_S = 0.6, 0.3, 300.0
+OPEN_STD_M = math.hypot(COMMON_M, OPEN_SLOW_M, OPEN_WHITE_M)
 WALL_M, WALL_REACH_M, WALL_SLOW_S = 6.0, 5.0, 15.0
 RUBBISH_M, RUBBISH_INSIDE_S, FOUND_AGAIN_S = 8.0, 8.0, 4.0
 ADMITTED = 1.0 / 3.0  # part of what walls do that the receiver's accuracy tells
@@ -113,8 +122,33 @@ def _heights(rng: np.random.Generator, steps_m: Floats) -> Floats:
     return np.asarray(np.cumsum(climbs_m), dtype=np.float64)
 
 
+def draw_sky_m(rng: np.random.Generator, t_s: Floats) -> Floats:
+    """The error that all receivers share (n, 2)."""
+    return COMMON_M * _wandering(rng, len(t_s), COMMON_S)
+
+
+def engine_fixes_of(
+    rng: np.random.Generator, t_s: Floats, engine_m: tuple[float, float], sky_m: Floats
+) -> dict[int, PlaceFix]:
+    """What the receiver on the engine's roof says, by row."""
+    slow_m = ROOF_SLOW_M * _wandering(rng, len(t_s), ROOF_SLOW_S)
+    places_m = np.array(engine_m) + sky_m + slow_m + ROOF_WHITE_M * rng.normal(size=sky_m.shape)
+    return {
+        row: PlaceFix(mono_ns(float(t_s[row])), *places_m[row].tolist(), 0.0, STD_FLOOR_M, None)
+        for row in range(0, len(t_s), RATE_HZ)
+    }
+
+
+def _wandering(rng: np.random.Generator, count: int, lasts_s: float) -> Floats:
+    """Of unit variance (n, 2), first-order Gauss-Markov."""
+    keep = math.exp(-1.0 / RATE_HZ / lasts_s)
+    fresh = math.sqrt(1.0 - keep**2) * rng.normal(size=(count, 2))
+    fresh[0] = rng.normal(size=2)
+    return np.asarray(lfilter([1.0], [1.0, -keep], fresh, axis=0), dtype=np.float64)
+
+
 def fixes_of(
-    rng: np.random.Generator, truth: Truth, building: SteelBuilding
+    rng: np.random.Generator, truth: Truth, building: SteelBuilding, sky_m: Floats
 ) -> dict[int, PlaceFix]:
     """Satellite fixes, one a second where there is any, by row."""
     slow, wall_slow = rng.normal(size=2), rng.normal(size=2)
@@ -129,15 +163,13 @@ def fixes_of(
         if truth.goes_in_s + RUBBISH_INSIDE_S < t_s < truth.comes_out_s + FOUND_AGAIN_S:
             continue
         std_m = walls_m(building, north_m, east_m)
-        error_m = OPEN_SLOW_M * slow + white + std_m * wall_slow
+        error_m = sky_m[row] + OPEN_SLOW_M * slow + white + std_m * wall_slow
         fixes[row] = PlaceFix(
             t_mono_ns=mono_ns(t_s),
             north_m=float(north_m + error_m[0]),
             east_m=float(east_m + error_m[1]),
             down_m=0.0,
-            horizontal_std_m=max(
-                STD_FLOOR_M, math.hypot(OPEN_SLOW_M, OPEN_WHITE_M, ADMITTED * std_m)
-            ),
+            horizontal_std_m=max(STD_FLOOR_M, math.hypot(OPEN_STD_M, ADMITTED * std_m)),
             vertical_std_m=None,
         )
     return fixes

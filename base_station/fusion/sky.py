@@ -1,0 +1,88 @@
+"""What all receivers of a site err by at the same time, as one that stays where it is tells it.
+
+Orbits, clocks and the air between are the same for everybody within some kilometres, and change
+over tens of minutes; what a receiver's own surroundings add is its own.  A receiver whose place is
+known shows the sum of both; what of it is everybody's is taken off the others' fixes (differential
+positioning, in the position domain: Matosevic et al. 2006).
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.port import PlaceFix
+from shared.clock import NS_PER_S
+
+Floats = NDArray[np.float64]
+
+COMMON_PART = 0.45  # of a good fix's variance
+OWN_PART = 0.45  # slow too; the rest is new with every fix
+COMMON_S, OWN_S = 1200.0, 300.0  # correlation times, of a receiver that does not move
+HEARD_S = 60.0  # after which nothing is taken off any more
+GATE2 = 13.8  # chi-square of two degrees, 99.9 %
+
+_COMMON, _OWN, _PLACE = range(3)
+_OBSERVE = np.ones(3)
+
+
+class Sky(msgspec.Struct):
+    """A Kalman filter of the common error, the receiver's own, and how far off its place was said
+    to be; the same covariance for both axes.
+    """
+
+    t_ns: int | None = None  # station time of the last fix
+    std_m: float = 0.0  # of the receiver's fixes where nothing disturbs them
+    mean_m: list[list[float]] = msgspec.field(default_factory=list)  # (3, 2) north and east
+    covariance_m2: list[list[float]] = msgspec.field(default_factory=list)  # (3, 3)
+
+    def note(self, t_ns: int, off_m: tuple[float, float], std_m: float, place_std_m: float) -> None:
+        """A fix that lies so far north and east of where its receiver is known to stand."""
+        if self.t_ns is None:
+            self._begin(std_m, place_std_m)
+        elif t_ns <= self.t_ns:
+            return
+        mean, covariance = self._at(t_ns)
+        self.t_ns = t_ns
+        noise_m2 = (1.0 - COMMON_PART - OWN_PART) * self.std_m**2
+        noise_m2 += max(0.0, std_m**2 - self.std_m**2)
+        spread = float(_OBSERVE @ covariance @ _OBSERVE) + noise_m2
+        apart = np.array(off_m) - _OBSERVE @ mean
+        if float(apart @ apart) < GATE2 * spread:
+            gain = covariance @ _OBSERVE / spread
+            mean = mean + np.outer(gain, apart)
+            covariance = covariance - np.outer(gain, _OBSERVE @ covariance)
+        self.mean_m, self.covariance_m2 = mean.tolist(), covariance.tolist()
+
+    def corrected(self, fix: PlaceFix, t_ns: int) -> PlaceFix:
+        """Another receiver's fix of that time without what all err by."""
+        if self.t_ns is None or abs(t_ns - self.t_ns) > HEARD_S * NS_PER_S:
+            return fix
+        mean, covariance = self._at(max(t_ns, self.t_ns))
+        learnt_m2 = COMMON_PART * self.std_m**2 - float(covariance[_COMMON, _COMMON])
+        variance_m2 = fix.horizontal_std_m**2
+        left_m2 = max(variance_m2 - learnt_m2, (1.0 - COMMON_PART) * variance_m2)
+        return msgspec.structs.replace(
+            fix,
+            north_m=fix.north_m - float(mean[_COMMON, 0]),
+            east_m=fix.east_m - float(mean[_COMMON, 1]),
+            horizontal_std_m=math.sqrt(left_m2),
+        )
+
+    def _begin(self, std_m: float, place_std_m: float) -> None:
+        self.std_m = std_m
+        self.mean_m = np.zeros((3, 2)).tolist()
+        variances = [COMMON_PART * std_m**2, OWN_PART * std_m**2, place_std_m**2]
+        self.covariance_m2 = np.diag(variances).tolist()
+
+    def _at(self, t_ns: int) -> tuple[Floats, Floats]:
+        """Mean (3, 2) and covariance (3, 3) at that time, the last fix's or later."""
+        since_s = 0.0 if self.t_ns is None else (t_ns - self.t_ns) / NS_PER_S
+        keep = np.array([math.exp(-since_s / COMMON_S), math.exp(-since_s / OWN_S), 1.0])
+        variances = self.std_m**2 * np.array([COMMON_PART, OWN_PART, 0.0])
+        mean, covariance = np.array(self.mean_m), np.array(self.covariance_m2)
+        spread = np.outer(keep, keep) * covariance + np.diag((1.0 - keep**2) * variances)
+        return keep[:, None] * mean, spread

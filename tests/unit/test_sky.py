@@ -1,0 +1,99 @@
+"""What all receivers of a site err by is taken off everybody's fixes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from base_station.fusion.port import PlaceFix
+from base_station.fusion.sky import COMMON_PART, Sky
+from shared.clock import NS_PER_S
+from shared.messages.station import SetAnchor, SetReference, SetStart
+from tests.station_script import Script
+
+Floats = NDArray[np.float64]
+
+STD_M = 1.5
+
+
+def after(seconds: float, off_m: tuple[float, float] = (3.0, -2.0)) -> Sky:
+    sky = Sky()
+    for second in range(int(seconds)):
+        sky.note(second * NS_PER_S, off_m, STD_M, 0.3)
+    return sky
+
+
+def fix_at(north_m: float, east_m: float, std_m: float = STD_M) -> PlaceFix:
+    return PlaceFix(0, north_m, east_m, 0.0, std_m, None)
+
+
+def test_what_the_station_s_receiver_errs_by_is_mostly_everybody_s() -> None:
+    fix = after(600.0).corrected(fix_at(13.0, 8.0), 600 * NS_PER_S)
+    assert 10.0 < fix.north_m < 11.6
+    assert 9.0 < fix.east_m < 10.0
+    assert 0.74 * STD_M < fix.horizontal_std_m < 0.95 * STD_M
+
+
+def test_it_does_what_it_says() -> None:
+    """Against drawn errors: a fix is nearer, and as near as it says."""
+    rng, left2, said2 = np.random.default_rng(2), [], []
+    for _ in range(200):
+        common = rng.normal(0.0, math.sqrt(COMMON_PART) * STD_M, 2)
+        own = rng.normal(0.0, math.sqrt(0.45) * STD_M, 2)
+        place = rng.normal(0.0, 0.3, 2)
+        sky = Sky()
+        for second in range(60):
+            white = rng.normal(0.0, math.sqrt(0.1) * STD_M, 2)
+            north_m, east_m = (common + own + place + white).tolist()
+            sky.note(second * NS_PER_S, (north_m, east_m), STD_M, 0.3)
+        error = common + rng.normal(0.0, math.sqrt(1.0 - COMMON_PART) * STD_M, 2)
+        fix = sky.corrected(fix_at(float(error[0]), float(error[1])), 60 * NS_PER_S)
+        left2 += [fix.north_m**2, fix.east_m**2]
+        said2.append(fix.horizontal_std_m**2)
+    assert np.mean(left2) == pytest.approx(np.mean(said2), rel=0.15)
+    assert np.mean(said2) < 0.85 * STD_M**2
+
+
+def test_a_receiver_not_heard_of_tells_nothing() -> None:
+    assert Sky().corrected(fix_at(1.0, 2.0), 0) == fix_at(1.0, 2.0)
+    assert after(100.0).corrected(fix_at(1.0, 2.0), 200 * NS_PER_S) == fix_at(1.0, 2.0)
+
+
+def test_one_wild_fix_moves_nobody() -> None:
+    sky = after(300.0)
+    before = sky.corrected(fix_at(0.0, 0.0), 301 * NS_PER_S)
+    sky.note(301 * NS_PER_S, (60.0, 60.0), STD_M, 0.3)
+    wild = sky.corrected(fix_at(0.0, 0.0), 301 * NS_PER_S)
+    assert (wild.north_m, wild.east_m) == pytest.approx((before.north_m, before.east_m), abs=0.01)
+
+
+def test_a_bad_fix_never_becomes_a_good_one() -> None:
+    fix = after(600.0).corrected(fix_at(0.0, 0.0, 20.0), 600 * NS_PER_S)
+    assert fix.horizontal_std_m > 19.0
+
+
+def fixes_of_a_unit(*, station_has_a_receiver: bool) -> Floats:
+    """North and east of the fixes taken from a unit at the anchor; all receivers err by 3 m."""
+    script = Script()
+    script.register("FF-01", "FF-09")
+    script.act(SetAnchor(53.5, 10.0, 0.0, 0.0))
+    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, math.pi))
+    if station_has_a_receiver:
+        script.act(SetReference("FF-09", 0.0))
+        script.act(SetStart("FF-09", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
+    for _ in range(120):
+        script.now_s += 1.0
+        for unit_id in ("FF-09", "FF-01"):
+            script.position(unit_id, 0.0, 0.0)
+            script.gps(unit_id, 53.5 + 3.0 / 111_200.0, 10.0)
+    return script.pipeline.state.paths["FF-01"].arrays().fix_m
+
+
+def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -> None:
+    alone = fixes_of_a_unit(station_has_a_receiver=False)
+    helped = fixes_of_a_unit(station_has_a_receiver=True)
+    assert alone[-1, 0] == pytest.approx(3.0, abs=0.1)
+    assert 0.5 < helped[-1, 0] < 2.2
