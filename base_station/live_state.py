@@ -18,7 +18,9 @@ from base_station.fusion.path_history import PathHistory
 from base_station.fusion.sky import Sky
 from base_station.fusion.weather import Barometers
 from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
+from base_station.site.storeys import Storey
 from shared.channels import GPS, NO_TRACKER, Channel
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -341,6 +343,13 @@ class StationState(msgspec.Struct):
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
     learnt_building: LearntBuilding = LearntBuilding()
+    learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)
+
+    def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
+        """Of the building there, lowest first: the plan's, or else those that were learnt."""
+        if self.plan is not None and self.plan.storeys:
+            return self.plan.storeys
+        return self.learnt_floors.storeys_at(north_m, east_m)

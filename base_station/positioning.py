@@ -19,9 +19,12 @@ from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
 from base_station.pins.book import has_pins, reframe_pins
 from base_station.pins.pinned import PinnedUnits
+from base_station.pins.pinning import floors_said
 from base_station.site.floor_grid import FloorGrid
+from base_station.site.learnt_floors import BEGAN_M, Landing
 from base_station.site.plan import Plan, Ring
 from base_station.site.roaming import RADII_95, roamed_m
+from base_station.site.storeys import floor_at, sureness
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position
@@ -92,16 +95,20 @@ class Positioning:
             if air is not None:
                 pinned.feel(air)
             pinned.recognise(state.learnt_building)
+        if state.learnt_floors.follow(position, unit.unit_id):
+            self._land(state, unit, t_ns, is_outside)
         if history.is_awaited or (begins and has_pins(state, unit.unit_id)):
             return self.solve_pins(state, [unit.unit_id])
         return []
 
     def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> list[str]:
         """Pins of these units changed; gives those whose trail did."""
+        state.learnt_floors.say(floors_said(state))
         return self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
 
     def begin_incident(self, state: StationState, before_ns: int) -> None:
         """What was known of paths and pins before that time no longer matters."""
+        state.learnt_floors.trim(before_ns)
         state.learnt_building = LearntBuilding()
         for history in state.paths.values():
             history.trim(before_ns)
@@ -132,6 +139,7 @@ class Positioning:
         self._fusers.pop(unit.unit_id, None)
         self._pinned.forget(unit)
         state.paths.pop(unit.unit_id, None)
+        state.learnt_floors.forget(unit.unit_id)
         unit.fused, unit.position = None, None
         unit.trail.clear()
 
@@ -201,12 +209,32 @@ class Positioning:
         header: Header,
     ) -> FusedPosition:
         """``held``: the floor it was on, where that is known."""
-        floor = state.plan.floor_at(estimate.down_m, held) if state.plan is not None else None
+        storeys = state.storeys_at(estimate.north_m, estimate.east_m)
+        floor = floor_at(storeys, estimate.down_m, held)
         sure = None
-        if floor is not None and state.plan is not None:
-            sure = state.plan.sureness(floor, estimate.down_m, estimate.std_down_m)
+        if floor is not None:
+            sure = sureness(storeys, floor, estimate.down_m, estimate.std_down_m)
         message = _as_message(estimate, unit, self._kind.name, floor, header)
         return message if sure is None else msgspec.structs.replace(message, floor_probability=sure)
+
+    def _land(self, state: StationState, unit: UnitState, t_ns: int, is_outside: bool) -> None:
+        """The wearer walks on the level: a storey is learnt of it, or its height of a storey."""
+        estimate = self._fuser(unit).estimate()
+        if estimate is None:
+            return
+        place = estimate.north_m, estimate.east_m
+        start = state.paths[unit.unit_id].start
+        state.learnt_floors.land(
+            Landing(t_ns, unit.unit_id, *place, estimate.down_m, estimate.std_down_m),
+            is_outside=is_outside,
+            began_on_ground=start is None or abs(start.down_m) < BEGAN_M,
+        )
+        if self._grid is None:  # else the fuser knows the plan's storeys, and when it is inside
+            storeys = [one for one in state.storeys_at(*place) if one.seen]
+            self._fuser(unit).rest_on(storeys)
+            pinned = self._pinned.get(unit.unit_id)
+            if pinned is not None:
+                pinned.rest_on(storeys)
 
     def _fuser(self, unit: UnitState) -> Fuser:
         fuser = self._fusers.get(unit.unit_id)
@@ -267,6 +295,7 @@ class Positioning:
                 unit.plain_trail = [_moved(step, turn_rad, shift_m) for step in unit.plain_trail]
         state.learnt_building = state.learnt_building.reframed(turn_rad, *shift_m[:2])
         reframe_pins(state, turn_rad, shift_m[0], shift_m[1])
+        state.learnt_floors.reframe(turn_rad, *shift_m)
 
 
 def _moved(step: TrailStep, turn_rad: float, shift_m: tuple[float, float, float]) -> TrailStep:

@@ -117,7 +117,10 @@ def _unit(
 
 
 def _floor_probability(state: StationState, live: Sequence[TrackSample]) -> float | None:
-    downs = sorted(storey.down_m for storey in state.plan.storeys) if state.plan else []
+    if not live:
+        return None
+    middle = live[len(live) // 2]
+    downs = sorted(storey.down_m for storey in state.storeys_at(middle.north_m, middle.east_m))
     heights = [b - a for a, b in pairwise(downs)]
     return floor_probability(live, min(heights)) if heights and min(heights) > 0.0 else None
 

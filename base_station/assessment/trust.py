@@ -17,6 +17,7 @@ Level = Literal["green", "amber", "red"]
 AMBER_M = 5.0  # radius that holds the wearer with 95 % probability
 RED_M = 20.0
 AMBER_DOWN_M = 1.5  # half a storey
+AMBER_FLOOR = 0.7  # probability of the floor shown
 _RADII_95 = math.sqrt(-2.0 * math.log(0.05))
 
 
@@ -59,6 +60,8 @@ def _doubts(state: StationState, unit: UnitState) -> Iterator[Trust]:
         yield Trust("amber", f"{which} the trail")
     if fused.quality is Quality.DEGRADED:
         yield Trust("amber", fused.quality_reason)
+    if fused.floor_probability is not None and fused.floor_probability < AMBER_FLOOR:
+        yield Trust("amber", f"the floor is only {fused.floor_probability:.0%} sure")
     if fused.std_down_m > AMBER_DOWN_M:
         yield Trust("amber", f"height only known to {2.0 * fused.std_down_m:.0f} m")
 

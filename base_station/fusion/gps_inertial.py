@@ -7,6 +7,7 @@ to stand up to ``fix_trust``; here they are put together, and what is said of th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -27,6 +28,7 @@ from base_station.fusion.recognition import Recognition
 from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
 from base_station.site.floor_grid import FloorGrid
+from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.geo import wrap_pi
 from shared.messages import Position
@@ -130,6 +132,9 @@ class GpsInertialFuser:
 
     def feel(self, air: AirHeight) -> None:
         self._height.feel(air)
+
+    def rest_on(self, storeys: Sequence[Storey]) -> None:
+        self._height.rest_near(storeys)
 
     def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
         memory, last = self._memory, self._memory.last

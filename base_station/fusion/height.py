@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
+from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
@@ -140,14 +141,26 @@ class HeightFilter:
             level_m = np.array([[storeys_down_m[best]]])
             self._filter.update(level_m, R=noise_m2, H=_OBSERVE_LEVEL)
 
-    def _innovation(
-        self,
-        down_m: float,
-        observe: np.ndarray[tuple[int, int], np.dtype[np.float64]],
-        noise: float,
-    ) -> tuple[float, float]:
-        innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
-        return innovation_m, float((observe @ self._filter.P @ observe.T)[0, 0]) + noise
+    def rest_near(self, storeys: Sequence[Storey]) -> None:
+        """Somebody who walked on the level is on one of these.  A storey that was learnt from
+        people's heights tells no more than it is known by itself, so that nobody grows surer by
+        their own word.
+        """
+        if not storeys:
+            return
+        kind, variance_m2 = self._kind, self.variance_m2
+        level_m2 = [storey.std_m**2 + kind.level_std_m**2 for storey in storeys]
+        apart2 = [
+            (storey.down_m - self.down_m) ** 2 / (variance_m2 + own_m2)
+            for storey, own_m2 in zip(storeys, level_m2, strict=True)
+        ]
+        best = min(range(len(storeys)), key=apart2.__getitem__)
+        weights = [math.exp(-0.5 * (one - apart2[best])) for one in apart2]
+        sure = 1.0 / sum(weights) > kind.level_sure and apart2[best] < _GATE_STD**2
+        if sure and variance_m2 > level_m2[best]:
+            noise_m2 = 1.0 / (1.0 / level_m2[best] - 1.0 / variance_m2)
+            level_m = np.array([[storeys[best].down_m]])
+            self._filter.update(level_m, R=np.array([[noise_m2]]), H=_OBSERVE_LEVEL)
 
 
 def climb_var_m2(kind: Parameters, climbed_m: float, walked_m: float) -> float:

@@ -7,12 +7,14 @@ no clock, and gives the same answers for the same calls.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import msgspec
 
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.site.floor_grid import FloorGrid
+from base_station.site.storeys import Storey
 from shared.messages import Position
 from shared.quality import Quality
 
@@ -108,6 +110,10 @@ class Fuser(Protocol):
 
     def feel(self, air: AirHeight) -> None:
         """The air pressure that came with the last position."""
+        ...
+
+    def rest_on(self, storeys: Sequence[Storey]) -> None:
+        """The wearer walks on the level, and these storeys are there."""
         ...
 
     def recognise(self, learnt: LearntBuilding) -> LearntBuilding:

@@ -21,7 +21,7 @@ from base_station.fusion.path_history import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback
-from base_station.pins.pinning import evidence_of_all, ties_of
+from base_station.pins.pinning import evidence_of_all, floors_along, ties_of
 from shared.clock import NS_PER_S, Clock
 from shared.quality import Quality
 
@@ -74,7 +74,7 @@ class Hindsight:
         """Make it again from the log; ``on_progress`` hears the fraction done."""
         known = self.known(incident, on_progress)
         tracks = {
-            unit_id: _samples(incident, known.state.paths[unit_id].arrays(), path)
+            unit_id: _samples(incident, known.state, known.state.paths[unit_id].arrays(), path)
             for unit_id, path in known.solution.paths.items()
         }
         made = Smoothed(
@@ -123,7 +123,10 @@ class Hindsight:
             known.state,
             known.solution.verdicts,
             live,
-            {one: _samples(incident, points[one], path) for one, path in paths.items()},
+            {
+                one: _samples(incident, known.state, points[one], path)
+                for one, path in paths.items()
+            },
             {one: _raw(incident, points[one], path) for one, path in paths.items()},
         )
 
@@ -145,7 +148,11 @@ class Hindsight:
         return playback.pipeline.state
 
 
-def _samples(incident: Incident, points: PathArrays, path: SmoothedPath) -> list[TrackSample]:
+def _samples(
+    incident: Incident, state: StationState, points: PathArrays, path: SmoothedPath
+) -> list[TrackSample]:
+    """With the floors that were known at the end; they may have been learnt late."""
+    floors = floors_along(state, points, path)
     heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
     return [
         TrackSample(
@@ -157,7 +164,7 @@ def _samples(incident: Incident, points: PathArrays, path: SmoothedPath) -> list
             std_east_m=float(path.std_east_m[row]),
             std_down_m=float(path.std_down_m[row]),
             heading_rad=float(heading_rad[row]),
-            floor=_floor(points, row),
+            floor=floors[row],
             quality=_quality(path, row),
         )
         for row in _rows_within(incident, path)

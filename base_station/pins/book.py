@@ -12,6 +12,7 @@ import msgspec
 
 from base_station.live_state import StationState
 from base_station.pins.pin import WAITING, Beacon, Pin
+from base_station.site.plan import Plan
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import rotate
@@ -30,6 +31,7 @@ FURTHEST_M = 1000.0  # from the plan's outlines
 FUTURE_NS = NS_PER_S
 BEFORE_NS = 10 * NS_PER_S  # of a path's beginning: that is where it is pinned
 LARGEST_STD_M = 1000.0
+DEEPEST, HIGHEST = -20, 200  # floors
 
 
 def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
@@ -206,10 +208,7 @@ def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeac
         _check_heading(action.heading_rad, action.heading_std_rad)
     plan = state.plan
     if action.floor is not None:
-        floors = [] if plan is None else [storey.floor for storey in plan.storeys]
-        if action.floor not in floors:
-            known = ", ".join(map(str, floors)) or "none; load a plan with storeys"
-            raise UserError(f"the plan has no floor {action.floor}; it has: {known}")
+        _check_floor(plan, action.floor)
     if plan is not None and plan.outlines:
         away_m = plan.away_m(action.north_m, action.east_m)
         if away_m > FURTHEST_M:
@@ -217,6 +216,16 @@ def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeac
                 f"the place is {away_m:.0f} m from the plan's building; at most {FURTHEST_M:.0f} m "
                 "make sense"
             )
+
+
+def _check_floor(plan: Plan | None, floor: int) -> None:
+    """Where no plan lists the storeys, what people say of floors is how they are numbered."""
+    floors = () if plan is None else [storey.floor for storey in plan.storeys]
+    if floors and floor not in floors:
+        known = ", ".join(map(str, floors))
+        raise UserError(f"the plan has no floor {floor}; it has: {known}")
+    if not DEEPEST <= floor <= HIGHEST:
+        raise UserError(f"no building has a floor {floor}; from {DEEPEST} to {HIGHEST} make sense")
 
 
 def _check_std(std_m: float) -> None:

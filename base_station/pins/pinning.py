@@ -25,6 +25,8 @@ from base_station.fusion.smoother.port import (
 from base_station.live_state import TRAIL_POINTS, StationState, TrailStep
 from base_station.pins.book import units_of
 from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.site.learnt_floors import FloorSaid
+from base_station.site.storeys import floor_at, storey_of
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
@@ -91,7 +93,7 @@ def trail_of(state: StationState, points: PathArrays, path: SmoothedPath) -> lis
     rows = np.flatnonzero(path.t_ns >= since_ns)
     if len(rows) > TRAIL_POINTS:
         rows = rows[np.linspace(0, len(rows) - 1, TRAIL_POINTS).round().astype(int)]
-    floors = _floors(state, points, path)
+    floors = floors_along(state, points, path)
     return [
         TrailStep(
             int(path.t_ns[row]), float(path.north_m[row]), float(path.east_m[row]), floors[row]
@@ -116,6 +118,25 @@ def evidence_of_all(state: StationState) -> Mapping[str, UnitEvidence]:
     return found
 
 
+def floors_said(state: StationState) -> list[FloorSaid]:
+    """On which floors people and beacons say that somebody was, with the heights as they were
+    estimated without any pin.
+    """
+    said = []
+    for pin in state.pins.values():
+        history = state.paths.get(pin.unit_id)
+        floor = state.beacons.get(pin.other_id, pin).floor
+        if floor is None or history is None or history.begin_ns is None:
+            continue
+        t_ns = _time_of(history, pin)
+        if not isinstance(t_ns, str):
+            points = history.arrays()
+            row = int(np.searchsorted(points.t_ns, t_ns).clip(0, len(points) - 1))
+            north_m, east_m = points.shown_m[row].tolist()
+            said.append(FloorSaid(north_m, east_m, float(points.down_m[row]), floor))
+    return said
+
+
 def ties_of(state: StationState) -> list[Tie]:
     """Meetings of units whose paths both reach them."""
     ties = []
@@ -130,15 +151,17 @@ def ties_of(state: StationState) -> list[Tie]:
     return ties
 
 
-def _floors(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
-    """As they were said then, where the height is still that; else by the plan."""
+def floors_along(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
+    """By the heights that are known now and the storeys that are; without any, as they were said
+    then.
+    """
     floors: list[int | None] = []
-    for row, floor in enumerate(points.floor.tolist()):
-        said = None if floor == NO_FLOOR else floor
-        moved_m = float(path.down_m[row]) - float(points.down_m[row])
-        if state.plan is not None and abs(moved_m) > 1.0:
-            said = state.plan.floor_at(float(path.down_m[row]), floors[-1] if floors else None)
-        floors.append(said)
+    places = np.column_stack((path.north_m, path.east_m, path.down_m)).tolist()
+    for (north_m, east_m, down_m), said in zip(places, points.floor.tolist(), strict=True):
+        storeys = state.storeys_at(north_m, east_m)
+        held = floors[-1] if floors else None
+        known = None if said == NO_FLOOR else said
+        floors.append(floor_at(storeys, down_m, held) if storeys else known)
     return floors
 
 
@@ -174,16 +197,14 @@ def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | s
     at: Pin | Beacon = beacon or pin
     assert at.north_m is not None
     assert at.east_m is not None
-    down_m = None
-    if state.plan is not None and at.floor is not None:
-        down_m = next((s.down_m for s in state.plan.storeys if s.floor == at.floor), None)
+    storey = storey_of(state.storeys_at(at.north_m, at.east_m), at.floor)
     return PlaceSeen(
         name=pin.pin_id,
         t_ns=t_ns,
         north_m=at.north_m,
         east_m=at.east_m,
         std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
-        down_m=down_m,
+        down_m=None if storey is None else storey.down_m,
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,
     )

@@ -19,19 +19,13 @@ from typing import Any
 
 import msgspec
 
+from base_station.site.storeys import Storey, floor_at, sureness
 from shared.errors import UserError
 
-FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
-FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
 LEAST_POINTS = 2  # of a line
 OUTLINE_HYSTERESIS_M = 1.5
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
-
-
-class Storey(msgspec.Struct, frozen=True):
-    floor: int
-    down_m: float
 
 
 class Wall(msgspec.Struct, frozen=True, array_like=True):
@@ -59,25 +53,11 @@ class Plan(msgspec.Struct, frozen=True):
 
     def sureness(self, floor: int, down_m: float, std_down_m: float) -> float:
         """The probability of a floor, of all that the plan has."""
-        std_m = math.hypot(std_down_m, FLOOR_STD_M)
-        off_m = {storey.floor: abs(storey.down_m - down_m) for storey in self.storeys}
-        least_m = min(off_m.values())
-        weights = {
-            number: math.exp(0.5 * (least_m**2 - apart_m**2) / std_m**2)
-            for number, apart_m in off_m.items()
-        }
-        return weights.get(floor, 0.0) / sum(weights.values())
+        return sureness(self.storeys, floor, down_m, std_down_m)
 
     def floor_at(self, down_m: float, floor: int | None) -> int | None:
         """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
-        if not self.storeys:
-            return None
-        nearest = min(self.storeys, key=lambda storey: abs(storey.down_m - down_m))
-        held = next((storey for storey in self.storeys if storey.floor == floor), None)
-        if held is None:
-            return nearest.floor
-        gain_m = abs(held.down_m - down_m) - abs(nearest.down_m - down_m)
-        return nearest.floor if gain_m > 2.0 * FLOOR_HYSTERESIS_M else held.floor
+        return floor_at(self.storeys, down_m, floor)
 
     def is_inside(self, north_m: float, east_m: float, inside: bool) -> bool:
         """Whether a place is in the building; near a wall, as it was before."""

@@ -118,7 +118,7 @@ async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> Non
         ({"unit_id": "nobody"}, 409, "no registered unit"),
         ({"std_m": 0.0}, 422, "std_m"),
         ({"t_ms": 4_000_000_000_000}, 409, "in the future"),
-        ({"floor": 3}, 409, "no floor 3"),
+        ({"floor": 300}, 409, "no building has a floor 300"),
         ({"unknown": 1}, 422, "unknown"),
     ],
 )

@@ -1,0 +1,240 @@
+"""The storeys of each building, learnt from where people walk on the level.
+
+Somebody who walks some metres without climbing is on a storey, or on the ground outside; the
+height then is kept as a *landing*.  Landings that lie beside each other belong to one building;
+what storeys it has is worked out anew with every landing (``levels``), for everybody alike.
+Only heights that no pin has touched count, so that removing a pin leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import msgspec
+import numpy as np
+
+from base_station.site.levels import Height, levels_of, number_levels
+from base_station.site.storeys import Storey
+from shared.geo import rotate
+from shared.messages import Position
+
+LEVEL_WALK_M = 6.0  # walked without climbing: on a storey
+CLIMB_M = 0.5  # net, that is a climb
+BEGAN_M = 1.2  # nobody who has never left the height of the beginning has left the ground
+APART_M = 25.0  # buildings
+GROUND_NEAR_M = 60.0  # of a building: that ground tells of its ground floor
+GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope
+MOST_LANDINGS = 300  # of a building, and on the ground
+SAME_PLACE_M = 3.0  # of the same unit: tells nothing new
+SAME_HEIGHT_M = 0.25
+
+
+class Landing(msgspec.Struct, frozen=True):
+    """Somebody walked on the level here; incident frame."""
+
+    t_ns: int
+    unit_id: str
+    north_m: float
+    east_m: float
+    down_m: float
+    std_m: float
+
+
+class FloorSaid(msgspec.Struct, frozen=True):
+    """A person says which floor a unit was on, whose height was this."""
+
+    north_m: float
+    east_m: float
+    down_m: float
+    floor: int
+
+
+class LevelWalk(msgspec.Struct):
+    """What a unit's own path has done since it last climbed."""
+
+    boot_id: int = 0
+    distance_m: float = 0.0  # as it last said
+    down_m: float = 0.0
+    walked_m: float = 0.0
+    climbed_m: float = 0.0
+    since_start_m: float = 0.0  # net climb since the path began
+    left_ground: bool = False
+
+    def follow(self, position: Position) -> bool:
+        """True where the wearer has just walked far enough on the level."""
+        if position.header.boot_id == self.boot_id:
+            walked_m = max(0.0, position.distance_m - self.distance_m)
+            climbed_m = position.down_m - self.down_m
+        else:
+            self.left_ground = self.left_ground or self.boot_id != 0
+            walked_m, climbed_m = 0.0, 0.0
+        self.boot_id, self.distance_m = position.header.boot_id, position.distance_m
+        self.down_m = position.down_m
+        self.walked_m += walked_m
+        self.climbed_m += climbed_m
+        self.since_start_m += climbed_m
+        self.left_ground = self.left_ground or abs(self.since_start_m) > BEGAN_M
+        if abs(self.climbed_m) > CLIMB_M:
+            self.walked_m = self.climbed_m = 0.0
+        if self.walked_m < LEVEL_WALK_M:
+            return False
+        self.walked_m = 0.0
+        return True
+
+
+class Building(msgspec.Struct):
+    """Landings beside each other, and the storeys that they tell of."""
+
+    landings: list[Landing]
+    box_m: tuple[float, float, float, float]  # south, west, north, east of all landings
+    storeys: tuple[Storey, ...] = ()
+
+    def away_m(self, north_m: float, east_m: float) -> float:
+        """Distance to the box, 0 in it."""
+        south, west, north, east = self.box_m
+        to_north_m = max(south - north_m, north_m - north, 0.0)
+        return max(to_north_m, west - east_m, east_m - east)
+
+    def take(self, landing: Landing) -> None:
+        _keep(self.landings, landing)
+        self._widen(landing.north_m, landing.east_m, landing.north_m, landing.east_m)
+
+    def unite(self, other: Building) -> None:
+        self.landings = [*self.landings, *other.landings][-MOST_LANDINGS:]
+        self._widen(*other.box_m)
+
+    def _widen(self, south: float, west: float, north: float, east: float) -> None:
+        box = self.box_m
+        self.box_m = min(box[0], south), min(box[1], west), max(box[2], north), max(box[3], east)
+
+
+class LearntFloors(msgspec.Struct):
+    """Of the whole site."""
+
+    ground: list[Landing] = msgspec.field(default_factory=list)
+    buildings: list[Building] = msgspec.field(default_factory=list)
+    walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
+    said: tuple[FloorSaid, ...] = ()
+    open: tuple[Storey, ...] = ()  # where nobody has been in any building
+
+    def follow(self, position: Position, unit_id: str) -> bool:
+        """A unit's own path went on; True where its wearer walks on the level."""
+        return self.walks.setdefault(unit_id, LevelWalk()).follow(position)
+
+    def land(self, landing: Landing, *, is_outside: bool, began_on_ground: bool) -> None:
+        """A unit walks on the level; outside that is the ground, or a slope or a roof, which
+        tells nothing.
+        """
+        walk = self.walks[landing.unit_id]
+        apart_m = abs(landing.down_m - self._ground_of(self.ground).down_m)
+        if (began_on_ground and not walk.left_ground) or (is_outside and apart_m < BEGAN_M):
+            _keep(self.ground, landing)
+            self._learn_all()
+        if not is_outside:
+            building = self._building_of(landing)
+            building.take(landing)
+            self._learn(building)
+
+    def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
+        """Lowest first; empty before anybody has walked anywhere."""
+        near = [(one.away_m(north_m, east_m), n) for n, one in enumerate(self.buildings)]
+        away_m, number = min(near, default=(APART_M, 0))
+        return self.buildings[number].storeys if away_m < APART_M else self.open
+
+    def say(self, said: Sequence[FloorSaid]) -> None:
+        """What people say of floors, in the place of what they said before."""
+        if self.said != tuple(said):
+            self.said = tuple(said)
+            self._learn_all()
+
+    def forget(self, unit_id: str) -> None:
+        self.walks.pop(unit_id, None)
+        self._keep_only(lambda landing: landing.unit_id != unit_id)
+
+    def trim(self, before_ns: int) -> None:
+        """What lies before that time is no longer wanted."""
+        self._keep_only(lambda landing: landing.t_ns >= before_ns)
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
+        """The incident frame was moved: turned clockwise, then shifted."""
+
+        def moved(one: Landing) -> Landing:
+            north, east = rotate(one.north_m, one.east_m, turn_rad)
+            return msgspec.structs.replace(
+                one, north_m=north + north_m, east_m=east + east_m, down_m=one.down_m + down_m
+            )
+
+        self._begin_anew(map(moved, self.ground), map(moved, self._inside()))
+
+    def _inside(self) -> list[Landing]:
+        return [one for building in self.buildings for one in building.landings]
+
+    def _keep_only(self, wanted: Callable[[Landing], bool]) -> None:
+        self._begin_anew(filter(wanted, self.ground), filter(wanted, self._inside()))
+
+    def _begin_anew(self, ground: Iterable[Landing], inside: Iterable[Landing]) -> None:
+        self.ground, self.buildings = list(ground), []
+        for landing in sorted(inside, key=lambda one: one.t_ns):
+            self._building_of(landing).take(landing)
+        self._learn_all()
+
+    def _building_of(self, landing: Landing) -> Building:
+        """The one that it is in or beside; where it lies between several, they are one."""
+        place = landing.north_m, landing.east_m
+        beside = [one for one in self.buildings if one.away_m(*place) < APART_M]
+        if not beside:
+            self.buildings.append(Building([], (*place, *place)))
+            return self.buildings[-1]
+        first, *others = beside
+        for other in others:
+            first.unite(other)
+            self.buildings.remove(other)
+        return first
+
+    def _learn_all(self) -> None:
+        self.open = number_levels((), self._ground_of(self.ground)) if self.ground else ()
+        for building in self.buildings:
+            self._learn(building)
+
+    def _learn(self, building: Building) -> None:
+        near = [
+            one for one in self.ground if building.away_m(one.north_m, one.east_m) < GROUND_NEAR_M
+        ]
+        ground = self._ground_of(near or self.ground)
+        said = [
+            (one.down_m, one.floor)
+            for one in self.said
+            if building.away_m(one.north_m, one.east_m) < APART_M
+        ]
+        heights = [Height(one.down_m, one.std_m) for one in building.landings]
+        building.storeys = number_levels(levels_of(heights), ground, said)
+
+    def _ground_of(self, landings: Sequence[Landing]) -> Height:
+        """Where nobody was seen outside or beginning, the frame's heights begin on the ground."""
+        if not landings:
+            return Height(0.0, GROUND_STD_M)
+        return Height(float(np.median([one.down_m for one in landings])), GROUND_STD_M)
+
+
+def _keep(landings: list[Landing], landing: Landing) -> None:
+    """One of the same unit at the same place takes the place of the other."""
+    for row, one in enumerate(landings):
+        if (
+            one.unit_id == landing.unit_id
+            and abs(one.down_m - landing.down_m) < SAME_HEIGHT_M
+            and abs(one.north_m - landing.north_m) < SAME_PLACE_M
+            and abs(one.east_m - landing.east_m) < SAME_PLACE_M
+        ):
+            if landing.std_m < one.std_m:
+                landings[row] = landing
+            return
+    landings.append(landing)
+    if len(landings) > MOST_LANDINGS:
+        del landings[_oldest_of_most(landings)]
+
+
+def _oldest_of_most(landings: Sequence[Landing]) -> int:
+    """At the height at which there are most, the oldest one."""
+    heights = [round(one.down_m) for one in landings]
+    fullest = max(heights, key=lambda height: (heights.count(height), height))
+    return heights.index(fullest)
