@@ -10,9 +10,12 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from base_station.cli import app
 from edge.sources.black_box import BlackBoxSource
 from edge.warm_up import compile_trackers
+from shared.errors import UserError
 from shared.mcap_log import segment_paths
 from tests.station_command import Browser, Command, free_port, wait_until
 
@@ -103,8 +106,15 @@ def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -
         ([UNIT, "--from", "2020-01-01", "--to", "2020-01-02"], "no recording of that time"),
     ],
 )
-def test_what_cannot_be_is_one_sentence(running: Running, arguments: list[str], said: str) -> None:
-    code, text = running.fetch(*arguments)
+def test_what_cannot_be_is_refused_in_words(
+    running: Running, arguments: list[str], said: str
+) -> None:
+    result = CliRunner().invoke(app, ["fetch-recording", *arguments, *running.where])
+    assert isinstance(result.exception, UserError)
+    assert said in str(result.exception)
+
+
+def test_a_refusal_is_one_sentence_and_no_success(running: Running) -> None:
+    code, text = running.fetch("bert", "--from", "2020-01-01")
     assert code == 2
-    assert said in text
     assert len(text.strip().splitlines()) == 1
