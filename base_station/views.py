@@ -47,10 +47,13 @@ from base_station.site.plan import Ring
 from base_station.site.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
-from shared.messages import AlarmChange, AlarmState, FusedPosition, Heartbeat, Status
+from shared.messages import Activity, AlarmChange, AlarmState, FusedPosition, Heartbeat, Status
+from shared.quality import Quality
 
 NS_PER_MS = 1_000_000
 RESOLVED_SHOWN = 20
+_ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by number
+_QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 
 
 class StationFacts(msgspec.Struct, frozen=True):
@@ -70,19 +73,19 @@ def unit_views(
     state: StationState, units: Iterable[UnitState], photo_urls: PhotoUrls
 ) -> tuple[UnitView, ...]:
     """Units' cards and places."""
-    open_alarms: dict[str, list[str]] = {}
+    open_alarms: dict[str, list[Alarm]] = {}
     for alarm in state.alarms.values():
         if alarm.state is not AlarmState.RESOLVED:
-            open_alarms.setdefault(alarm.unit_id, []).append(alarm.alarm_id)
+            open_alarms.setdefault(alarm.unit_id, []).append(alarm)
     return tuple(
         _unit_view(state, unit, photo_urls, open_alarms.get(unit.unit_id, ())) for unit in units
     )
 
 
 def _unit_view(
-    state: StationState, unit: UnitState, photo_urls: PhotoUrls, open_alarms: Sequence[str]
+    state: StationState, unit: UnitState, photo_urls: PhotoUrls, open_alarms: Sequence[Alarm]
 ) -> UnitView:
-    heat = state.alarms.get(f"heat|{unit.unit_id}")
+    status = unit.shown_status
     return UnitView(
         unit_id=unit.unit_id,
         label=unit.label,
@@ -90,23 +93,18 @@ def _unit_view(
         person=person_view(unit.person, photo_urls) if unit.person else None,
         link=unit.link,
         last_heard_ms=_ms(unit.heard_ns),
-        status=_status_view(unit, unit.shown_status) if unit.shown_status else None,
+        status=_status_view(unit, status) if status else None,
         status_ms=_ms(unit.status_ns) if unit.status else None,
         ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
-        heat_level=heat.level if heat is not None and heat.is_open else "",
+        heat_level=next((alarm.level for alarm in open_alarms if alarm.rule == "heat"), ""),
         position=_position_view(state, unit.fused, unit.reach) if unit.fused else None,
         inside_since_ms=_ms(unit.inside_since_ns),
         duty=_duty_view(unit.duty) if unit.duty else None,
-        alarms=tuple(open_alarms),
+        alarms=tuple(alarm.alarm_id for alarm in open_alarms),
         trust=trust_view(state, unit),
         clock=_clock_view(unit.heartbeat),
-        cloned=_is_open(state, f"cloned-unit|{unit.unit_id}"),
+        cloned=any(alarm.rule == "cloned-unit" for alarm in open_alarms),
     )
-
-
-def _is_open(state: StationState, key: str) -> bool:
-    alarm = state.alarms.get(key)
-    return alarm is not None and alarm.is_open
 
 
 def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:
@@ -300,7 +298,7 @@ def snapshot(
 
 def _status_view(unit: UnitState, status: Status) -> StatusView:
     return StatusView(
-        activity=status.activity.name.lower(),
+        activity=_ACTIVITY_WORDS[status.activity],
         motionless_s=status.motionless_s,
         battery=status.battery,
         mayday=status.mayday,
@@ -327,7 +325,7 @@ def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> Po
         std_down_m=fused.std_down_m,
         heading_rad=fused.heading_rad,
         heading_std_rad=fused.heading_std_rad,
-        quality=fused.quality.name.lower(),
+        quality=_QUALITY_WORDS[fused.quality],
         quality_reason=fused.quality_reason,
         since_gps_s=fused.since_gps_s,
         lat_deg=lat_deg,

@@ -92,8 +92,13 @@ class Picture:
         self._sink.delta(delta)
 
     @property
+    def is_urgent(self) -> bool:
+        """More than where units are and how they do has changed."""
+        return bool(self._alarms or self._commands or self._pins_changed)
+
+    @property
     def _has_news(self) -> bool:
-        return bool(self._units or self._alarms or self._commands or self._pins_changed)
+        return bool(self._units) or self.is_urgent
 
     def reset(self, replay: ReplayView | None = None) -> None:
         """Everybody begins again."""
