@@ -61,14 +61,17 @@ class EskfConfig(NamedTuple):
     aid_look_s: float = 1.0  # a longer one is looked at again
     aid_gate: float = 4.0  # standard deviations
 
-    # The magnetic field (magnetic_heading.py).
+    # The magnetic field (magnetic_field.py).
     field_std_ut: float = 60.0  # the earth's, before it is seen
     field_iron_std_ut: float = 40.0  # of iron on the foot
     field_iron_least_ut: float = 1.0  # ... of a calibrated unit
     field_noise_ut: float = 0.5  # of the mean of a stance
     field_near_m: float = 1.5  # steel nearby is forgotten over this way
     field_wide_m: float = 30.0  # and that of a whole part of a building over this
-    field_wide_share: float = 0.7  # of the deviation nearby
+    field_wide_ut: float = 0.4  # deviation of that by the first belief
+    field_wide_ratio: float = 2.2  # ... of each that follows by the one before
+    field_least_log_weight: float = -12.0  # of a belief beside the likeliest
+    field_counts: float = 0.01  # weight from which a belief is asked where north is
     field_bend_start_ut: float = 5.0  # how far steel bends the field, before it is seen
     field_bend_floor_ut: float = 0.7
     field_bend_rise: float = 0.3  # of one stance that is worse

@@ -1,17 +1,11 @@
 """Heading from the magnetic field, among steel and with a magnetometer nobody calibrated.
 
-Once a stance the mean field, turned into navigation axes by the tracker's attitude ``R``,
-is compared with a model that is learned on the way:
-
-    R m = f + R h + near + wide + d (f x down)
-
-``f`` is the earth's field in the frame of the walk, the same wherever one goes; ``h`` is the
-iron on the foot, the same in sensor axes, and told from ``f`` by turning about; ``near`` and
-``wide`` are what steel does to the field, forgotten within a stride or two and within a
-room; ``d`` is the error of heading that is looked for.  Only the horizontal component across
-``f`` tells of ``d``.  The other two, along and vertical, tell how bent the field is just
-here, and that is how much the one across is doubted.  North stays where the walk began:
-nothing is taken for granted of declination, strength or dip.
+How far steel bends the field over a whole part of a building decides how much it tells, and
+cannot be seen from one place.  So there are several beliefs of it side by side (see
+``magnetic_field``), each a filter of its own, and each as likely as what is seen on the way
+was by it (Blackman and Popoli, "Design and Analysis of Modern Tracking Systems", 1999,
+section 4.5).  The heading is what all of them say together: while a wide bend is as likely as
+none, they say little.
 """
 
 from __future__ import annotations
@@ -22,12 +16,18 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import heading_variance
+from edge.tracker.magnetic_field import (
+    aim,
+    expect,
+    learn,
+    leave,
+    north_of,
+    north_variance,
+)
 from edge.tracker.measuring import begin_updates, end_updates, measure_heading
-from edge.tracker.side_filter import agree, handed_over, measure, project
-from edge.tracker.state import COMPASS_SIZE, Aid, FilterState, Ring
+from edge.tracker.side_filter import agree, noise_to_tell, told_residual
+from edge.tracker.state import Aid, FilterState, Ring
 
-FIELD, IRON, NEAR, WIDE = 1, 4, 7, 10  # three states each, after the error of heading
-ALONG, VERTICAL, ACROSS = 0, 1, 2
 ABSURD_UT = 1000.0  # twenty times the earth's field
 
 
@@ -73,69 +73,99 @@ def _gather(ring: Ring, state: FilterState, slot: int) -> None:
 
 @njit()
 def _look(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
-    """Learn the model from the mean of a stance, and the heading from the model."""
+    """Learn from the mean of a stance, and tell the main filter of the heading."""
     compass = state.compass
+    beliefs = compass.beliefs
     if not compass.started:
-        _start(compass, config)
+        compass.started = True
+        for j in range(len(beliefs)):
+            wide_std_ut = config.field_wide_ut * config.field_wide_ratio**j
+            expect(beliefs[j], wide_std_ut, compass.iron_std_ut, config)
     prior = heading_variance(state.covariance)
-    agree(compass.covariance, prior)
-    _leave(compass, state, config)
-    _aim(compass)
-    _judge_bend(compass, config)
-    for axis in range(3):
-        variance = component_row(compass, axis, config)
-        residual = _residual(compass)
-        expected = project(compass.covariance, compass.row, compass.column) + variance
-        if residual * residual > config.aid_gate**2 * expected:
-            continue
-        measure(
-            compass.estimate,
-            compass.covariance,
-            compass.row,
-            residual,
-            variance,
-            compass.column,
-        )
-    residual_rad, variance = handed_over(compass.estimate, compass.covariance, prior)
-    if variance < math.inf:
+    moved_m = _moved_m(compass, state)
+    for j in range(len(beliefs)):
+        _agree_on_heading(compass, beliefs[j], prior)
+        leave(beliefs[j], moved_m, config)
+        learn(compass, beliefs[j], config)
+    _weigh(compass, config)
+    mean, variance = _heading_of(compass)
+    noise = noise_to_tell(prior, variance)
+    if noise < math.inf:
         begin_updates(state)
-        measure_heading(ring, state, slot, residual_rad, variance)
+        measure_heading(ring, state, slot, told_residual(mean, prior, noise), noise)
         end_updates(state)
-    _find_north(ring, state, slot, config)
-    _write_north(ring, state, slot)
+        for j in range(len(beliefs)):
+            beliefs[j].estimate[0] -= mean
+    compass.heading_var_rad2 = heading_variance(state.covariance)
+    if compass.calibrated:
+        known = compass.earth_known and ring[slot].t_ns >= compass.earth_from_ns
+        _find_north(compass, known, config)
+        _write_north(ring, state, slot)
 
 
 @njit()
-def _find_north(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
-    """Judge where magnetic north lies in the frame as the main filter has it now.
+def _moved_m(compass: Aid, state: FilterState) -> float:
+    north_m = state.position_n_m[0] - compass.north_m
+    east_m = state.position_n_m[1] - compass.east_m
+    compass.north_m, compass.east_m = state.position_n_m[0], state.position_n_m[1]
+    return math.sqrt(north_m * north_m + east_m * east_m)
 
-    The frame is the walk's, turned by the error of heading, and both are known together.  To
-    what the model itself knows is added what it cannot: a field that is bent alike all over,
-    which shows, where the earth's is known, by strength and dip.
-    """
-    compass = state.compass
-    if not compass.calibrated:
-        return
-    _aim(compass)
-    p = compass.covariance
-    ahead, right, strength = compass.aim_n[0], compass.aim_n[1], compass.strength_ut
-    compass.heading_var_rad2 = heading_variance(state.covariance)
-    compass.north_var_rad2 = math.inf
-    spread = p[FIELD, FIELD] + p[FIELD + 1, FIELD + 1]
-    if not strength * strength > config.field_known_ratio**2 * spread:
-        return
-    across_var = right * right * p[FIELD, FIELD] + ahead * ahead * p[FIELD + 1, FIELD + 1]
-    across_var -= 2.0 * right * ahead * p[FIELD, FIELD + 1]
-    with_heading = ahead * p[FIELD + 1, 0] - right * p[FIELD, 0]
-    everywhere_var = config.field_everywhere_ut**2
-    if compass.earth_known and ring[slot].t_ns >= compass.earth_from_ns:
-        off_along_ut = strength - compass.earth_horizontal_ut
-        off_down_ut = compass.estimate[FIELD + 2] - compass.earth_down_ut
-        everywhere_var = config.field_agreeing_ut**2
-        everywhere_var += 0.5 * (off_along_ut * off_along_ut + off_down_ut * off_down_ut)
-    variance = (across_var + everywhere_var) / (strength * strength)
-    variance += p[0, 0] - 2.0 * with_heading / strength
-    compass.north_rad = math.atan2(right, ahead) - compass.estimate[0]
+
+@njit()
+def _agree_on_heading(compass: Aid, belief: Aid, prior: float) -> None:
+    """Give a belief what the main filter has lost of the heading since, or learned elsewhere."""
+    before, own = compass.heading_var_rad2, belief.covariance[0, 0]
+    agree(belief.covariance, own + prior - before if prior >= before else own * prior / before)
+
+
+@njit()
+def _weigh(compass: Aid, config: EskfConfig) -> None:
+    """Make the weights' sum one; no belief is ever ruled out, for the next room may be another."""
+    beliefs = compass.beliefs
+    most = -math.inf
+    for j in range(len(beliefs)):
+        most = max(most, beliefs[j].log_weight)
+    total = 0.0
+    for j in range(len(beliefs)):
+        beliefs[j].log_weight = max(beliefs[j].log_weight - most, config.field_least_log_weight)
+        beliefs[j].weight = math.exp(beliefs[j].log_weight)
+        total += beliefs[j].weight
+    for j in range(len(beliefs)):
+        beliefs[j].weight /= total
+
+
+@njit()
+def _heading_of(compass: Aid) -> tuple[float, float]:
+    """Return mean and variance of the error of heading over all beliefs."""
+    mean = 0.0
+    for j in range(len(compass.beliefs)):
+        mean += compass.beliefs[j].weight * compass.beliefs[j].estimate[0]
+    variance = 0.0
+    for j in range(len(compass.beliefs)):
+        belief = compass.beliefs[j]
+        off = belief.estimate[0] - mean
+        variance += belief.weight * (belief.covariance[0, 0] + off * off)
+    return mean, variance
+
+
+@njit()
+def _find_north(compass: Aid, earth_known: bool, config: EskfConfig) -> None:
+    """Say where magnetic north lies in the frame, by all beliefs that count."""
+    north, east = 0.0, 0.0
+    for j in range(len(compass.beliefs)):
+        belief = compass.beliefs[j]
+        aim(belief)
+        north += belief.weight * math.cos(north_of(belief))
+        east += belief.weight * math.sin(north_of(belief))
+    compass.north_rad = math.atan2(east, north)
+    variance = 0.0
+    for j in range(len(compass.beliefs)):
+        belief = compass.beliefs[j]
+        if belief.weight > config.field_counts:
+            off = north_of(belief) - compass.north_rad
+            off = math.atan2(math.sin(off), math.cos(off))
+            own = north_variance(compass, belief, earth_known, config)
+            variance += belief.weight * (own + off * off)
     compass.north_var_rad2 = variance
 
 
@@ -146,120 +176,3 @@ def _write_north(ring: Ring, state: FilterState, slot: int) -> None:
     drifted = max(heading_variance(state.covariance) - compass.heading_var_rad2, 0.0)
     ring[slot].magnetic_north_rad = compass.north_rad
     ring[slot].magnetic_north_std_rad = math.sqrt(compass.north_var_rad2 + drifted)
-
-
-@njit()
-def _start(compass: Aid, config: EskfConfig) -> None:
-    compass.started = True
-    compass.bend_var_ut2 = config.field_bend_start_ut**2
-    for i in range(3):
-        compass.covariance[FIELD + i, FIELD + i] = config.field_std_ut**2
-        compass.covariance[IRON + i, IRON + i] = compass.iron_std_ut**2
-        compass.covariance[WIDE + i, WIDE + i] = config.field_wide_share**2 * compass.bend_var_ut2
-
-
-@njit()
-def _leave(compass: Aid, state: FilterState, config: EskfConfig) -> None:
-    """Forget what steel did where the foot stood before, as far as it has moved since."""
-    north_m = state.position_n_m[0] - compass.north_m
-    east_m = state.position_n_m[1] - compass.east_m
-    moved_m = math.sqrt(north_m * north_m + east_m * east_m)
-    compass.north_m, compass.east_m = state.position_n_m[0], state.position_n_m[1]
-    near = math.exp(-moved_m / config.field_near_m)
-    wide = math.exp(-moved_m / config.field_wide_m)
-    _fade(compass, NEAR, near)
-    _fade(compass, WIDE, wide)
-    compass.near_is_new = 1.0 - near * near
-    compass.wide_is_new = 1.0 - wide * wide
-
-
-@njit()
-def _fade(compass: Aid, first: int, kept: float) -> None:
-    for i in range(first, first + 3):
-        compass.estimate[i] *= kept
-        for j in range(COMPASS_SIZE):
-            compass.covariance[i, j] *= kept
-        for j in range(COMPASS_SIZE):
-            compass.covariance[j, i] *= kept
-
-
-@njit()
-def _judge_bend(compass: Aid, config: EskfConfig) -> None:
-    """Judge how bent the field is here by the components that no heading changes.
-
-    Doubt comes at once and goes slowly.
-    """
-    bend_var = compass.bend_var_ut2
-    for axis in (ALONG, VERTICAL):
-        expected = component_row(compass, axis, config)
-        expected += project(compass.covariance, compass.row, compass.column)
-        residual = _residual(compass)
-        seen = max(residual * residual - expected, 0.0)
-        weight = config.field_bend_rise if seen > bend_var else config.field_bend_fall
-        weight *= compass.near_is_new * bend_var / (bend_var + expected)
-        bend_var += weight * (seen - bend_var)
-    bend_var = max(bend_var, config.field_bend_floor_ut**2)
-    compass.bend_var_ut2 = bend_var
-    wide_var = config.field_wide_share**2 * bend_var
-    for i in range(3):
-        compass.covariance[NEAR + i, NEAR + i] += compass.near_is_new * bend_var
-        compass.covariance[WIDE + i, WIDE + i] += compass.wide_is_new * wide_var
-
-
-@njit()
-def _aim(compass: Aid) -> None:
-    """Set the horizontal direction of ``f``; north where it is unknown."""
-    north, east = compass.estimate[FIELD], compass.estimate[FIELD + 1]
-    strength = math.sqrt(north * north + east * east)
-    compass.strength_ut = strength
-    compass.aim_n[0] = north / strength if strength > 0.0 else 1.0
-    compass.aim_n[1] = east / strength if strength > 0.0 else 0.0
-
-
-@njit()
-def component_row(compass: Aid, axis: int, config: EskfConfig) -> float:
-    """Write the measurement row of one component; return the variance that is its own.
-
-    That includes what the linear model leaves out: the product of the errors of heading and
-    of ``f``, and that sine and cosine are no straight lines.
-    """
-    ahead, right = compass.aim_n[0], compass.aim_n[1]
-    heading_var = compass.covariance[0, 0]
-    strength = compass.strength_ut
-    variance = config.field_noise_ut**2
-    sensitivity = 0.0
-    if axis == ALONG:
-        x, y, z = ahead, right, 0.0
-        variance += 0.5 * (heading_var * strength) ** 2
-    elif axis == VERTICAL:
-        x, y, z = 0.0, 0.0, 1.0
-    else:
-        x, y, z = -right, ahead, 0.0
-        spread = compass.covariance[FIELD, FIELD] + compass.covariance[FIELD + 1, FIELD + 1]
-        variance += heading_var * spread
-        bend_ratio = compass.bend_var_ut2 / max(strength * strength, 1.0)
-        variance += compass.bend_var_ut2 * bend_ratio / config.field_bend_ratio**2
-        known = strength * strength > config.field_known_ratio**2 * spread
-        if known and bend_ratio < config.field_bend_limit**2:
-            sensitivity = -strength
-            variance += heading_var**3 * strength**2 * 5.0 / 12.0
-        else:
-            variance += heading_var * strength**2
-    row, rotation = compass.row, compass.rotation_nb
-    for first in (FIELD, NEAR, WIDE):
-        row[first], row[first + 1], row[first + 2] = x, y, z
-    for i in range(3):
-        row[IRON + i] = x * rotation[0, i] + y * rotation[1, i] + z * rotation[2, i]
-    row[0] = sensitivity
-    return float(variance)
-
-
-@njit()
-def _residual(compass: Aid) -> float:
-    """Return the measured component beyond the one expected, for the row just written."""
-    seen = 0.0
-    for i in range(3):
-        seen += compass.row[FIELD + i] * compass.field_n_ut[i]
-    for i in range(COMPASS_SIZE):
-        seen -= compass.row[i] * compass.estimate[i]
-    return float(seen)

@@ -82,10 +82,26 @@ def handed_over(estimate: Floats, covariance: Floats, prior: float) -> tuple[flo
     ``prior`` is the main filter's own variance of the error.  The variance is infinite when
     there is too little to tell; else the first state of ``estimate`` is told and becomes zero.
     """
-    variance = max(covariance[0, 0], TINY)
-    if not variance < (1.0 - WORTH) * prior:
-        return 0.0, math.inf
-    noise = 1.0 / (1.0 / variance - 1.0 / prior)
-    residual = estimate[0] * (prior + noise) / prior
+    noise = noise_to_tell(prior, covariance[0, 0])
+    if noise == math.inf:
+        return 0.0, noise
+    residual = told_residual(estimate[0], prior, noise)
     estimate[0] = 0.0
     return residual, noise
+
+
+@njit()
+def noise_to_tell(prior: float, variance: float) -> float:
+    """Return the variance of a measurement that brings ``prior`` down to ``variance``.
+
+    Infinite where that is not worth it.
+    """
+    if not variance < (1.0 - WORTH) * prior:
+        return math.inf
+    return float(1.0 / (1.0 / max(variance, TINY) - 1.0 / prior))
+
+
+@njit()
+def told_residual(mean: float, prior: float, noise: float) -> float:
+    """Return the residual of that measurement which moves the error's mean from 0 to ``mean``."""
+    return float(mean * (prior + noise) / prior)

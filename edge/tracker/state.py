@@ -18,12 +18,13 @@ from edge.tracker.error_model import SIZE
 from edge.tracker.kernel_cache import SOURCES
 
 MAX_UPDATES = 10  # scalar updates one sample can bring
-COMPASS_SIZE = 13  # states of magnetic_heading
+COMPASS_SIZE = 13  # states of magnetic_field
+BELIEFS = 5
 
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
 Progress: TypeAlias = Any  # one record of PROGRESS
 FilterState: TypeAlias = Any  # one record of FILTER
-Aid: TypeAlias = Any  # one record of COMPASS or BAROMETER
+Aid: TypeAlias = Any  # one record of COMPASS, BELIEF or BAROMETER
 
 RING = np.dtype(
     [
@@ -74,13 +75,29 @@ RING = np.dtype(
     align=True,
 )
 
-# A side filter (side_filter.py) and what its aid has shown since it was last looked at.
-COMPASS = np.dtype(
+# A side filter (side_filter.py): one belief of how steel bends the field (magnetic_field.py).
+BELIEF = np.dtype(
     [
         ("estimate", np.float64, COMPASS_SIZE),
         ("covariance", np.float64, (COMPASS_SIZE, COMPASS_SIZE)),
+        ("log_weight", np.float64),  # beside the likeliest
+        ("weight", np.float64),
+        ("wide_var_ut2", np.float64),  # of what steel does to the field in a part of a building
+        ("bend_var_ut2", np.float64),  # and just around here
+        # Scratch.
+        ("near_is_new", np.float64),
+        ("wide_is_new", np.float64),
+        ("strength_ut", np.float64),
+        ("aim_n", np.float64, 2),
+    ],
+    align=True,
+)
+
+# The beliefs, and what the magnetometer has shown since they were last looked at.
+COMPASS = np.dtype(
+    [
+        ("beliefs", BELIEF, BELIEFS),
         ("started", np.bool_),
-        ("bend_var_ut2", np.float64),  # of what steel does to the field around here
         ("calibrated", np.bool_),
         ("iron_std_ut", np.float64),  # of iron on the foot, before it is seen
         ("north_rad", np.float64),  # of magnetic north in the frame, at the last look
@@ -97,16 +114,13 @@ COMPASS = np.dtype(
         ("field_n_ut", np.float64, 3),  # their mean
         ("rotation_nb", np.float64, (3, 3)),  # and that of their attitudes
         # Scratch.
-        ("near_is_new", np.float64),
-        ("wide_is_new", np.float64),
-        ("strength_ut", np.float64),
-        ("aim_n", np.float64, 2),
         ("row", np.float64, COMPASS_SIZE),
         ("column", np.float64, COMPASS_SIZE),
     ],
     align=True,
 )
 
+# A side filter and what the barometer has shown since it was last looked at.
 BAROMETER = np.dtype(
     [
         ("estimate", np.float64, 2),

@@ -14,7 +14,7 @@ from edge.samples import ImuBatch
 from edge.simulation import SCENARIOS, Simulation
 from edge.tracker.config import EskfConfig
 from edge.tracker.eskf import EskfTracker
-from edge.tracker.magnetic_heading import (
+from edge.tracker.magnetic_field import (
     ACROSS,
     ALONG,
     FIELD,
@@ -22,10 +22,11 @@ from edge.tracker.magnetic_heading import (
     NEAR,
     VERTICAL,
     WIDE,
+    aim,
     component_row,
 )
 from edge.tracker.rows import join_rows
-from edge.tracker.state import COMPASS, COMPASS_SIZE
+from edge.tracker.state import BELIEF, COMPASS, COMPASS_SIZE
 from edge.tracker.strapdown import quaternion_from_rotation, rotate_navigation, rotation_matrix
 
 SEEDS = (0, 1, 3)
@@ -104,14 +105,35 @@ def test_among_heavy_steel_it_is_left_alone():
     """Fields bent by 50 degrees from step to step, as over the reinforced floor of ``loops``."""
     for seed in SEEDS:
         description, imu, truth = simulated(seed)
-        noise = np.random.default_rng(seed)
-        waves = 2.0 * np.pi / noise.uniform(0.5, 3.0, (12, 1)) * random_directions(noise, 12)
-        phases = noise.uniform(0.0, 2.0 * np.pi, 12)
-        bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ noise.normal(0.0, 5.0, (12, 3))
-        bend_ut = np.einsum("nji,nj->ni", truth.rotation_nb, bend_n_ut)
-        rows = run(description, replace(imu, mag_ut=imu.mag_ut + bend_ut))
+        rows = run(description, bent(imu, truth, seed, wave_m=(0.5, 3.0), bend_ut=12.0))
         error_rad = rms(heading_errors_rad(rows, truth))
         assert error_rad < rms(blind_errors_rad(seed)) + np.radians(1.0)
+
+
+@pytest.mark.parametrize("bend_ut", [2.0, 5.0, 10.0])
+def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
+    """Over 25 to 80 m, so that no footfall differs much from the next."""
+    blind, seeing = [], []
+    for seed in SEEDS:
+        description, imu, truth = simulated(seed)
+        rows = run(description, bent(imu, truth, seed, wave_m=(25.0, 80.0), bend_ut=bend_ut))
+        blind.append(blind_errors_rad(seed))
+        seeing.append(heading_errors_rad(rows, truth))
+        late = slice(len(seeing[-1]) // 2, None)
+        assert rms(seeing[-1][late] / rows.heading_std_rad[::200][late]) < 2.5
+        assert rms(seeing[-1]) < rms(blind[-1]) + np.radians(2.0)
+    assert rms(np.concatenate(seeing)) < rms(np.concatenate(blind))
+
+
+def bent(imu, truth, seed, wave_m, bend_ut):
+    """The field bent by that much (root mean square, each axis) in waves of such lengths."""
+    noise = np.random.default_rng(seed)
+    waves = 2.0 * np.pi / noise.uniform(*wave_m, (12, 1)) * random_directions(noise, 12)
+    phases = noise.uniform(0.0, 2.0 * np.pi, 12)
+    amplitudes_ut = noise.normal(0.0, bend_ut / np.sqrt(6.0), (12, 3))
+    bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ amplitudes_ut
+    bend_b_ut = np.einsum("nji,nj->ni", truth.rotation_nb, bend_n_ut)
+    return replace(imu, mag_ut=imu.mag_ut + bend_b_ut)
 
 
 def random_directions(noise, count):
@@ -142,17 +164,16 @@ def test_batching_does_not_change_a_bit():
 @pytest.mark.parametrize("axis", [ALONG, VERTICAL, ACROSS])
 def test_the_row_is_the_derivative_of_the_model(axis):
     noise = np.random.default_rng(axis)
-    compass = np.zeros(1, COMPASS)[0]
+    compass, belief = np.zeros(1, COMPASS)[0], np.zeros(1, BELIEF)[0]
     attitude = quaternion_from_rotation(np.linalg.qr(noise.standard_normal((3, 3)))[0])
     rotation_matrix(attitude, compass["rotation_nb"])
     field_n_ut = np.array([16.0, -4.0, 45.0])
-    compass["estimate"][FIELD : FIELD + 3] = field_n_ut
-    compass["strength_ut"] = np.hypot(16.0, 4.0)
-    compass["aim_n"][:] = field_n_ut[:2] / compass["strength_ut"]
-    compass["covariance"][FIELD, FIELD] = 1e-6  # known
-    ahead, right = compass["aim_n"]
+    belief["estimate"][FIELD : FIELD + 3] = field_n_ut
+    belief["covariance"][FIELD, FIELD] = 1e-6  # known
+    aim(belief)
+    ahead, right = belief["aim_n"]
     axes = {ALONG: (ahead, right, 0.0), VERTICAL: (0.0, 0.0, 1.0), ACROSS: (-right, ahead, 0.0)}
-    component_row(compass, axis, EskfConfig())
+    component_row(compass, belief, axis, EskfConfig())
 
     def component(states):
         """What is seen when the states are these, by the attitude as it is estimated."""
@@ -164,7 +185,7 @@ def test_the_row_is_the_derivative_of_the_model(axis):
         seen_b = true_nb.T @ field + states[IRON : IRON + 3]
         return np.asarray(axes[axis]) @ compass["rotation_nb"] @ seen_b
 
-    here = compass["estimate"].copy()
+    here = belief["estimate"].copy()
     for state in range(COMPASS_SIZE):
         step = 1e-5 * np.eye(COMPASS_SIZE)[state]
         slope = (component(here + step) - component(here - step)) / 2e-5
