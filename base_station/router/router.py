@@ -18,6 +18,7 @@ from threading import Event, Thread
 
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
+from base_station.router.neighbour import Neighbour
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
 from shared.errors import BusError, ConfigError, MusterError, PortInUseError
 from shared.log import set_up_logging
@@ -28,7 +29,7 @@ READY = "router ready"
 FAILED = "router failed: "
 LINKS = "--links"  # between where it listens and whom it joins
 _LOOK_EVERY_S = 1.0
-_LOOKS_ALONE = 4  # at least, before a link to the other router is taken for lost
+_LOOKS_ALONE = 3  # at least, before the link to the other router is taken for lost
 _PROBE_S = 1.0
 _OPEN_ATTEMPTS = 10
 _ATTEMPT_EVERY_S = 0.3
@@ -64,9 +65,10 @@ class Router:
         self._links = links
         self._endpoint = endpoint_of(data, listen, links)
         self._bus = _open(self._endpoint)
+        self._neighbour = Neighbour(self._bus)
         self._told = ""
-        self._alone = 0  # looks in a row without a link to the other station's router
-        self._patience = _LOOKS_ALONE + secrets.randbelow(_LOOKS_ALONE)
+        self._alone = 0  # looks in a row without an answer from the other station's router
+        self._patience = _patience()
 
     def refresh(self) -> None:
         """What cannot be read leaves the rules as they were, and says so once.
@@ -85,28 +87,33 @@ class Router:
             return
         self._told = ""
         if wanted != self._endpoint:
-            self._bus.close()
-            self._bus = _open(wanted)
-            self._endpoint = wanted
+            self._open_again(wanted)
             logger.info("open again with the changed certificates and rules")
 
     def close(self) -> None:
+        self._neighbour.close()
         self._bus.close()
 
     def _link_again(self) -> None:
-        """Zenoh may give a link up for good when two routers open at once and each finds the other
-        half open.  Where the other one lets in others and there is no link, this one opens again;
-        after a while of its own, so that they do not meet like that another time.
+        """Zenoh may give a link up for good, or keep one that is deaf, when two routers open at
+        once and each finds the other half open.  Where the other one lets in others and does not
+        answer over the link, this one opens again; after a while of its own, so that they do not
+        meet like that another time.
         """
-        linked = not self._links or self._bus.is_linked()
+        linked = not self._links or self._neighbour.answers()
         self._alone = 0 if linked else self._alone + 1
         if self._alone >= self._patience:
-            self._alone = 0
+            self._alone, self._patience = 0, _patience()
             if not self._other_lets_in():
                 return
-            logger.warning("no link to the other station's router, though it answers: open again")
-            self._bus.close()
-            self._bus = _open(self._endpoint)
+            logger.warning("no answer from the other station's router, which runs: open again")
+            self._open_again(self._endpoint)
+
+    def _open_again(self, endpoint: StationEndpoint) -> None:
+        self.close()
+        self._bus = _open(endpoint)
+        self._neighbour = Neighbour(self._bus)
+        self._endpoint = endpoint
 
     def _other_lets_in(self) -> bool:
         asking = ClientEndpoint(self._links, self._endpoint.tls, _PROBE_S)
@@ -115,6 +122,11 @@ class Router:
         except BusError:
             return False
         return True
+
+
+def _patience() -> int:
+    """In looks; two routers that are patient for as long would meet half open again."""
+    return _LOOKS_ALONE + secrets.randbelow(_LOOKS_ALONE)
 
 
 def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> int:

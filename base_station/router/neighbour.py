@@ -1,0 +1,38 @@
+"""Whether the other station's router can be asked something over the link between the two."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterator
+
+from shared.bus import Bus
+from shared.channels import STATIONS_ROOT
+from shared.errors import BusError
+
+_KEY = f"{STATIONS_ROOT}/router"
+_PATIENCE_S = 1.0
+
+
+class Neighbour:
+    """Asks it, and answers it.  That Zenoh names a link is not enough: when two routers open at
+    once, each towards the other, there may be one that brings nothing in one of the directions.
+    """
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._name = secrets.token_hex(8).encode()
+        self._serving = bus.serve(f"{_KEY}/{self._name.decode()}", self._replies)
+
+    def answers(self) -> bool:
+        """Waits for a second where the link is there and nothing comes over it."""
+        try:
+            replies = self._bus.query(f"{_KEY}/*", b"", _PATIENCE_S)
+            return any(reply != self._name for reply in replies)
+        except BusError:
+            return False
+
+    def close(self) -> None:
+        self._serving.close()
+
+    def _replies(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
+        yield self._name

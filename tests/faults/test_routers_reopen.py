@@ -1,0 +1,99 @@
+"""Two routers in processes of their own that open again whenever they like: linked each time.
+
+Enrolling somebody has both open again at nearly the same moment, and so does a power cut.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from base_station.pki.folder import PkiFolder
+from base_station.router.process import RouterProcess
+from base_station.router.router import station_endpoint
+from shared.bus_zenoh import ZenohBus
+from shared.channels import Qos
+from tests.station_command import free_port, wait_until
+
+ROUNDS = 10
+SEED = 4
+SPREAD_S = 1.0  # a router looks once a second whether it is to open again
+LINKED_S = 30.0
+
+pytestmark = pytest.mark.timeout(300)
+
+
+@dataclass
+class End:
+    """A router's process and a station's session on it."""
+
+    name: str
+    pki: PkiFolder
+    process: RouterProcess
+    bus: ZenohBus
+    heard: set[str] = field(default_factory=set)
+
+    def note(self, key: str, payload: bytes) -> None:
+        self.heard.add(payload.decode())
+
+    def hears(self, other: End, words: str) -> bool:
+        other.bus.publish(f"muster/v1/{other.name}/up/status", words.encode(), Qos.LIVE)
+        time.sleep(0.02)
+        return words in self.heard
+
+    def open_again(self, chance: random.Random, authority: PkiFolder) -> None:
+        """Some time within the next second or two; killed, or because somebody was enrolled."""
+        time.sleep(SPREAD_S * chance.random())
+        if chance.random() < 0.5:
+            os.kill(self.process.pid, signal.SIGKILL)
+            return
+        authority.enroll(f"unit-{chance.getrandbits(32):x}")
+        self.pki.take_registry(authority.registry())
+
+
+def wait_heard(one: End, other: End, words: str) -> None:
+    what = f"{one.name} hears {other.name} in {words}"
+    wait_until(what, lambda: one.hears(other, words), LINKED_S)
+
+
+@pytest.fixture
+def ends(tmp_path: Path) -> Iterator[tuple[End, End]]:
+    addresses = [f"tls/127.0.0.1:{free_port()}" for _ in range(2)]
+    first, second = PkiFolder(tmp_path / "first"), PkiFolder(tmp_path / "second")
+    first.create("here", ["127.0.0.1"], [addresses[0]])
+    second.join(first.enroll_station("second", ["127.0.0.1"], addresses[1]))
+    second.take_registry(first.registry())
+    with ExitStack() as stack:
+        yield (
+            _end(first, addresses[0], addresses[1], stack),
+            _end(second, addresses[1], addresses[0], stack),
+        )
+
+
+def _end(pki: PkiFolder, own: str, other: str, stack: ExitStack) -> End:
+    data = pki.path.parent
+    process = stack.enter_context(closing(RouterProcess(data, (own,), (other,))))
+    bus = stack.enter_context(closing(ZenohBus(station_endpoint(data, (own,)))))
+    end = End(data.name, pki, process, bus)
+    stack.enter_context(closing(bus.subscribe("muster/v1/**", end.note)))
+    return end
+
+
+def test_two_routers_that_open_again_at_any_instant_link_again(ends: tuple[End, End]) -> None:
+    chance = random.Random(SEED)
+    first, second = ends
+    for number in range(ROUNDS):
+        for end in chance.sample(ends, 2):
+            end.open_again(chance, first.pki)
+        second.pki.take_registry(first.pki.registry())
+        time.sleep(SPREAD_S)
+        wait_heard(first, second, f"round {number}")
+        wait_heard(second, first, f"round {number}")
