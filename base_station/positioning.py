@@ -214,8 +214,7 @@ class Positioning:
         sure = None
         if floor is not None:
             sure = sureness(storeys, floor, estimate.down_m, estimate.std_down_m)
-        message = _as_message(estimate, unit, self._kind.name, floor, header)
-        return message if sure is None else msgspec.structs.replace(message, floor_probability=sure)
+        return _as_message(estimate, unit, self._kind.name, (floor, sure), header)
 
     def _land(self, state: StationState, unit: UnitState, t_ns: int, is_outside: bool) -> None:
         """The wearer walks on the level: a storey is learnt of it, or its height of a storey."""
@@ -341,8 +340,13 @@ def _count(unit: UnitState, reason: str) -> None:
 
 
 def _as_message(
-    estimate: Estimate, unit: UnitState, fuser: str, floor: int | None, header: Header
+    estimate: Estimate,
+    unit: UnitState,
+    fuser: str,
+    storey: tuple[int | None, float | None],
+    header: Header,
 ) -> FusedPosition:
+    """``storey``: the floor and how probable it is, where they are known."""
     return FusedPosition(
         header=header,
         unit_id=unit.unit_id,
@@ -356,11 +360,12 @@ def _as_message(
         correlation_ne=estimate.correlation_ne,
         heading_rad=estimate.heading_rad,
         heading_std_rad=estimate.heading_std_rad,
-        floor=floor,
+        floor=storey[0],
         quality=estimate.quality,
         quality_reason=estimate.quality_reason,
         fuser=fuser,
         since_gps_s=estimate.since_gps_s,
+        floor_probability=storey[1],
     )
 
 

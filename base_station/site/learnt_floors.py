@@ -8,6 +8,7 @@ Only heights that no pin has touched count, so that removing a pin leaves nothin
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
 import msgspec
@@ -25,6 +26,7 @@ APART_M = 25.0  # buildings
 GROUND_NEAR_M = 60.0  # of a building: that ground tells of its ground floor
 GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope
 MOST_LANDINGS = 300  # of a building, and on the ground
+LEARNT_SHARE = 16  # one new one of so many is enough to work the storeys out anew
 SAME_PLACE_M = 3.0  # of the same unit: tells nothing new
 SAME_HEIGHT_M = 0.25
 
@@ -88,6 +90,7 @@ class Building(msgspec.Struct):
     landings: list[Landing]
     box_m: tuple[float, float, float, float]  # south, west, north, east of all landings
     storeys: tuple[Storey, ...] = ()
+    unlearnt: int = 0  # landings since the storeys were worked out
 
     def away_m(self, north_m: float, east_m: float) -> float:
         """Distance to the box, 0 in it."""
@@ -96,7 +99,7 @@ class Building(msgspec.Struct):
         return max(to_north_m, west - east_m, east_m - east)
 
     def take(self, landing: Landing) -> None:
-        _keep(self.landings, landing)
+        self.unlearnt += _keep(self.landings, landing)
         self._widen(landing.north_m, landing.east_m, landing.north_m, landing.east_m)
 
     def unite(self, other: Building) -> None:
@@ -116,6 +119,7 @@ class LearntFloors(msgspec.Struct):
     walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
     said: tuple[FloorSaid, ...] = ()
     open: tuple[Storey, ...] = ()  # where nobody has been in any building
+    unlearnt: int = 0  # landings on the ground since all storeys were worked out
 
     def follow(self, position: Position, unit_id: str) -> bool:
         """A unit's own path went on; True where its wearer walks on the level."""
@@ -128,18 +132,23 @@ class LearntFloors(msgspec.Struct):
         walk = self.walks[landing.unit_id]
         apart_m = abs(landing.down_m - self._ground_of(self.ground).down_m)
         if (began_on_ground and not walk.left_ground) or (is_outside and apart_m < BEGAN_M):
-            _keep(self.ground, landing)
-            self._learn_all()
+            self.unlearnt += _keep(self.ground, landing)
+            if _is_much(self.unlearnt, self.ground):
+                self._learn_all()
         if not is_outside:
             building = self._building_of(landing)
             building.take(landing)
-            self._learn(building)
+            if _is_much(building.unlearnt, building.landings):
+                self._learn(building)
 
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
         """Lowest first; empty before anybody has walked anywhere."""
-        near = [(one.away_m(north_m, east_m), n) for n, one in enumerate(self.buildings)]
-        away_m, number = min(near, default=(APART_M, 0))
-        return self.buildings[number].storeys if away_m < APART_M else self.open
+        storeys, nearest_m = self.open, APART_M
+        for building in self.buildings:
+            away_m = building.away_m(north_m, east_m)
+            if away_m < nearest_m:
+                storeys, nearest_m = building.storeys, away_m
+        return storeys
 
     def say(self, said: Sequence[FloorSaid]) -> None:
         """What people say of floors, in the place of what they said before."""
@@ -192,11 +201,13 @@ class LearntFloors(msgspec.Struct):
         return first
 
     def _learn_all(self) -> None:
+        self.unlearnt = 0
         self.open = number_levels((), self._ground_of(self.ground)) if self.ground else ()
         for building in self.buildings:
             self._learn(building)
 
     def _learn(self, building: Building) -> None:
+        building.unlearnt = 0
         near = [
             one for one in self.ground if building.away_m(one.north_m, one.east_m) < GROUND_NEAR_M
         ]
@@ -216,8 +227,15 @@ class LearntFloors(msgspec.Struct):
         return Height(float(np.median([one.down_m for one in landings])), GROUND_STD_M)
 
 
-def _keep(landings: list[Landing], landing: Landing) -> None:
-    """One of the same unit at the same place takes the place of the other."""
+def _is_much(unlearnt: int, landings: Sequence[Landing]) -> bool:
+    """Every new landing of a few counts; of hundreds some must come together."""
+    return unlearnt * LEARNT_SHARE > len(landings)
+
+
+def _keep(landings: list[Landing], landing: Landing) -> bool:
+    """One of the same unit at the same place takes the place of the other; False where it tells
+    nothing new.
+    """
     for row, one in enumerate(landings):
         if (
             one.unit_id == landing.unit_id
@@ -225,16 +243,18 @@ def _keep(landings: list[Landing], landing: Landing) -> None:
             and abs(one.north_m - landing.north_m) < SAME_PLACE_M
             and abs(one.east_m - landing.east_m) < SAME_PLACE_M
         ):
-            if landing.std_m < one.std_m:
-                landings[row] = landing
-            return
+            if landing.std_m >= one.std_m:
+                return False
+            landings[row] = landing
+            return True
     landings.append(landing)
     if len(landings) > MOST_LANDINGS:
         del landings[_oldest_of_most(landings)]
+    return True
 
 
 def _oldest_of_most(landings: Sequence[Landing]) -> int:
     """At the height at which there are most, the oldest one."""
     heights = [round(one.down_m) for one in landings]
-    fullest = max(heights, key=lambda height: (heights.count(height), height))
+    fullest = max((count, height) for height, count in Counter(heights).items())[1]
     return heights.index(fullest)

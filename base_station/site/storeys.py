@@ -9,6 +9,7 @@ import msgspec
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
 FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
+_NOTHING = 30.0  # exp(-30): what is so improbable makes no difference
 
 
 class Storey(msgspec.Struct, frozen=True):
@@ -25,29 +26,32 @@ def floor_at(storeys: Sequence[Storey], down_m: float, floor: int | None) -> int
     """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
     if not storeys:
         return None
-    nearest = min(storeys, key=lambda storey: abs(storey.down_m - down_m))
-    held = next((storey for storey in storeys if storey.floor == floor), None)
-    if held is None:
-        return nearest.floor
-    gain_m = abs(held.down_m - down_m) - abs(nearest.down_m - down_m)
-    return nearest.floor if gain_m > 2.0 * FLOOR_HYSTERESIS_M else held.floor
+    nearest, nearest_m, held_m = None, math.inf, math.inf
+    for storey in storeys:
+        apart_m = abs(storey.down_m - down_m)
+        if storey.floor == floor:
+            held_m = apart_m
+        if apart_m < nearest_m:
+            nearest, nearest_m = storey.floor, apart_m
+    return floor if held_m - nearest_m <= 2.0 * FLOOR_HYSTERESIS_M else nearest
 
 
 def sureness(storeys: Sequence[Storey], floor: int, down_m: float, std_down_m: float) -> float:
     """The probability of a floor, of all the storeys that there are; 0 of one that is not."""
-    exponents, wide_m, numbered = {}, {}, {}
-    for storey in storeys:
-        std_m = math.hypot(std_down_m, FLOOR_STD_M, storey.std_m)
-        exponents[storey.floor] = 0.5 * (storey.down_m - down_m) ** 2 / std_m**2
-        wide_m[storey.floor], numbered[storey.floor] = std_m, storey.numbered
-    if floor not in exponents:
-        return 0.0
-    least = min(exponents.values())
-    weights = {
-        number: math.exp(least - exponent) / wide_m[number]
-        for number, exponent in exponents.items()
-    }
-    return numbered[floor] * weights[floor] / sum(weights.values())
+    variances = [std_down_m**2 + FLOOR_STD_M**2 + storey.std_m**2 for storey in storeys]
+    exponents = [
+        0.5 * (storey.down_m - down_m) ** 2 / variance
+        for storey, variance in zip(storeys, variances, strict=True)
+    ]
+    least = min(exponents, default=0.0)
+    total = found = 0.0
+    for storey, variance, exponent in zip(storeys, variances, exponents, strict=True):
+        if exponent - least < _NOTHING:
+            weight = math.exp(least - exponent) / math.sqrt(variance)
+            total += weight
+            if storey.floor == floor:
+                found = storey.numbered * weight
+    return found / total if found else 0.0
 
 
 def storey_of(storeys: Sequence[Storey], floor: int | None) -> Storey | None:
