@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import msgspec
 from sqlalchemy import ColumnElement, func, update
-from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.dialects.sqlite import Insert, insert
 from sqlalchemy.orm import Session
 
 from base_station.db.models import (
@@ -184,7 +185,7 @@ def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> None:
         for fused in tracks
     ]
     if rows:
-        session.execute(insert(TrackPoint).on_conflict_do_nothing(), rows)
+        _execute_many(session, insert(TrackPoint).on_conflict_do_nothing(), rows)
 
 
 def _heard(session: Session, heard: Mapping[str, int]) -> None:
@@ -194,12 +195,15 @@ def _heard(session: Session, heard: Mapping[str, int]) -> None:
     if rows:
         statement = insert(Unit)
         latest = func.max(func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns)
-        session.execute(
-            statement.on_conflict_do_update(
-                index_elements=[Unit.unit_id], set_={"last_heard_ns": latest}
-            ),
-            rows,
+        update_it = statement.on_conflict_do_update(
+            index_elements=[Unit.unit_id], set_={"last_heard_ns": latest}
         )
+        _execute_many(session, update_it, rows)
+
+
+def _execute_many(session: Session, statement: Insert, rows: Sequence[Mapping[str, Any]]) -> None:
+    """In the session's transaction, without making objects of the rows."""
+    session.connection().execute(statement, rows)
 
 
 def _described(description: UnitDescription) -> dict[str, object]:

@@ -12,6 +12,8 @@ from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
 
+HEARD_NS = 5 * NS_PER_S  # the store follows when units were heard in such steps
+
 
 class Projector:
     """Collects outputs; ``take`` hands over what they come to."""
@@ -65,7 +67,7 @@ class Projector:
         return projection
 
     def _note_heard(self, unit_id: str, t_ns: int) -> None:
-        if t_ns - self._heard_before.get(unit_id, 0) >= NS_PER_S:
+        if t_ns - self._heard_before.get(unit_id, 0) >= HEARD_NS:
             self._heard_before[unit_id] = self._heard[unit_id] = t_ns
 
     def _note_track(self, fused: FusedPosition) -> None:

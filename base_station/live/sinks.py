@@ -55,7 +55,7 @@ class Projection(msgspec.Struct, frozen=True):
     tracks: tuple[FusedPosition, ...] = ()  # at most one a second and unit
     actions: tuple[OperatorAction, ...] = ()  # that were accepted
     descriptions: tuple[UnitDescription, ...] = ()
-    heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), about once a second
+    heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every five seconds or so
 
 
 class ProjectionSink(Protocol):
