@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from difflib import get_close_matches
 
 from edge.sources.bench import BenchSource
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.bus import BusSource
-from edge.sources.port import Source
+from edge.sources.port import Source, SourceKind
 from edge.sources.recording import RecordingSource
 from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
-
-
-@dataclass(frozen=True, slots=True)
-class SourceKind:
-    """One kind of source, as written ``scheme:argument``."""
-
-    scheme: str
-    make: Callable[[str], Source]  # from the text after the colon
-    argument: str  # what stands after the colon, for help texts
-
 
 SOURCES: tuple[SourceKind, ...] = (
     SourceKind("recording", RecordingSource, "PATH"),

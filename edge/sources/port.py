@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -41,3 +41,12 @@ class Source(Protocol):
     def batches(self) -> Iterator[SensorBatch]: ...
 
     def close(self) -> None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class SourceKind:
+    """One kind of source, as written ``scheme:argument``."""
+
+    scheme: str
+    make: Callable[[str], Source]  # from the text after the colon
+    argument: str  # what stands after the colon, for help texts

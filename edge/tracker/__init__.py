@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 from edge.samples import SensorDescription
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.huang import HuangTracker
-from edge.tracker.port import Tracker
+from edge.tracker.port import Tracker, TrackerEntry
 from shared.errors import ConfigError
-
-
-@dataclass(frozen=True, slots=True)
-class TrackerEntry:
-    name: str
-    summary: str
-    make: Callable[[SensorDescription], Tracker]
-
 
 TRACKERS: tuple[TrackerEntry, ...] = (
     TrackerEntry("eskf", "error-state filter with stride-adaptive stance (default)", EskfTracker),

@@ -6,17 +6,18 @@ something better is known, an arbitrary but constant heading of "north".
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from edge.samples import Floats, ImuBatch, Nanoseconds
+from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
 from shared.earth_field import EarthField
 from shared.quality import Quality, Reason
 
-__all__ = ["Quality", "Reason", "TrackBatch", "Tracker"]
+__all__ = ["Quality", "Reason", "TrackBatch", "Tracker", "TrackerEntry"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,3 +62,12 @@ class Tracker(Protocol):
     def finish(self) -> TrackBatch:
         """Return the rows still held back; the tracker is used up."""
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerEntry:
+    """One line of ``TRACKERS``."""
+
+    name: str
+    summary: str
+    make: Callable[[SensorDescription], Tracker]
