@@ -44,7 +44,7 @@ class HuangTracker:
         self._ring = np.zeros(1 << int(np.ceil(np.log2(SLOTS_S * rate_hz))), RING)
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._state = np.zeros(1, HUANG)
-        self._state["quaternion_nb"][0, 0] = 1.0
+        self._state["quaternion_nb"][0, 0] = self._state["reset_quaternion_nb"][0, 0] = 1.0
         self._state["pitch_axis_b"][0] = np.full(3, 3.0**-0.5)
         self._block = len(self._ring) // 4
 

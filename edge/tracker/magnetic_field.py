@@ -176,9 +176,11 @@ def north_variance(compass: Aid, belief: Aid, earth_known: bool, config: EskfCon
 
     The frame is the walk's, turned by the error of heading, and both are known together.  To
     what the model knows is added what it cannot: a field that is bent alike all over, which
-    shows, where the earth's is known, by strength and dip.
+    shows, where the earth's is known, by strength and dip.  These are two components, too few
+    to take their mean for all there is of the third, so it is doubted by their sum.
     """
-    if not is_known(belief, config):
+    limit_ut = config.field_bend_limit * belief.strength_ut
+    if belief.bend_var_ut2 > limit_ut * limit_ut or not is_known(belief, config):
         return math.inf
     p = belief.covariance
     ahead, right, strength = belief.aim_n[0], belief.aim_n[1], belief.strength_ut
@@ -190,6 +192,6 @@ def north_variance(compass: Aid, belief: Aid, earth_known: bool, config: EskfCon
         off_along_ut = strength - compass.earth_horizontal_ut
         off_down_ut = belief.estimate[FIELD + 2] - compass.earth_down_ut
         everywhere_var = config.field_agreeing_ut**2
-        everywhere_var += 0.5 * (off_along_ut * off_along_ut + off_down_ut * off_down_ut)
+        everywhere_var += off_along_ut * off_along_ut + off_down_ut * off_down_ut
     variance = (across_var + everywhere_var) / (strength * strength)
     return float(variance + p[0, 0] - 2.0 * with_heading / strength)
