@@ -113,10 +113,6 @@ class StationPipeline:
         state = self.state
         state.t_ns = max(state.t_ns, event.t_ns)
         state.boot_id = state.boot_id or state.t_ns
-        if isinstance(event, Rejected):
-            state.counts.undecodable += 1
-            state.counts.last_undecodable = f"{event.key}: {event.reason}"
-            return []
         if isinstance(event, Received):
             message = event.message
             if channel_of(message).direction is Direction.UP:
@@ -128,6 +124,10 @@ class StationPipeline:
             if isinstance(message, Command):
                 return _touched(command_book.note_sent(state, event.unit_id, message))
             return []  # what the station itself had decided, in a log that is stepped again
+        if isinstance(event, Rejected):
+            state.counts.undecodable += 1
+            state.counts.last_undecodable = f"{event.key}: {event.reason}"
+            return []
         assert_never(event)
 
     def _tick(self) -> list[Output]:
@@ -184,7 +184,8 @@ class StationPipeline:
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
         outputs.append(UnitTouched(unit_id))
-        outputs.extend(self._review(unit, type(message)))
+        if self._book.heeds(type(message)):
+            outputs.extend(self._review(unit, type(message)))
         return outputs
 
     def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:

@@ -78,16 +78,18 @@ class Positioning:
 
     def follow(self, state: StationState, unit: UnitState, position: Position) -> list[str]:
         """Gives the units whose past was solved again because this one has gone on."""
-        reason = self._fuser(unit).advance(position)
-        _count(unit, reason)
+        fuser = self._fuser(unit)
+        reason = fuser.advance(position)
+        if reason:
+            _count(unit, reason)
         t_ns = _station_ns(state, unit, position.header.t_mono_ns)
         is_outside = _is_outside(state, unit)
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=is_outside)
         if air is not None:
-            self._fuser(unit).feel(air)
-        state.learnt_building = self._fuser(unit).recognise(state.learnt_building)
-        history = state.paths.setdefault(unit.unit_id, PathHistory())
-        begins = history.begin_ns is None
+            fuser.feel(air)
+        state.learnt_building = fuser.recognise(state.learnt_building)
+        history = _history(state, unit)
+        begins = history.end_ns is None
         history.note(position, t_ns, bool(reason))
         pinned = self._pinned.get(unit.unit_id)
         if pinned is not None:
@@ -131,7 +133,7 @@ class Positioning:
         if unit.unit_id == state.barometers.reference_id:
             state.sky = Sky()
         self._fuser(unit).start(start)
-        state.paths.setdefault(unit.unit_id, PathHistory()).begin_with(start)
+        _history(state, unit).begin_with(start)
         self.solve_pins(state, [unit.unit_id])
 
     def forget(self, state: StationState, unit: UnitState) -> None:
@@ -170,8 +172,9 @@ class Positioning:
             unit.fused = self._message(state, unit, pinned.estimate() or estimate, held, header)
         unit.reach = ()
         unit.extend_trail(unit.fused)
-        if unit.unit_id in state.paths:
-            state.paths[unit.unit_id].show(estimate, plain.floor)
+        history = state.paths.get(unit.unit_id)
+        if history is not None:
+            history.show(estimate, plain.floor)
         if unit.fused.quality is not Quality.LOST:
             unit.unplaced_since_ns = None
         elif unit.unplaced_since_ns is None:
@@ -263,7 +266,7 @@ class Positioning:
         if pinned is not None:
             pinned.correct(place)
         if verdict.accepted:
-            history = state.paths.setdefault(unit.unit_id, PathHistory())
+            history = _history(state, unit)
             history.fix(place, _station_ns(state, unit, place.t_mono_ns))
         return verdict
 
@@ -295,6 +298,13 @@ class Positioning:
         state.learnt_building = state.learnt_building.reframed(turn_rad, *shift_m[:2])
         reframe_pins(state, turn_rad, shift_m[0], shift_m[1])
         state.learnt_floors.reframe(turn_rad, *shift_m)
+
+
+def _history(state: StationState, unit: UnitState) -> PathHistory:
+    history = state.paths.get(unit.unit_id)
+    if history is None:
+        history = state.paths[unit.unit_id] = PathHistory()
+    return history
 
 
 def _moved(step: TrailStep, turn_rad: float, shift_m: tuple[float, float, float]) -> TrailStep:

@@ -63,6 +63,10 @@ class AlarmBook:
             if changed is not None:
                 yield changed
 
+    def heeds(self, came: type[Message]) -> bool:
+        """Whether any rule looks at what comes before the next tick."""
+        return bool(self._heeding.get(came, self._rules))
+
     def problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
         """A part of the station itself fails or, without a text, is well again."""
         key = f"{STATION_RULE}|{part}"

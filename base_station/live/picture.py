@@ -22,7 +22,7 @@ from base_station.views import (
     trail_view,
     unit_views,
 )
-from shared.messages import AlarmChange
+from shared.messages import AlarmChange, FusedPosition
 
 
 class Picture:
@@ -49,6 +49,8 @@ class Picture:
         for output in outputs:
             if isinstance(output, UnitTouched):
                 self._units[output.unit_id] = None
+            elif isinstance(output, FusedPosition):
+                pass  # its unit is touched
             elif isinstance(output, CommandTouched):
                 self._commands[output.command_id] = None
             elif isinstance(output, TrailFilled):

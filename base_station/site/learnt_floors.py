@@ -123,7 +123,10 @@ class LearntFloors(msgspec.Struct):
 
     def follow(self, position: Position, unit_id: str) -> bool:
         """A unit's own path went on; True where its wearer walks on the level."""
-        return self.walks.setdefault(unit_id, LevelWalk()).follow(position)
+        walk = self.walks.get(unit_id)
+        if walk is None:
+            walk = self.walks[unit_id] = LevelWalk()
+        return walk.follow(position)
 
     def land(self, landing: Landing, *, is_outside: bool, began_on_ground: bool) -> None:
         """A unit walks on the level; outside that is the ground, or a slope or a roof, which

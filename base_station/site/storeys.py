@@ -38,16 +38,17 @@ def floor_at(storeys: Sequence[Storey], down_m: float, floor: int | None) -> int
 
 def sureness(storeys: Sequence[Storey], floor: int, down_m: float, std_down_m: float) -> float:
     """The probability of a floor, of all the storeys that there are; 0 of one that is not."""
-    variances = [std_down_m**2 + FLOOR_STD_M**2 + storey.std_m**2 for storey in storeys]
-    exponents = [
-        0.5 * (storey.down_m - down_m) ** 2 / variance
-        for storey, variance in zip(storeys, variances, strict=True)
-    ]
-    least = min(exponents, default=0.0)
-    total = found = 0.0
-    for storey, variance, exponent in zip(storeys, variances, exponents, strict=True):
+    own_var_m2 = std_down_m * std_down_m + FLOOR_STD_M * FLOOR_STD_M
+    least, total, found = math.inf, 0.0, 0.0
+    for storey in storeys:
+        off_m = storey.down_m - down_m
+        var_m2 = own_var_m2 + storey.std_m * storey.std_m
+        exponent = 0.5 * off_m * off_m / var_m2
+        if exponent < least:  # weights are told by how much less likely than the likeliest
+            fading = math.exp(exponent - least)
+            total, found, least = total * fading, found * fading, exponent
         if exponent - least < _NOTHING:
-            weight = math.exp(least - exponent) / math.sqrt(variance)
+            weight = math.exp(least - exponent) / math.sqrt(var_m2)
             total += weight
             if storey.floor == floor:
                 found = storey.numbered * weight
