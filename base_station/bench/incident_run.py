@@ -128,8 +128,10 @@ class Site:
 class Follower:
     """One person through a fuser of the station."""
 
-    def __init__(self, kind: FuserKind, person: Person, timing: Timing, known: Known) -> None:
-        self._person, self._timing = person, timing
+    def __init__(
+        self, kind: FuserKind, person: Person, timing: Timing, known: Known, unit_id: str
+    ) -> None:
+        self._person, self._timing, self._unit_id = person, timing, unit_id
         self._fuser = kind.new()
         self._plan = read_plan(person.building.geojson())
         if known.plan:
@@ -141,7 +143,7 @@ class Follower:
 
     def step(self, row: int, site: Site) -> None:
         person, fuser = self._person, self._fuser
-        position = position_of(person.truth, person.own, person.pressures_pa, row)
+        position = position_of(person.truth, person.own, person.pressures_pa, row, self._unit_id)
         altitude_m = pressure_altitude_m(float(person.pressures_pa[row]))
         air_down_m = float(person.weather_m[row]) - altitude_m
         fix = person.fixes.get(row)
@@ -174,7 +176,11 @@ class Follower:
 
 def fuse_all(kind: FuserKind, people: Sequence[Person], timing: Timing, known: Known) -> list[Run]:
     """All at the same time, as at a station: what one learns of the building, the others hear."""
-    followers, site = [Follower(kind, person, timing, known) for person in people], Site()
+    followers = [
+        Follower(kind, person, timing, known, f"FF-0{number + 1}")
+        for number, person in enumerate(people)
+    ]
+    site = Site()
     for row in range(len(people[0].truth.t_s)):
         if known.engine:
             site.hear_engine(people[0], row)

@@ -21,10 +21,11 @@ LONG_M = 6.0  # and a longer one is told of in parts
 LEG_STD_RAD = math.radians(3.0)  # nobody walks on lines
 ASIDE_M = 0.2
 QUARTER_RAD = math.pi / 2.0
-BEGIN_M = 20.0  # of legs, until they are asked for an axis
-CLEAR = 0.55  # of their length, summed as vectors of four times the angle: an axis shows
+CLEAR_M = 20.0  # of the last legs that are asked for an axis
+CLEAR = 0.55  # of their length, summed as vectors of four times the angle: it shows
 ALONG_WALLS = 0.6  # of the legs, before anything is known of one
-BELIEVED = 0.6
+OFF = 2.5  # standard deviations by which an axis that shows may be another
+LOST_RAD = math.radians(20.0)  # the heading's doubt then
 SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
 
 
@@ -79,28 +80,31 @@ class AxisFilter(msgspec.Struct):
     crossed: float = 0.0  # covariance of both
 
     def look(self, leg: Leg, turn_rad: float, variance: float) -> tuple[float, float]:
-        """Heading correction and variance after a leg, given what they were before."""
+        """Heading correction and variance after a leg, given what they were before: as far as the
+        leg may be one along a wall (probabilistic data association, Bar-Shalom and Tse 1975).
+        """
+        shown_rad = self._shown(leg)
         if self.axis is None:
-            self._begin(leg, turn_rad, variance)
+            if shown_rad is not None:
+                self._begin(turn_rad + shown_rad, variance)
             return turn_rad, variance
         self._catch_up(variance)
+        if shown_rad is not None and self._contradicts(turn_rad + shown_rad, variance):
+            return turn_rad, variance + LOST_RAD**2
         axis = self.axis
         off_rad = quarter(turn_rad + leg.direction_rad - axis.direction_rad)
-        apart = variance - 2.0 * self.crossed + axis.variance
-        spread = apart + leg.variance
+        spread = variance - 2.0 * self.crossed + axis.variance + leg.variance
         fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
         along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
-        if along < BELIEVED:
-            return turn_rad, variance
-        spread = apart + leg.variance / along
+        learnt = along * spread - along * (1.0 - along) * off_rad**2  # less where it may be none
         turn_gain = (variance - self.crossed) / spread
         axis_gain = (self.crossed - axis.variance) / spread
-        turned = turn_rad - turn_gain * off_rad, variance - turn_gain**2 * spread
-        self.crossed -= turn_gain * axis_gain * spread
-        direction_rad = axis.direction_rad - axis_gain * off_rad
-        self.axis = Axis(direction_rad, axis.variance - axis_gain**2 * spread)
-        self.turn_variance = turned[1]
-        return turned
+        self.crossed -= turn_gain * axis_gain * learnt
+        self.axis = Axis(
+            axis.direction_rad - along * axis_gain * off_rad, axis.variance - axis_gain**2 * learnt
+        )
+        self.turn_variance = variance - turn_gain**2 * learnt
+        return turn_rad - along * turn_gain * off_rad, self.turn_variance
 
     def hear(self, other: Axis, turn_rad: float, variance: float) -> tuple[float, float]:
         """The same after another's word for the axis, which is worth no more than it says."""
@@ -120,23 +124,36 @@ class AxisFilter(msgspec.Struct):
         self.turn_variance = variance - hangs_on**2 * gain * grown
         return turn_rad + hangs_on * gain * off_rad, self.turn_variance
 
-    def _begin(self, leg: Leg, turn_rad: float, variance: float) -> None:
+    def _shown(self, leg: Leg) -> float | None:
+        """The axis, in the own frame, that the last legs show by themselves."""
         self.legs.append(leg)
         length_m = sum(one.length_m for one in self.legs)
-        if length_m < BEGIN_M:
-            return
+        if length_m < CLEAR_M:
+            return None
         four_rad = [4.0 * one.direction_rad for one in self.legs]
         whole_m = (
             sum(one.length_m * math.cos(a) for one, a in zip(self.legs, four_rad, strict=True)),
             sum(one.length_m * math.sin(a) for one, a in zip(self.legs, four_rad, strict=True)),
         )
-        if math.hypot(*whole_m) < CLEAR * length_m:
-            del self.legs[0]
-            return
+        del self.legs[0]
+        clear = math.hypot(*whole_m) > CLEAR * length_m
+        return _direction(whole_m) / 4.0 if clear else None
+
+    def _begin(self, axis_rad: float, variance: float) -> None:
         leg_var = sum(one.variance for one in self.legs) / len(self.legs) ** 2
-        self.axis = Axis(quarter(turn_rad + _direction(whole_m) / 4.0), variance + 2.0 * leg_var)
+        self.axis = Axis(quarter(axis_rad), variance + 2.0 * leg_var)
         self.turn_variance = self.crossed = variance
         self.legs.clear()
+
+    def _contradicts(self, axis_rad: float, variance: float) -> bool:
+        """The last legs agree with each other, and not with what is held."""
+        assert self.axis is not None
+        off_rad = quarter(axis_rad - self.axis.direction_rad)
+        spread = variance - 2.0 * self.crossed + self.axis.variance + LEG_STD_RAD**2
+        if off_rad**2 < OFF**2 * spread:
+            return False
+        self.legs.clear()
+        return True
 
     def _catch_up(self, variance: float) -> None:
         """What the heading lost since is its own; what it learnt elsewhere tells of the axis."""

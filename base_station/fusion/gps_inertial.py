@@ -138,9 +138,12 @@ class GpsInertialFuser:
 
     def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
         memory, last = self._memory, self._memory.last
+        if last is None:
+            return learnt
         fix_ns = memory.fix_t_mono_ns
-        inside = last is None or fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS
-        return memory.recognition.go_by(learnt, self._horizontal, inside=inside)
+        inside = fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS
+        unit_id = last.header.unit_id
+        return memory.recognition.go_by(unit_id, learnt, self._horizontal, inside=inside)
 
     def correct(self, fix: PlaceFix) -> FixVerdict:
         memory = self._memory

@@ -1,56 +1,122 @@
 """What everybody's paths have shown of a building that nobody has a plan of.
 
-Its stairs and the direction of its walls are each known as well as whoever knew them best.  Others
-take that over where their own path shows the same, and nobody becomes surer by hearing their own
-word again (``told``).
+Its stairs and the direction of its walls are each the mean of what those said who came upon them
+knowing nothing of them yet.  Others take that over where their own path shows the same, and nobody
+becomes surer by hearing their own word again (``told``).
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import msgspec
+import numpy as np
 
 from base_station.fusion.building_axes import Axis, quarter
 from base_station.fusion.same_stairs import Stairs
+from base_station.fusion.told import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
 ODDS = 10.0  # so much likelier the same stairs than others: believed
-BETTER = 0.9  # of the variance held: worth a change
+SHARED_M = 0.6  # by which everybody errs alike: where the engine stands, and the sky
+LEAST_M2 = 0.05  # of what is left, each way
+OUTLIER2 = 9.0  # squared standard deviations apart: not about the same
+
+
+class KnownStairs(msgspec.Struct, frozen=True):
+    """Of one stairwell: the word of each unit that knew nothing of it before."""
+
+    words: tuple[tuple[str, Stairs], ...]
+
+    @property
+    def mean(self) -> Stairs:
+        if len(self.words) == 1:
+            return self.words[0][1]
+        shared = SHARED_M**2 * np.eye(2)
+        weight, total = np.zeros((2, 2)), np.zeros(2)
+        for _, word in self.words:
+            place, covariance = word.place
+            information = np.linalg.inv(at_least(covariance - shared, LEAST_M2))
+            weight, total = weight + information, total + information @ place
+        spread = np.linalg.inv(weight)
+        (north_m, east_m), spread = (spread @ total).tolist(), spread + shared
+        (north, cross), (_, east) = spread.tolist()
+        return msgspec.structs.replace(
+            self.words[0][1], north_m=north_m, east_m=east_m, covariance_m2=(north, cross, east)
+        )
 
 
 class LearntBuilding(msgspec.Struct, frozen=True):
     """In the incident frame."""
 
-    stairs: tuple[Stairs, ...] = ()
-    axis: Axis | None = None
+    stairs: tuple[KnownStairs, ...] = ()
+    axes: tuple[tuple[str, Axis], ...] = ()  # by unit
+
+    @property
+    def axis(self) -> Axis | None:
+        """The mean of most words: of those that lie near the one with the most about it."""
+        words = [axis for _, axis in self.axes]
+        if not words:
+            return None
+        return _mean(max((_near(word, words) for word in words), key=_weight))
+
+    def with_axis(self, unit_id: str, axis: Axis) -> LearntBuilding:
+        others = tuple(word for word in self.axes if word[0] != unit_id)
+        return msgspec.structs.replace(self, axes=(*others, (unit_id, axis)))
 
     def which(self, seen: Stairs) -> int | None:
         """The stairs that a climb was on; -1: such as nobody knows yet; None: it cannot be told."""
         if max(seen.covariance_m2[0], seen.covariance_m2[2]) > SURE_M**2:
             return None
-        odds = [seen.odds(one) for one in self.stairs]
+        odds = [seen.odds(one.mean) for one in self.stairs]
         if sum(odds) < 1.0 / ODDS:
             return -1
         best = odds.index(max(odds))
         return best if odds[best] > ODDS * (1.0 + sum(odds) - odds[best]) else None
 
-    def with_stairs(self, row: int, seen: Stairs) -> LearntBuilding:
-        """``row`` as ``which`` gives it."""
+    def with_stairs(self, row: int, unit_id: str, seen: Stairs) -> LearntBuilding:
+        """``row`` as ``which`` gives it; only the first word of each unit counts."""
         if row < 0:
-            return msgspec.structs.replace(self, stairs=(*self.stairs, seen))
-        if seen.variance_m2 > BETTER * self.stairs[row].variance_m2:
+            known = (*self.stairs, KnownStairs(((unit_id, seen),)))
+            return msgspec.structs.replace(self, stairs=known)
+        words = self.stairs[row].words
+        if any(name == unit_id for name, _ in words):
             return self
-        stairs = (*self.stairs[:row], seen, *self.stairs[row + 1 :])
-        return msgspec.structs.replace(self, stairs=stairs)
-
-    def with_axis(self, axis: Axis) -> LearntBuilding:
-        if self.axis is not None and axis.variance > BETTER * self.axis.variance:
-            return self
-        return msgspec.structs.replace(self, axis=axis)
+        one = KnownStairs((*words, (unit_id, seen)))
+        return msgspec.structs.replace(
+            self, stairs=(*self.stairs[:row], one, *self.stairs[row + 1 :])
+        )
 
     def reframed(self, turn_rad: float, north_m: float, east_m: float) -> LearntBuilding:
         """The incident frame was moved: turned clockwise, then shifted."""
-        axis = self.axis
-        if axis is not None:
-            axis = Axis(quarter(axis.direction_rad + turn_rad), axis.variance)
-        moved = tuple(one.reframed(turn_rad, north_m, east_m) for one in self.stairs)
-        return LearntBuilding(moved, axis)
+        stairs = tuple(
+            KnownStairs(
+                tuple((name, one.reframed(turn_rad, north_m, east_m)) for name, one in known.words)
+            )
+            for known in self.stairs
+        )
+        axes = tuple(
+            (name, Axis(quarter(axis.direction_rad + turn_rad), axis.variance))
+            for name, axis in self.axes
+        )
+        return LearntBuilding(stairs, axes)
+
+
+def _near(one: Axis, words: Sequence[Axis]) -> list[Axis]:
+    return [
+        word
+        for word in words
+        if quarter(word.direction_rad - one.direction_rad) ** 2
+        < OUTLIER2 * (word.variance + one.variance)
+    ]
+
+
+def _weight(words: Sequence[Axis]) -> float:
+    return sum(1.0 / word.variance for word in words)
+
+
+def _mean(words: Sequence[Axis]) -> Axis:
+    north = sum(math.cos(4.0 * word.direction_rad) / word.variance for word in words)
+    east = sum(math.sin(4.0 * word.direction_rad) / word.variance for word in words)
+    return Axis(math.atan2(east, north) / 4.0, 1.0 / _weight(words))

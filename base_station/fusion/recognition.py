@@ -24,18 +24,19 @@ class Recognition(msgspec.Struct):
     axis: AxisFilter = msgspec.field(default_factory=AxisFilter)
     climb: Climb | None = None  # just over
     leg: Leg | None = None
+    heard: bool = False  # of stairs: the own place is not the own word any more
 
     def follow(self, stretch: Stretch, down_m: float) -> None:
         self.climb = self.climbs.follow(stretch.north_m, stretch.east_m, down_m)
         self.leg = self.legs.follow(stretch.north_m, stretch.east_m)
 
     def forget(self) -> None:
-        """The place or the heading is believed no more; or another own frame begins."""
-        self.axis = AxisFilter()
+        """Place and heading are known anew; or another own frame begins."""
+        self.axis, self.heard = AxisFilter(), False
         self.climb = self.leg = None
 
     def go_by(
-        self, learnt: LearntBuilding, horizontal: WalledFilter, *, inside: bool
+        self, unit_id: str, learnt: LearntBuilding, horizontal: WalledFilter, *, inside: bool
     ) -> LearntBuilding:
         """Correct the filter; gives what is learnt then."""
         climb, leg = self.climb, self.leg
@@ -43,30 +44,40 @@ class Recognition(msgspec.Struct):
         if not horizontal.is_plain:
             return learnt
         if climb is not None:
-            learnt = self._climbed(climb, learnt, horizontal)
+            learnt = self._climbed(unit_id, climb, learnt, horizontal)
         if leg is not None and inside:
-            learnt = self._walked(leg, learnt, horizontal)
+            learnt = self._walked(unit_id, leg, learnt, horizontal)
         return learnt
 
     def _climbed(
-        self, climb: Climb, learnt: LearntBuilding, horizontal: WalledFilter
+        self, unit_id: str, climb: Climb, learnt: LearntBuilding, horizontal: WalledFilter
     ) -> LearntBuilding:
         since = climb.since_north_m, climb.since_east_m
         place, covariance = horizontal.place_before(*since)
-        row = learnt.which(Stairs.at(climb, place, covariance))
+        seen = Stairs.at(climb, place, covariance)
+        row = learnt.which(seen)
         if row is None:
             return learnt
+        if row < 0 or not self.heard:
+            learnt = learnt.with_stairs(row, unit_id, seen)
         if row >= 0:
-            noise = STD_M**2 * np.eye(2)
-            place, covariance = taken_over(place, covariance, *learnt.stairs[row].place, noise)
+            known, noise = learnt.stairs[row].mean, STD_M**2 * np.eye(2)
+            place, covariance = taken_over(place, covariance, *known.place, noise)
             horizontal.stand_then(*since, place, covariance)
-        return learnt.with_stairs(row, Stairs.at(climb, place, covariance))
+            self.heard = True
+        return learnt
 
-    def _walked(self, leg: Leg, learnt: LearntBuilding, horizontal: WalledFilter) -> LearntBuilding:
+    def _walked(
+        self, unit_id: str, leg: Leg, learnt: LearntBuilding, horizontal: WalledFilter
+    ) -> LearntBuilding:
         turn_rad, std_rad = horizontal.turn()
+        was_known = self.axis.axis is not None
         turned = self.axis.look(leg, turn_rad, std_rad**2)
-        if learnt.axis is not None:
-            turned = self.axis.hear(learnt.axis, *turned)
+        if self.axis.axis is not None and not was_known:
+            learnt = learnt.with_axis(unit_id, self.axis.axis)
+        axis = learnt.axis
+        if axis is not None:
+            turned = self.axis.hear(axis, *turned)
         if turned != (turn_rad, std_rad**2):
             horizontal.face(*turned)
-        return learnt if self.axis.axis is None else learnt.with_axis(self.axis.axis)
+        return learnt

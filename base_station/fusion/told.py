@@ -29,11 +29,12 @@ def taken_over(
     before, by oneself or by another: nobody can tell how far both err alike, so what comes of it is
     worth no more than the better of the two, direction by direction.
     """
-    grown = _positive(covariance - known_covariance)
+    grown = at_least(covariance - known_covariance, 0.0)
     gain = grown @ np.linalg.inv(grown + noise)
     return mean + gain @ (known - mean), covariance - gain @ grown
 
 
-def _positive(matrix: Floats) -> Floats:
+def at_least(matrix: Floats, least: float) -> Floats:
+    """The symmetric matrix with no eigenvalue below that."""
     values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+    return np.asarray((vectors * np.maximum(values, least)) @ vectors.T)

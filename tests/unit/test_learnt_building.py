@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from base_station.fusion.building_axes import Axis, AxisFilter, Leg, LegWatch, quarter
-from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.learnt_building import KnownStairs, LearntBuilding
 from base_station.fusion.same_stairs import Climb, ClimbWatch, Stairs
 from base_station.fusion.told import taken_over, told
 
 STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
+
+FOUND = KnownStairs((("FF-01", STAIRS),))
 
 
 def test_a_climb_is_told_when_it_is_over_and_where_its_middle_was() -> None:
@@ -38,7 +40,7 @@ def test_a_kerb_is_no_climb() -> None:
 
 
 def test_stairs_nearby_are_the_same_and_far_ones_are_others() -> None:
-    learnt = LearntBuilding((STAIRS,))
+    learnt = LearntBuilding((FOUND,))
     near = msgspec.structs.replace(STAIRS, north_m=11.5, covariance_m2=(4.0, 0.0, 4.0))
     far = msgspec.structs.replace(STAIRS, north_m=35.0, covariance_m2=(4.0, 0.0, 4.0))
     between = msgspec.structs.replace(STAIRS, north_m=18.0, covariance_m2=(9.0, 0.0, 9.0))
@@ -52,18 +54,31 @@ def test_stairs_nearby_are_the_same_and_far_ones_are_others() -> None:
 def test_straight_stairs_lie_above_each_other_only_by_chance() -> None:
     straight = msgspec.structs.replace(STAIRS, turns=False)
     next_storey = msgspec.structs.replace(straight, low_m=-3.0, high_m=-6.0)
-    assert LearntBuilding((straight,)).which(next_storey) == -1
+    assert LearntBuilding((KnownStairs((("FF-01", straight),)),)).which(next_storey) == -1
     above = msgspec.structs.replace(STAIRS, low_m=-3.0, high_m=-6.0)
-    assert LearntBuilding((STAIRS,)).which(above) == 0
+    assert LearntBuilding((FOUND,)).which(above) == 0
 
 
-def test_the_surer_word_for_stairs_is_kept() -> None:
-    worse = msgspec.structs.replace(STAIRS, covariance_m2=(2.0, 0.0, 2.0))
-    better = msgspec.structs.replace(STAIRS, covariance_m2=(0.5, 0.0, 0.5))
-    learnt = LearntBuilding((STAIRS,))
-    assert learnt.with_stairs(0, worse) is learnt
-    assert learnt.with_stairs(0, better).stairs == (better,)
-    assert learnt.with_stairs(-1, worse).stairs == (STAIRS, worse)
+def test_each_unit_s_first_word_for_stairs_counts_once() -> None:
+    learnt = LearntBuilding((FOUND,))
+    again = msgspec.structs.replace(STAIRS, north_m=14.0)
+    assert learnt.with_stairs(0, "FF-01", again) is learnt
+    two = learnt.with_stairs(0, "FF-02", msgspec.structs.replace(STAIRS, north_m=12.0))
+    assert two.stairs[0].mean.north_m == pytest.approx(11.0)
+    assert (
+        0.6 < two.stairs[0].mean.variance_m2 / STAIRS.variance_m2 < 0.75
+    )  # some errors are shared
+    assert len(two.with_stairs(-1, "FF-02", again).stairs) == 2
+
+
+def test_the_axis_is_what_most_say() -> None:
+    learnt = LearntBuilding()
+    assert learnt.axis is None
+    for number, said_rad in enumerate((0.1, 0.12, 0.08, 0.6)):
+        learnt = learnt.with_axis(f"FF-0{number}", Axis(said_rad + number * math.pi / 2.0, 0.03**2))
+    assert learnt.axis is not None
+    assert quarter(learnt.axis.direction_rad) == pytest.approx(0.1, abs=0.01)
+    assert learnt.axis.variance == pytest.approx(0.03**2 / 3.0)
 
 
 def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() -> None:
@@ -100,15 +115,24 @@ def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
     rng, axis = np.random.default_rng(3), AxisFilter()
     turn_rad, variance = 0.0, 0.05**2
     for number in range(60):
-        drifted_rad = 0.01 * number
+        drifted_rad = 0.005 * number
         along = axis_rad + rng.integers(4) * math.pi / 2.0 + rng.normal(0.0, 0.03)
         if number % 4 == 3:
             along = rng.uniform(-math.pi, math.pi)
         variance += 0.015**2
         leg = Leg(along - drifted_rad, 5.0)
         turn_rad, variance = axis.look(leg, turn_rad, variance)
-    assert turn_rad == pytest.approx(0.59, abs=0.15)
-    assert 0.05**2 < variance < 0.12**2
+    assert turn_rad == pytest.approx(0.295, abs=0.15)
+    assert 0.04**2 < variance < 0.12**2
+
+
+def test_legs_that_agree_with_each_other_and_not_with_the_axis_open_the_heading_again() -> None:
+    axis, variances = AxisFilter(), []
+    for number in range(16):
+        direction_rad = 0.0 if number < 6 else 0.6
+        variances.append(axis.look(Leg(direction_rad, 5.0), 0.0, 0.03**2)[1])
+    assert max(variances[:8]) <= 0.03**2
+    assert max(variances) > 0.3**2
 
 
 def test_without_right_angles_there_is_no_axis() -> None:
@@ -130,9 +154,11 @@ def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
 
 
 def test_reframed_it_is_the_same_building() -> None:
-    learnt = LearntBuilding((STAIRS,), Axis(0.1, 1e-3))
+    learnt = LearntBuilding((FOUND,), (("FF-01", Axis(0.1, 1e-3)),))
     moved = learnt.reframed(math.pi / 2.0, 1.0, 2.0)
-    assert (moved.stairs[0].north_m, moved.stairs[0].east_m) == pytest.approx((-4.0, 12.0))
+    assert (moved.stairs[0].mean.north_m, moved.stairs[0].mean.east_m) == pytest.approx(
+        (-4.0, 12.0)
+    )
     assert moved.axis is not None
     assert quarter(moved.axis.direction_rad - 0.1) == pytest.approx(0.0)
     climb = Climb(0.0, 0.0, 0.0, -3.0, turns=True)
