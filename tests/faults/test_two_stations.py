@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
-from base_station.bench.two_stations import Place, Station, TwoStations, wait_until
+from base_station.bench.one_of_two import Place, Station
+from base_station.bench.two_stations import TwoStations, wait_until
 from shared.errors import BusError
 
 pytestmark = pytest.mark.timeout(300)
