@@ -39,6 +39,7 @@ class UnitTouched(msgspec.Struct, frozen=True):
     """Something that the console shows of this unit may have changed."""
 
     unit_id: str
+    soon: bool = True  # else it may wait until the unit is shown anyway, or a second
 
 
 class TrailFilled(msgspec.Struct, frozen=True):

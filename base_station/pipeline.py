@@ -60,6 +60,7 @@ from shared.messages import (
 )
 from shared.quality import Quality
 
+_CAN_WAIT = (Status, Temperature, Heartbeat)  # said again in a second, and slow to change
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
 LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
 _COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
@@ -177,15 +178,16 @@ class StationPipeline:
             news = unit.accept(channel_of(message), message.header, state.t_ns)
         if news == "repeat":
             return []
-        unit.link = unit.link_at(state.t_ns)
+        link, unit.link = unit.link, unit.link_at(state.t_ns)
         outputs: list[Output] = []
         if news == "new" or isinstance(message, _COUNTS_LATE):
             outputs.extend(self._observe(unit, message))
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
-        outputs.append(UnitTouched(unit_id))
-        if self._book.heeds(type(message)):
-            outputs.extend(self._review(unit, type(message)))
+        kind = type(message)
+        outputs.append(UnitTouched(unit_id, soon=kind not in _CAN_WAIT or link != unit.link))
+        if self._book.heeds(kind):
+            outputs.extend(self._review(unit, kind))
         return outputs
 
     def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:

@@ -26,14 +26,18 @@ class Trust(msgspec.Struct, frozen=True):
     reason: str = ""  # for a person; empty: green
 
 
+_SURE = Trust("green")
+
+
 def trust_of(state: StationState, unit: UnitState) -> Trust:
     """The worst of what speaks against believing where the unit is shown."""
-    doubts = list(_doubts(state, unit))
-    for level in ("red", "amber"):
-        worst = next((doubt for doubt in doubts if doubt.level == level), None)
-        if worst is not None:
-            return worst
-    return Trust("green")
+    worst = _SURE
+    for doubt in _doubts(state, unit):
+        if doubt.level == "red":
+            return doubt
+        if worst is _SURE:
+            worst = doubt
+    return worst
 
 
 def _doubts(state: StationState, unit: UnitState) -> Iterator[Trust]:

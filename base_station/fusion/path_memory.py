@@ -13,6 +13,7 @@ KEPT_NS = 30 * 60 * NS_PER_S
 STEP_NS = NS_PER_S // 5
 DENSE_NS = 60 * NS_PER_S  # of it every step, of what is older one in
 COARSE_NS = 2 * NS_PER_S
+THINNED_EVERY = 300  # points; as many as a minute has
 NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known
 
 
@@ -37,7 +38,7 @@ class PathMemory(msgspec.Struct):
             points[-1] = point
             return
         points.append(point)
-        if len(points) % 300 == 0:
+        if len(points) % THINNED_EVERY == 0:
             self._thin(point.t_ns)
 
     def fill(self, position: Position) -> None:
@@ -74,11 +75,13 @@ class PathMemory(msgspec.Struct):
         return bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
 
     def _thin(self, now_ns: int) -> None:
-        kept: list[OwnPlace] = []
-        for point in self.points:
-            age_ns = now_ns - point.t_ns
-            step_ns = COARSE_NS if age_ns > DENSE_NS else 0
-            if age_ns < KEPT_NS and (not kept or point.t_ns - kept[-1].t_ns >= step_ns):
+        """What was old already at the last time has been thinned then."""
+        first = self._after(now_ns - KEPT_NS)
+        thinned = max(first, len(self.points) - 2 * THINNED_EVERY)
+        kept = self.points[first:thinned]
+        for point in self.points[thinned:]:
+            step_ns = COARSE_NS if now_ns - point.t_ns > DENSE_NS else 0
+            if not kept or point.t_ns - kept[-1].t_ns >= step_ns:
                 kept.append(point)
         self.points = kept
 

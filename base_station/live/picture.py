@@ -39,6 +39,7 @@ class Picture:
         """Go on with another pipeline; the next ``flush`` or ``reset`` tells it."""
         self._pipeline = pipeline
         self._units: dict[str, None] = {}  # an ordered set
+        self._later: dict[str, None] = {}  # told with the station's health, or when touched
         self._alarms: list[AlarmChange] = []
         self._commands: dict[str, None] = {}
         self._filled: dict[str, None] = {}
@@ -48,7 +49,7 @@ class Picture:
     def note(self, outputs: Sequence[Output]) -> None:
         for output in outputs:
             if isinstance(output, UnitTouched):
-                self._units[output.unit_id] = None
+                (self._units if output.soon else self._later)[output.unit_id] = None
             elif isinstance(output, FusedPosition):
                 pass  # its unit is touched
             elif isinstance(output, CommandTouched):
@@ -67,8 +68,12 @@ class Picture:
         if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
             self.reset(replay)
             return
+        if health or replay:
+            self._units.update(self._later)
         if not (self._has_news or health or replay):
             return
+        for unit_id in self._units:
+            self._later.pop(unit_id, None)
         state = self._pipeline.state
         self._seq += 1
         delta = Delta(
@@ -106,6 +111,7 @@ class Picture:
         """Everybody begins again."""
         self._frame = self._frame_now()
         self._units.clear()
+        self._later.clear()
         self._alarms.clear()
         self._commands.clear()
         self._filled.clear()

@@ -9,7 +9,7 @@ import msgspec
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
 FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
-_NOTHING = 30.0  # exp(-30): what is so improbable makes no difference
+_NOTHING = 12.0  # exp(-12): what is so improbable makes no difference
 
 
 class Storey(msgspec.Struct, frozen=True):
