@@ -96,7 +96,7 @@ class GpsInertialFuser:
         memory.trust.outliers.clear()
         memory.recognition.forget()
         if memory.last is not None:
-            self._walk(OwnPath().stretch(self._kind, None, memory.last))
+            self._walk(OwnPath().stretch(self._kind, None, memory.last), memory.last.std_down_m)
 
     def settle(self, present: Present) -> None:
         self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
@@ -124,7 +124,7 @@ class GpsInertialFuser:
                 self._horizontal.spread((self._kind.unguided_mps * duration_s) ** 2)
                 memory.last, memory.path = position, PathMemory()
                 return "the unit's own path jumped"
-        self._walk(memory.own.stretch(self._kind, last, position))
+        self._walk(memory.own.stretch(self._kind, last, position), position.std_down_m)
         self._horizontal.expect_drift(memory.own.drift_radps(self._kind, position))
         memory.last = position
         memory.path.note(position)
@@ -248,11 +248,13 @@ class GpsInertialFuser:
         )
         return estimate_of(self._kind, knowledge)
 
-    def _walk(self, stretch: Stretch) -> None:
+    def _walk(self, stretch: Stretch, own_std_m: float) -> None:
         kind = self._kind
         path = (stretch.north_m, stretch.east_m, stretch.moving_s, -stretch.down_m)
         noise = kind.walk_m_per_sqrt_m**2, kind.turn_rad_per_sqrt_m**2
-        self._height.climb(stretch.down_m, stretch.length_m)
+        self._height.climb(
+            stretch.down_m, stretch.length_m, own_std_m, moves=stretch.moving_s > 0.0
+        )
         if self._height.walked_level and self._horizontal.outside_m() < 0.0:
             self._height.rest_on(self._horizontal.storeys_down_m)
         self._horizontal.stand_at(self._height.down_m)

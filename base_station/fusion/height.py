@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
+from base_station.fusion.rides import Rides
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 
@@ -26,6 +27,7 @@ Floats = NDArray[np.float64]
 
 _GATE_STD = 3.0
 _UNKNOWN_VAR_M2 = 1e4
+_EITHER = np.array([[1.0, 0.0, -1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 1.0]])
 _OBSERVE_LEVEL = np.array([[1.0, 0.0, 0.0]])
 
 
@@ -35,6 +37,7 @@ class SavedHeight(msgspec.Struct, frozen=True):
     air_t_mono_ns: int | None
     level_m: float
     climbed_m: float
+    rides: Rides
 
 
 class HeightFilter:
@@ -47,19 +50,23 @@ class HeightFilter:
         self._air_t_mono_ns: int | None = None  # None: the shift is not known yet
         self._level_m = 0.0  # walked since the path last climbed
         self._climbed_m = 0.0  # net, in the last metres
+        self._rides = Rides()
         self._filter = KalmanFilter(dim_x=3, dim_z=1)
         self._filter.x = np.zeros((3, 1))
         self._filter.P = np.diag([1.0, 1.0, _UNKNOWN_VAR_M2])
 
     def save(self) -> SavedHeight:
         state, covariance = self._filter.x.ravel().tolist(), self._filter.P.tolist()
-        return SavedHeight(state, covariance, self._air_t_mono_ns, self._level_m, self._climbed_m)
+        return SavedHeight(
+            state, covariance, self._air_t_mono_ns, self._level_m, self._climbed_m, self._rides
+        )
 
     def load(self, saved: SavedHeight) -> None:
         self._filter.x = np.array(saved.x).reshape(3, 1)
         self._filter.P = np.array(saved.covariance)
         self._air_t_mono_ns = saved.air_t_mono_ns
         self._level_m, self._climbed_m = saved.level_m, saved.climbed_m
+        self._rides = saved.rides
 
     @property
     def down_m(self) -> float:
@@ -67,7 +74,7 @@ class HeightFilter:
 
     @property
     def variance_m2(self) -> float:
-        return float(self._filter.P[0, 0])
+        return float(self._filter.P[0, 0]) + self._rides.doubt_m2
 
     @property
     def walked_level(self) -> bool:
@@ -84,10 +91,17 @@ class HeightFilter:
         self._filter.x[0, 0] += down_m
         self._filter.x[2, 0] -= down_m
 
-    def climb(self, down_m: float, walked_m: float) -> None:
-        """The own height went on by this much."""
+    def climb(
+        self, down_m: float, walked_m: float, own_std_m: float = 0.0, *, moves: bool = True
+    ) -> None:
+        """The own height went on by this much; ``own_std_m`` is how sure the unit is of it, and
+        ``moves`` whether its wearer goes anywhere.
+        """
         self._filter.x[0, 0] += down_m
-        self._filter.P[0, 0] += climb_var_m2(self._kind, down_m, walked_m)
+        ridden_m2 = self._rides.follow(own_std_m, down_m, moves=moves)
+        stairs_m2 = climb_var_m2(self._kind, down_m, walked_m)
+        if self._rides.doubt_m2 < stairs_m2:  # else the unit knows of the ride, and how well
+            self._filter.P[0, 0] += max(stairs_m2, ridden_m2)
         self._level_m += walked_m
         self._climbed_m += down_m
         if abs(self._climbed_m) > self._kind.level_m:
@@ -125,6 +139,9 @@ class HeightFilter:
             kind.air_std_m**2,
             _GATE_STD**2,
         )
+        lifted_m = self._rides.feel(air)
+        if lifted_m:  # in the height or in the barometer's shift: their sum is known
+            self._filter.P += lifted_m**2 * _EITHER
 
     def rest_on(self, storeys_down_m: Sequence[float]) -> None:
         """Somebody in the building who walked on the level is on a storey."""

@@ -13,6 +13,8 @@ _ENTRANCE = _HOUSE.room("hall").south_west[0], 12.0  # in the middle of the oute
 _CORRIDOR_N = 7.0
 _STOREY_M = _HOUSE.floors_down_m[0] - _HOUSE.floors_down_m[1]
 
+_TO_AND_FRO = Walk(((8.0, 0.0), (8.0, 6.0), (0.0, 0.0)))
+
 
 def _enter() -> tuple[Leg, ...]:
     """From the engine through the door to the corridor."""
@@ -160,6 +162,23 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-8.0, 13.0),
         building=True,
+    ),
+    Scenario(
+        name="tower",
+        summary="a lift up six storeys, and down two at a time, with a walk on each landing",
+        legs=(
+            Stand(5.0),
+            _TO_AND_FRO,
+            Ride(6 * _STOREY_M, 2.5),
+            _TO_AND_FRO,
+            Ride(-2 * _STOREY_M, 1.0),
+            _TO_AND_FRO,
+            Ride(-2 * _STOREY_M, 0.6),
+            _TO_AND_FRO,
+            Ride(-2 * _STOREY_M, 1.6),
+            _TO_AND_FRO,
+            Stand(5.0),
+        ),
     ),
     Scenario(
         name="stairs",

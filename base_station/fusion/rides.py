@@ -1,0 +1,56 @@
+"""What a lift does to a height.
+
+A unit that feels the ride climbs by its barometer, and says how little it knows until its wearer
+walks again; that doubt is ours as well.  One that does not feel it stays where it was while the
+pressure changes as fast as lifts go.  That may have been a fan all the same, so nobody is moved by
+it: the height is known no better than either would have it, until a storey, a fix or a pin tells.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from base_station.fusion.port import AirHeight
+from shared.clock import NS_PER_S
+
+CLIMBED_M = 0.5  # by the own path while it rests: the unit felt the ride
+STOREY_M = 2.2  # less is no ride
+WITHIN_NS = 40 * NS_PER_S  # a ride of ten storeys, slow as they are
+OVER_NS, OVER_M = 2 * NS_PER_S, 0.6  # so long without more than this: the ride is over
+JUMP = 0.6  # of the change at once: a door or a fan
+
+
+class Rides(msgspec.Struct):
+    settled_m2: float = 0.0  # the unit's own variance when its wearer last walked
+    doubt_m2: float = 0.0  # by how much it is larger now
+    climbed_m: float = 0.0  # by the own path since then
+    felt: list[tuple[int, float]] = msgspec.field(default_factory=list)  # heights since then
+
+    def follow(self, own_std_m: float, climbed_m: float, *, moves: bool) -> float:
+        """The own path went on; gives the variance that is left of a ride that is over."""
+        grown_m2 = max(0.0, own_std_m**2 - self.settled_m2)
+        if not moves:
+            self.doubt_m2 = grown_m2
+            self.climbed_m += climbed_m
+            return 0.0
+        self.settled_m2, self.doubt_m2, self.climbed_m = own_std_m**2, 0.0, 0.0
+        self.felt.clear()
+        return grown_m2
+
+    def feel(self, air: AirHeight) -> float:
+        """By how much the air says that somebody who stands was lifted, and the own path does
+        not; 0 where it does not say so.
+        """
+        self.felt = [one for one in self.felt if air.t_mono_ns - one[0] <= WITHIN_NS]
+        self.felt.append((air.t_mono_ns, air.down_m))
+        lifted_m = air.down_m - self.felt[0][1]
+        of_late = [one[1] for one in self.felt if air.t_mono_ns - one[0] <= OVER_NS]
+        goes_on = max(of_late) - min(of_late) > OVER_M
+        if goes_on or abs(lifted_m) < STOREY_M or abs(self.climbed_m) > CLIMBED_M:
+            return 0.0
+        jump_m = max(
+            abs(after[1] - before[1])
+            for before, after in zip(self.felt, self.felt[1:], strict=False)
+        )
+        self.felt = [(air.t_mono_ns, air.down_m)]
+        return 0.0 if jump_m > JUMP * abs(lifted_m) else lifted_m

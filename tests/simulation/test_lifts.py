@@ -1,0 +1,132 @@
+"""Lifts, from the wearer's sensors to the floor that the station shows."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from base_station.fusion.height import HeightFilter
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.port import AirHeight
+from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.samples import Floats
+from edge.simulation import open_simulation
+from edge.tracker import make_tracker
+from shared.clock import NS_PER_S, ManualClock
+from shared.envelope import Stamper
+from shared.messages import FusedPosition, Position
+from shared.messages.station import SetPlan
+from tests.station_script import Script
+
+LASTS_S = 200
+STOREY_M = 3.2
+STOREYS = ",".join(f'{{"floor":{k},"down_m":{-STOREY_M * k:.1f}}}' for k in range(7))
+PLAN = (
+    f'{{"type":"FeatureCollection","muster":{{"frame":"site-m","floors":[{STOREYS}]}},'
+    '"features":[]}'
+).encode()
+
+
+@cache
+def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floats]:
+    """What is shown at each position of the wearer, and how high that truly is (n,)."""
+    simulation = open_simulation(scenario)
+    identity = UnitIdentity("1", scenario, "eskf", simulation.description)
+    tracker = make_tracker("eskf", simulation.description)
+    stamper = Stamper("FF-01", 7, ManualClock())
+    unit = TrackerPipeline(identity, tracker, stamper, 2.0)
+    script = Script()
+    script.register("FF-01")
+    if with_plan:
+        script.act(SetPlan(PLAN))
+    times_s, shown = [], []
+    for batch in islice(simulation.batches(1.0), LASTS_S):
+        for message in unit.step(batch):
+            if isinstance(message, Position):
+                script.now_s = message.header.t_mono_ns / NS_PER_S
+                script.say(message)
+                times_s.append(script.now_s)
+                shown.append(script.fused[-1])
+    places = simulation.truth(np.array([0.0, *times_s])).position_n_m
+    return shown, places[0, 2] - places[1:, 2]
+
+
+def settled(shown: list[FusedPosition], height_m: Floats) -> list[tuple[FusedPosition, int]]:
+    """What is shown on the level of a storey, once the wearer has left the lift."""
+    storeys = np.rint(height_m / STOREY_M).astype(int)
+    level = np.abs(height_m - STOREY_M * storeys) < 0.3
+    stays = [bool(level[max(0, row - 16) : row + 1].all()) for row in range(len(level))]
+    return [
+        (one, int(storeys[row]))
+        for row, one in enumerate(shown)
+        if stays[row] and one.floor is not None
+    ]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_lift_in_the_house_comes_out_on_the_right_floor(seed: int) -> None:
+    """Nobody says how high a storey is."""
+    shown, height_m = ridden(f"lift?seed={seed}", with_plan=False)
+    floors = settled(shown, height_m)
+    assert {storey for _, storey in floors} == {0, 1}
+    wrong = [one for one, storey in floors if one.floor != storey]
+    assert len(wrong) < 0.01 * len(floors)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_lift_up_six_storeys_and_down_by_twos_keeps_to_the_plans_floors(seed: int) -> None:
+    floors = settled(*ridden(f"tower?seed={seed}", with_plan=True))
+    assert {storey for _, storey in floors} == {0, 2, 4, 6}
+    wrong = [one for one, storey in floors if one.floor != storey]
+    assert len(wrong) < 0.01 * len(floors)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_heights_of_rides_are_as_sure_as_they_say(seed: int) -> None:
+    shown, height_m = ridden(f"tower?seed={seed}", with_plan=False)
+    off = [
+        (-one.down_m - true_m) / one.std_down_m for one, true_m in zip(shown, height_m, strict=True)
+    ]
+    assert np.percentile(np.abs(off), 95.0) < 2.0
+    assert max(one.std_down_m for one in shown) < 1.5
+
+
+def test_while_it_rides_nobody_is_surer_than_the_unit() -> None:
+    height = HeightFilter(Parameters())
+    height.begin(0.0, 0.2)
+    for _ in range(20):
+        height.climb(-0.5, 0.0, 0.8, moves=False)
+    assert math.sqrt(height.variance_m2) > 0.8
+    height.climb(0.0, 1.0, 0.15, moves=True)
+    assert math.sqrt(height.variance_m2) < 0.4
+    assert height.down_m == pytest.approx(-10.0)
+
+
+def rest(height: HeightFilter, begin_s: int, airs_m: list[float]) -> None:
+    """Stand still while the air says this, a look a second."""
+    for second, air_m in enumerate(airs_m, begin_s):
+        height.climb(0.0, 0.0, 0.1, moves=False)
+        height.feel(AirHeight(second * NS_PER_S, air_m, referenced=True))
+
+
+def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None:
+    """It may be a fan: nobody is moved, and nobody is sure."""
+    height = HeightFilter(Parameters())
+    height.begin(0.0, 0.2)
+    ramp = [5.0 - 0.8 * min(second, 8) for second in range(20)]
+    rest(height, 0, [5.0] * 30)
+    rest(height, 30, ramp)
+    assert abs(height.down_m) < 0.3
+    assert math.sqrt(height.variance_m2) > 3.2
+
+
+def test_a_door_that_opens_and_weather_that_turns_are_no_ride() -> None:
+    for airs_m in ([5.0] * 10 + [8.0] * 30, [5.0 + 0.008 * k for k in range(600)]):
+        height = HeightFilter(Parameters())
+        height.begin(0.0, 0.2)
+        rest(height, 0, airs_m)
+        assert math.sqrt(height.variance_m2) < 0.5
