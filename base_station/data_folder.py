@@ -16,6 +16,7 @@ class DataFolder:
         self.checkpoints = path / "checkpoints"
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.database = path / "station.sqlite"
+        self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:

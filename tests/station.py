@@ -27,11 +27,13 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import Output, Received, Refused
+from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.fusion import FUSERS
 from base_station.live.sinks import ActionDone, Projection
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
+from base_station.recordings.desk import RecordingDesk
 from base_station.views import StationFacts, snapshot
 from shared.clock import Clock
 from shared.envelope import Stamper
@@ -110,6 +112,10 @@ def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:
     raise UserError("this station has no log")
 
 
+def nobody_answers(_unit_id: str, _question: str) -> None:
+    return None
+
+
 class DeskStation:
     """The API on a fresh data folder with one user of each role, each named like the role."""
 
@@ -119,6 +125,19 @@ class DeskStation:
         self.hub = Hub()
         roster = Roster(self.store, clock)
         self.drive = DeskDrive(clock, self.projection, roster, self.hub)
+        forgetter = Forgetter(
+            ClosedLog(folder / "log"),
+            self.store,
+            Checkpoints(folder / "checkpoints"),
+            Records(self.store, clock),
+            clock,
+            RecordingDesk(nobody_answers, folder / "recordings", clock),
+            self.drive.submit,
+        )
+        self.forgettings = ForgettingDesk(
+            forgetter, folder / "forgetting.json", lambda: True, lambda _: None
+        )
+        self.forgettings.__enter__()
         self.services = Services(
             accounts=Accounts(self.store, clock, QUICK_HASH),
             roster=roster,
@@ -127,14 +146,7 @@ class DeskStation:
             gate=self.drive,
             settle=self.projection.flush,
             replays=Replays(no_replays),
-            forgetter=Forgetter(
-                ClosedLog(folder / "log"),
-                self.store,
-                Checkpoints(folder / "checkpoints"),
-                Records(self.store, clock),
-                clock,
-                self.drive.submit,
-            ),
+            forgettings=self.forgettings,
             clock=clock,
             secure=False,
         )
@@ -154,5 +166,6 @@ class DeskStation:
         return httpx.AsyncClient(transport=transport, base_url=f"{ORIGIN}/api/v1", headers=headers)
 
     def close(self) -> None:
+        self.forgettings.__exit__()
         self.projection.close()
         self.store.close()

@@ -18,7 +18,7 @@ from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
 from base_station.db.records import Records
 from base_station.db.roster import Roster
-from base_station.forgetting.forgetter import Forgetter
+from base_station.forgetting.desk import ForgettingDesk
 from base_station.live.sinks import ActionDone, OperatorGate
 from base_station.past.hindsight import Hindsight
 from base_station.recordings.desk import RecordingDesk
@@ -38,7 +38,7 @@ class Services:
     gate: OperatorGate
     settle: Callable[[], object]  # waits until what was decided can be read from the store
     replays: Replays
-    forgetter: Forgetter | None  # None: a station that only replays
+    forgettings: ForgettingDesk | None  # None: a station that only replays
     clock: Clock
     secure: bool  # the console is served over TLS
     standing: Standing | None = None  # None: this is the only station

@@ -15,7 +15,8 @@ from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
 from base_station.feed import LogFeed, SteadyClock
-from base_station.forgetting.forgetter import Forgetter
+from base_station.forgetting.desk import Forgetting, ForgettingDesk
+from base_station.forgetting.forgetter import Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
@@ -50,10 +51,22 @@ class Disk:
         return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
 
     def forgetter(
-        self, act: Callable[[str, Action], object] = lambda _by, _action: None
+        self, pulls: Pulls, act: Callable[[str, Action], object] = lambda _by, _action: None
     ) -> Forgetter:
         """``act`` has the running station forget what it holds in memory."""
-        return Forgetter(self.recorder, self.store, self.checkpoints, self.records, self.clock, act)
+        return Forgetter(
+            self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act
+        )
+
+    def forgetting_desk(
+        self, pulls: Pulls, act: Callable[[str, Action], object], may_work: Callable[[], bool]
+    ) -> ForgettingDesk:
+        def note_done(done: Forgetting) -> None:
+            if done.kind == "person":
+                self.roster.forget_photo(done.subject_id)
+
+        forgetter = self.forgetter(pulls, act)
+        return ForgettingDesk(forgetter, self.folder.forgettings, may_work, note_done)
 
 
 def open_disk(

@@ -21,6 +21,7 @@ from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
+from base_station.recordings.desk import RecordingDesk
 from shared.clock import SystemClock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import recover_log
@@ -69,7 +70,12 @@ def forget(
             clock = SystemClock()
             records, roster = Records(store, clock), Roster(store, clock)
             forgetter = Forgetter(
-                ClosedLog(folder.log), store, Checkpoints(folder.checkpoints), records, clock
+                ClosedLog(folder.log),
+                store,
+                Checkpoints(folder.checkpoints),
+                records,
+                clock,
+                RecordingDesk(_ask_nobody, folder.recordings, clock),
             )
             incident = records.incident(what)
             if incident is not None:
@@ -83,6 +89,10 @@ def forget(
             return forgetter.person(_BY_COMMAND, person_id, on_progress)
     finally:
         lock.close()
+
+
+def _ask_nobody(_unit_id: str, _question: str) -> None:
+    return None
 
 
 def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:

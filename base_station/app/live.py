@@ -10,8 +10,6 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-
 from base_station import collector
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -32,6 +30,7 @@ from base_station.data_folder import DataFolder
 from base_station.db.kept import KeptTables
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
+from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import Forgetter
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
@@ -54,11 +53,12 @@ from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
 from base_station.views import StationFacts
 from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT, clock_key
-from shared.clock import Clock, SystemClock
+from shared.clock import SystemClock
 from shared.envelope import Stamper
 from shared.errors import UserError
 from shared.mcap_log import SegmentPolicy
 from shared.messages import STATION_ID
+from shared.messages.station import Action
 
 _BY_OTHER_STATION = "the other station"
 _log = logging.getLogger(__name__)
@@ -102,9 +102,12 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             server.stop()
 
         pki = PkiFolder(folder.path)
-        side = _side(config, _parts(disk, bus, feed, pki, announce, start_again))
+        recordings = RecordingDesk(ask_over(bus), folder.recordings, steady)
+        closing.enter_context(recordings)
+        side = _side(config, _parts(disk, bus, feed, pki, recordings, announce, start_again))
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
-        recordings = _beside_messages(bus, folder, steady, side, closing)
+        clock_server = ClockServer(steady, lambda: side.leads)
+        closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
         backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
@@ -113,6 +116,11 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
             backfill.report(held)
 
         expiry = ExpiryWatch(pki, clock)
+
+        def act(by: str, action: Action) -> object:
+            return drive.submit(by, action)
+
+        forgettings = disk.forgetting_desk(recordings, act, lambda: side.leads)
         drive = _start_drive(
             disk.log,
             Surroundings(
@@ -122,9 +130,8 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
                 projection=disk.projection,
                 checkpoints=disk.checkpoints,
                 photo_urls=disk.roster.photo_url,
-                facts=lambda: msgspec.structs.replace(
-                    _facts(config, recorder, feed, router, expiry, side),
-                    recordings=recordings.views(),
+                facts=lambda: _facts(
+                    config, recorder, feed, router, expiry, side, recordings, forgettings
                 ),
                 clock=steady,
                 boot_id=secrets.randbits(63),
@@ -138,11 +145,12 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         beside = closing.enter_context(ExitStack())  # ends behind the drive: the other gets all
         closing.callback(drive.stop)
         closing.callback(hearing.close)  # first: what still comes is stepped before the end
+        closing.enter_context(forgettings)
         for thread in (backfill, downlink):
             thread.start()
             closing.callback(thread.close)
         closing.callback(side.feed.close)
-        services = _services(config, disk, hub, gate, drive, side, recordings)
+        services = _services(config, disk, hub, gate, side, recordings, forgettings)
         app = create_app(services, started=lambda loop: hub.connect(loop, drive))
         keep_house = _housekeeping(
             recorder, services, EnrolledUnits(pki, gate, disk.roster.registered_units), side
@@ -158,6 +166,7 @@ def _parts(
     bus: ZenohBus,
     feed: LiveFeed,
     pki: PkiFolder,
+    recordings: RecordingDesk,
     announce: Announce,
     start_again: Callable[[Place | None], None],
 ) -> Parts:
@@ -175,7 +184,7 @@ def _parts(
         on_people=disk.roster.read_again,
         on_lead=lambda: announce_first_login(disk.accounts, disk.folder.first_login, announce),
         start_again=start_again,
-        forget=lambda what: _forget_too(disk.forgetter(), what),
+        forget=lambda what: _forget_too(disk.forgetter(recordings), what),
     )
 
 
@@ -184,9 +193,9 @@ def _services(
     disk: Disk,
     hub: Hub,
     gate: OperatorGate,
-    drive: StationDrive,
     side: Side,
     recordings: RecordingDesk,
+    forgettings: ForgettingDesk,
 ) -> Services:
     return Services(
         accounts=disk.accounts,
@@ -196,7 +205,7 @@ def _services(
         gate=gate,
         settle=disk.projection.flush,
         replays=Replays(replay_starter(disk.archive, disk.roster, disk.clock)),
-        forgetter=disk.forgetter(drive.submit),
+        forgettings=forgettings,
         clock=disk.clock,
         secure=config.http.certificate is not None,
         standing=side.standing,
@@ -267,15 +276,6 @@ def _set_aside(data: Path, place: Place) -> None:
     rebuild(data, _ignore)
 
 
-def _beside_messages(
-    bus: ZenohBus, folder: DataFolder, clock: Clock, side: Side, closing: ExitStack
-) -> RecordingDesk:
-    """What units ask for, and are asked for, beside their messages and journals."""
-    clock_server = ClockServer(clock, lambda: side.leads)
-    closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
-    return closing.enter_context(RecordingDesk(ask_over(bus), folder.recordings, clock))
-
-
 def _facts(
     config: StationConfig,
     recorder: Recorder,
@@ -283,8 +283,11 @@ def _facts(
     router: RouterProcess,
     expiry: ExpiryWatch,
     side: Side,
+    recordings: RecordingDesk,
+    forgettings: ForgettingDesk,
 ) -> StationFacts:
     problems = [*config.standing_problems(), *expiry.problems(), *side.problems()]
+    problems += forgettings.problems()
     if not router.is_open:
         problems.append("The bus's router is away and is started again; no unit is linked")
     if feed.overflowed:
@@ -295,6 +298,7 @@ def _facts(
         disk_free_bytes=recorder.disk_free_bytes,
         insecure=bool(config.plain_endpoints()),
         standby=None if side.standing is None else side.standing.view(),
+        recordings=recordings.views(),
     )
 
 

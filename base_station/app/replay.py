@@ -70,7 +70,7 @@ def run_replay_station(
             gate=ReadOnlyGate(),
             settle=lambda: None,
             replays=replays,
-            forgetter=None,
+            forgettings=None,
             clock=clock,
             secure=config.http.certificate is not None,
             hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),

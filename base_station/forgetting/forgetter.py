@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import shutil
+import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,12 +27,13 @@ from base_station.forgetting.redaction import Redactor
 from base_station.past.checkpoints import Checkpoints
 from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
 from shared.clock import Clock
-from shared.errors import UserError
+from shared.errors import StoreError, UserError
 from shared.mcap_log import read_log, remove_torn, rewrite_segment, segment_paths
 from shared.messages import STATION_ID
 from shared.messages.station import Action, ForgetWearers
 
 _log = logging.getLogger(__name__)
+_REMOVED_WITHIN_S = 20.0
 Progress = Callable[[float], None]  # hears the fraction done
 
 
@@ -49,6 +51,14 @@ class LogFiles(Protocol):
 
     def note_rewritten(self, path: Path) -> None:
         """This segment has another content now."""
+        ...
+
+
+class Pulls(Protocol):
+    """Raw recordings that are being pulled from units."""
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        """None of these units is asked for more."""
         ...
 
 
@@ -87,6 +97,7 @@ class Forgetter:
         checkpoints: Checkpoints,
         records: Records,
         clock: Clock,
+        pulls: Pulls,
         act: Callable[[str, Action], object] = lambda _by, _action: None,
     ) -> None:
         """``act`` has the running station forget what it holds in memory."""
@@ -95,6 +106,7 @@ class Forgetter:
         self._checkpoints = checkpoints
         self._records = records
         self._clock = clock
+        self._pulls = pulls
         self._act = act
 
     def person(self, by: str, person_id: str, on_progress: Progress = lambda _: None) -> Forgotten:
@@ -159,12 +171,15 @@ class Forgetter:
         return {self._log.folder, *(path.parent for path in segments)}
 
     def _remove_recordings(self, erasure: Erasure) -> int:
-        """Raw recordings of the units, whoever wore them: the unit still has its own."""
+        """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
+        way finds its folder gone, and ends.
+        """
+        self._pulls.forget(erasure.unit_ids)
         recordings = DataFolder(self._log.folder.parent).recordings
         gone = [recordings / unit_id for unit_id in erasure.unit_ids]
         count = sum(1 for folder in gone for path in folder.rglob("*") if path.is_file())
         for folder in gone:
-            shutil.rmtree(folder, ignore_errors=True)
+            _remove(folder)
         return count
 
     def _actions(self) -> Collection[tuple[int, str, bytes]]:
@@ -180,3 +195,12 @@ class Forgetter:
             if isinstance(event, Received):
                 clocks.note(event.t_ns, event.message.header)
         return clocks
+
+
+def _remove(folder: Path) -> None:
+    """Whoever is writing into it just now has one more question to put, and then ends."""
+    end_s = time.monotonic() + _REMOVED_WITHIN_S
+    while folder.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        if time.monotonic() > end_s:
+            raise StoreError(f"{folder} cannot be removed; see who uses it, and forget again")

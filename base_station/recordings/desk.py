@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Collection
 from pathlib import Path
 from threading import Event, Lock, Thread
 
@@ -86,6 +87,15 @@ class RecordingDesk:
                     return True
         return False
 
+    def forget(self, unit_ids: Collection[str]) -> None:
+        """Nothing more of what these units kept is to come; who wore them is forgotten."""
+        with self._lock:
+            for pull in self._pulls:
+                if pull.wanted.unit_id in unit_ids:
+                    pull.state, pull.problem = FetchState.FAILED, "deleted: its wearer is forgotten"
+            self._save()
+        self._changed.set()
+
     def pulls(self) -> tuple[Pull, ...]:
         """Those under way and the last that are over."""
         with self._lock:
@@ -125,6 +135,8 @@ class RecordingDesk:
         """One question to one unit; whether it answered."""
         try:
             fetch = self._running.get(pull.fetch_id)
+            if pull.state.is_over:  # since this round began
+                return False
             if fetch is None:
                 fetch = Fetch(self._ask, self._folder, pull.wanted, self._clock)
                 self._running[pull.fetch_id] = fetch

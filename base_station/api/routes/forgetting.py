@@ -10,7 +10,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Administrator
 from base_station.api.services import Services, Station
-from base_station.forgetting.forgetter import Forgetter, Forgotten
+from base_station.forgetting.desk import Forgetting, ForgettingDesk
 
 router = APIRouter(tags=["forgetting"])
 
@@ -19,17 +19,32 @@ class Confirmation(Form):
     name: Name  # of what is to be forgotten, as it is shown: it cannot be undone
 
 
-class Done(BaseModel):
+class Progress(BaseModel):
+    forgetting_id: str
+    by: str
+    kind: str  # person | incident
+    subject_id: str
+    state: str  # waiting | working | done | failed
+    problem: str  # a sentence for a person
+    share: float  # of the log that was looked through
     records: int  # of the log that changed or went
     files: int  # that were written anew or removed
 
 
-@router.post("/people/{person_id}/forget")
+@router.get("/forgettings")
+def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
+    """Those under way and the last that are over."""
+    return [] if station.forgettings is None else list(map(_progress, station.forgettings.all()))
+
+
+@router.post("/people/{person_id}/forget", status_code=202)
 def forget_person(
     person_id: Id, confirmation: Confirmation, station: Station, who: Administrator
-) -> Done:
-    """Name, photo and everywhere the person was; takes a while where the log is long."""
-    forgetter = _forgetter(station)
+) -> Progress:
+    """Name, photo and everywhere the person was; goes on until it is done, whoever is started
+    again meanwhile.
+    """
+    desk = _desk(station)
     person = station.roster.person(person_id)
     if person is None:
         raise Problem(404, "There is no such person.")
@@ -37,32 +52,30 @@ def forget_person(
     worn = station.roster.worn_by(person_id)
     if worn:
         raise Problem(409, f"{person.name} wears {', '.join(worn)}; unassign that first.")
-    done = forgetter.person(who.username, person_id)
-    station.roster.forget_photo(person_id)
-    return _done(done)
+    return _progress(desk.add(who.username, "person", person_id))
 
 
-@router.post("/incidents/{incident_id}/forget")
+@router.post("/incidents/{incident_id}/forget", status_code=202)
 def forget_incident(
     incident_id: Id, confirmation: Confirmation, station: Station, who: Administrator
-) -> Done:
+) -> Progress:
     """Who was there and where; its name, its times and that there were alarms stay."""
-    forgetter = _forgetter(station)
+    desk = _desk(station)
     incident = incident_or_404(station, incident_id)
     _require_name(confirmation, incident.name)
     if incident.closed_ns is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
-    return _done(forgetter.incident(who.username, incident_id))
+    return _progress(desk.add(who.username, "incident", incident_id))
 
 
-def _forgetter(station: Services) -> Forgetter:
-    if station.forgetter is None:
+def _desk(station: Services) -> ForgettingDesk:
+    if station.forgettings is None:
         raise Problem(409, "This station only replays; nothing can be changed here.")
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
     station.settle()  # what still is to be stored would be stored afterwards
-    return station.forgetter
+    return station.forgettings
 
 
 def _require_name(confirmation: Confirmation, name: str) -> None:
@@ -70,5 +83,15 @@ def _require_name(confirmation: Confirmation, name: str) -> None:
         raise Problem(422, "The name is another: give it exactly as it is shown.")
 
 
-def _done(done: Forgotten) -> Done:
-    return Done(records=done.records, files=done.files)
+def _progress(one: Forgetting) -> Progress:
+    return Progress(
+        forgetting_id=one.forgetting_id,
+        by=one.by,
+        kind=one.kind,
+        subject_id=one.subject_id,
+        state=one.state.value,
+        problem=one.problem,
+        share=one.share,
+        records=one.records,
+        files=one.files,
+    )

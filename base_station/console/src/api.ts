@@ -162,15 +162,24 @@ export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
 export const units = () => call<UnitDetails[]>("GET", "/units");
-export interface Forgotten {
+/** A wish to forget, and how far it is (base_station/forgetting/desk.py). */
+export interface Forgetting {
+  forgetting_id: string;
+  by: string;
+  kind: "person" | "incident";
+  subject_id: string;
+  state: "waiting" | "working" | "done" | "failed";
+  problem: string;
+  share: number; // of the log that was looked through
   records: number; // of the log that changed or went
   files: number;
 }
 
+export const forgettings = () => call<Forgetting[]>("GET", "/forgettings");
 export const forgetPerson = (personId: string, name: string) =>
-  call<Forgotten>("POST", `/people/${id(personId)}/forget`, { name });
+  call<Forgetting>("POST", `/people/${id(personId)}/forget`, { name });
 export const forgetIncident = (incidentId: string, name: string) =>
-  call<Forgotten>("POST", `/incidents/${id(incidentId)}/forget`, { name });
+  call<Forgetting>("POST", `/incidents/${id(incidentId)}/forget`, { name });
 
 /** Have a unit's raw recording pulled: of an incident, or of the last hour. */
 export const fetchRecording = (unitId: string, incidentId: string | null) =>

@@ -1,20 +1,46 @@
 import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import { notice } from "../view";
-import type * as api from "../api";
+import * as api from "../api";
 import { fields } from "./useLoaded";
+
+const LOOK_EVERY_MS = 500;
 
 interface Props {
   name: string;
+  subjectId: string;
   warning: string;
-  forget: (name: string) => Promise<api.Forgotten>;
+  forget: (name: string) => Promise<api.Forgetting>;
   done: () => void;
 }
 
-/** Deletes what is stored, for good: whoever wants that writes the name. */
-export function Forget({ name, warning, forget, done }: Props) {
+/** Deletes what is stored, for good: whoever wants that writes the name. It takes a while where the
+ * log is long, and goes on without this page. */
+export function Forget({ name, subjectId, warning, forget, done }: Props) {
   const asked = useSignal(false);
-  const busy = useSignal(false);
+  const underWay = useSignal<api.Forgetting | null>(null);
+  const look = async () => {
+    const all = await api.forgettings().catch(() => null); // away: it is asked again
+    const mine = all?.filter((one) => one.subject_id === subjectId).at(-1);
+    if (mine === undefined) return;
+    const wasUnderWay = underWay.peek() !== null;
+    underWay.value = isOver(mine) ? null : mine;
+    if (!wasUnderWay || !isOver(mine)) return;
+    asked.value = false;
+    notice.value = outcome(mine);
+    done();
+  };
+  useEffect(() => {
+    if (asked.value) void look(); // somebody may have wished it already
+  }, [asked.value]);
+  const working = underWay.value !== null;
+  useEffect(() => {
+    if (!working) return undefined;
+    const timer = setInterval(() => void look(), LOOK_EVERY_MS);
+    return () => clearInterval(timer);
+  }, [working]);
+  if (underWay.value !== null) return <UnderWay name={name} one={underWay.value} />;
   if (!asked.value) {
     return (
       <button type="button" aria-label={`Forget ${name}`} onClick={() => (asked.value = true)}>
@@ -27,14 +53,7 @@ export function Forget({ name, warning, forget, done }: Props) {
       class="forget"
       onSubmit={(event) => {
         const { typed = "" } = fields(event);
-        busy.value = true;
-        void attempt(forget(typed)).then((gone) => {
-          busy.value = false;
-          if (gone === null) return;
-          asked.value = false;
-          notice.value = `${gone.records} records were taken out of the log.`;
-          done();
-        });
+        void attempt(forget(typed)).then((begun) => (underWay.value = begun));
       }}
     >
       <p>{warning} It cannot be undone; the audit log keeps that it was done.</p>
@@ -42,12 +61,30 @@ export function Forget({ name, warning, forget, done }: Props) {
         Write “{name}” to go on
         <input name="typed" required autocomplete="off" />
       </label>
-      <button class="danger" disabled={busy}>
-        {busy.value ? "Deleting …" : "Forget for good"}
-      </button>
+      <button class="danger">Forget for good</button>
       <button type="button" onClick={() => (asked.value = false)}>
         No
       </button>
     </form>
   );
+}
+
+function UnderWay({ name, one }: { name: string; one: api.Forgetting }) {
+  return (
+    <label class="under-way">
+      Forgetting {name}
+      <progress value={one.share} max={1} />
+      {one.problem !== "" && <small>{one.problem}</small>}
+    </label>
+  );
+}
+
+function isOver(one: api.Forgetting): boolean {
+  return one.state === "done" || one.state === "failed";
+}
+
+function outcome(one: api.Forgetting): string {
+  return one.state === "done"
+    ? `${one.records} records were taken out of the log.`
+    : `Nothing was forgotten: ${one.problem}.`;
 }

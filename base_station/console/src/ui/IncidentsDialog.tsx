@@ -72,6 +72,7 @@ export function IncidentsDialog() {
                     <Forget
                       name={incident.name}
                       warning="Who was there and where is deleted."
+                      subjectId={incident.incident_id}
                       forget={(name) => api.forgetIncident(incident.incident_id, name)}
                       done={again}
                     />

@@ -77,6 +77,7 @@ function PersonRow({ person, done }: RowProps) {
           <Forget
             name={person.name}
             warning="Name, photo and everywhere this person was are deleted."
+            subjectId={person.person_id}
             forget={(name) => api.forgetPerson(person.person_id, name)}
             done={done}
           />

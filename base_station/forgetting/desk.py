@@ -1,0 +1,186 @@
+"""Forgets one after the other what people wished to be forgotten, and goes on after a restart.
+
+A long log takes minutes to be written anew, so nobody waits for it with an open request: what was
+asked for, and how far it is, is kept in a file beside the log until it is done.  Ended at any
+instant, the whole is done again and ends as it would have (``forgetter``).
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from threading import Event, Lock, Thread
+
+import msgspec
+
+from base_station.forgetting.forgetter import Forgetter
+from base_station.pki.files import write_atomically
+from shared.errors import ConfigError, MusterError, StoreError, UserError
+
+_log = logging.getLogger(__name__)
+_KEPT = 20  # of those that are over
+_AGAIN_S = 10.0  # after a failure of disk or store, or at a standby
+
+
+class ForgettingState(StrEnum):
+    WAITING = "waiting"
+    WORKING = "working"
+    DONE = "done"
+    FAILED = "failed"
+
+    @property
+    def is_over(self) -> bool:
+        return self in (ForgettingState.DONE, ForgettingState.FAILED)
+
+
+class Forgetting(msgspec.Struct):
+    """What is to be forgotten, at whose wish, and how far it is.  It has no name in it."""
+
+    forgetting_id: str
+    by: str
+    kind: str  # "person" or "incident"
+    subject_id: str
+    state: ForgettingState = ForgettingState.WAITING
+    problem: str = ""  # a sentence for a person
+    share: float = 0.0  # of the log that was looked through
+    records: int = 0  # of the log that changed or went
+    files: int = 0  # that were written anew or removed
+    began: bool = False  # once before, perhaps by an earlier run of the program
+
+
+class _Ended(Exception):  # noqa: N818  # it is no error
+    """The station stops: the rest is done when it runs again."""
+
+
+class ForgettingDesk:
+    """Works while it is entered; any thread may call the rest."""
+
+    def __init__(
+        self,
+        forgetter: Forgetter,
+        kept: Path,
+        may_work: Callable[[], bool],
+        on_done: Callable[[Forgetting], None],
+    ) -> None:
+        """``kept``: the file.  ``may_work``: whether this station leads.  ``on_done`` is called
+        in the desk's thread when something was forgotten.
+        """
+        self._forgetter = forgetter
+        self._kept = kept
+        self._may_work = may_work
+        self._on_done = on_done
+        self._lock = Lock()
+        self._all: list[Forgetting] = _read(kept)
+        self._changed = Event()
+        self._closed = Event()
+        self._thread = Thread(target=self._run, name="forgetting", daemon=True)
+
+    def __enter__(self) -> ForgettingDesk:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed.set()
+        self._changed.set()
+        self._thread.join()
+
+    def add(self, by: str, kind: str, subject_id: str) -> Forgetting:
+        """It is on the disk when this returns, and will be done.  The same twice is once.
+
+        Raises StoreError where the disk does not take it.
+        """
+        with self._lock:
+            for one in self._all:
+                if not one.state.is_over and (one.kind, one.subject_id) == (kind, subject_id):
+                    return msgspec.structs.replace(one)
+            wish = Forgetting(secrets.token_hex(4), by, kind, subject_id)
+            under_way = [one for one in self._all if not one.state.is_over]
+            over = [one for one in self._all if one.state.is_over]
+            before, self._all = self._all, [*over[1 - _KEPT :], *under_way, wish]
+            try:
+                self._save()
+            except ConfigError as error:
+                self._all = before
+                raise StoreError(
+                    f"the wish cannot be kept, so nothing is forgotten: {error}"
+                ) from error
+        self._changed.set()
+        return msgspec.structs.replace(wish)
+
+    def all(self) -> tuple[Forgetting, ...]:
+        """The last that are over, and those under way."""
+        with self._lock:
+            return tuple(msgspec.structs.replace(one) for one in self._all)
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console, while something is under way."""
+        return tuple(
+            f"The log is being written anew to forget a {one.kind} ({one.share:.0%}), as {one.by} "
+            f"wished{f': {one.problem}' if one.problem else ''}"
+            for one in self.all()
+            if not one.state.is_over
+        )
+
+    def _run(self) -> None:
+        while not self._closed.is_set():
+            self._changed.clear()
+            with self._lock:
+                wish = next((one for one in self._all if not one.state.is_over), None)
+            if wish is None:
+                self._changed.wait()
+            elif not self._may_work():
+                self._note(wish, problem="this station is the standby; ask the one that leads")
+                self._closed.wait(_AGAIN_S)
+            elif not self._work(wish):
+                self._closed.wait(_AGAIN_S)
+
+    def _work(self, wish: Forgetting) -> bool:
+        """False where it is to be tried again later."""
+        again = wish.began
+        self._note(wish, state=ForgettingState.WORKING, problem="", began=True)
+        forget = self._forgetter.person if wish.kind == "person" else self._forgetter.incident
+        try:
+            done = forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share))
+            self._note(wish, records=done.records, files=done.files)
+        except _Ended:
+            return False
+        except UserError as error:
+            self._note(wish, problem=str(error))
+            if not again:  # else nothing was left to be done
+                self._note(wish, state=ForgettingState.FAILED)
+                return True
+        except (MusterError, OSError) as error:
+            _log.warning("forgetting waits: %s", error)
+            self._note(wish, problem=f"it is tried again: {error}")
+            return False
+        self._on_done(msgspec.structs.replace(wish))
+        self._note(wish, state=ForgettingState.DONE, share=1.0)
+        return True
+
+    def _go_on(self, wish: Forgetting, share: float) -> None:
+        if self._closed.is_set():
+            raise _Ended
+        with self._lock:
+            wish.share = share
+
+    def _note(self, wish: Forgetting, **now: object) -> None:
+        with self._lock:
+            for name, value in now.items():
+                setattr(wish, name, value)
+            try:
+                self._save()
+            except ConfigError as error:  # at worst it is done once more
+                _log.warning("%s", error)
+
+    def _save(self) -> None:
+        write_atomically(self._kept, msgspec.json.encode(self._all))
+
+
+def _read(path: Path) -> list[Forgetting]:
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=list[Forgetting])
+    except (OSError, msgspec.DecodeError):
+        return []

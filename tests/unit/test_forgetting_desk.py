@@ -1,0 +1,131 @@
+"""What is to be forgotten is done one after the other, and gone on with after a restart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event
+from typing import cast
+
+import pytest
+
+from base_station.forgetting.desk import Forgetting, ForgettingDesk, ForgettingState
+from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress
+from shared.errors import StoreError, UserError
+from tests.live_station import until
+
+
+class Worker:
+    """A ``Forgetter`` that waits in the middle, and fails as told."""
+
+    def __init__(self) -> None:
+        self.go = Event()
+        self.half = Event()
+        self.fails: list[Exception] = []
+        self.began: list[str] = []
+        self.done: list[str] = []
+
+    def person(self, by: str, person_id: str, on_progress: Progress) -> Forgotten:
+        self.began.append(person_id)
+        if self.fails:
+            raise self.fails.pop(0)
+        on_progress(0.5)
+        self.half.set()
+        self.go.wait()
+        on_progress(1.0)
+        self.done.append(person_id)
+        return Forgotten(f"person {person_id} by {by}", 7, 2)
+
+
+def desk(
+    worker: Worker,
+    folder: Path,
+    may_work: Callable[[], bool] = lambda: True,
+    on_done: Callable[[Forgetting], None] = lambda _: None,
+) -> ForgettingDesk:
+    return ForgettingDesk(cast("Forgetter", worker), folder / "kept.json", may_work, on_done)
+
+
+def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
+    worker, told = Worker(), list[Forgetting]()
+    with desk(worker, tmp_path, on_done=told.append) as one:
+        one.add("ada", "person", "p-1")
+        worker.half.wait()
+        (under_way,) = one.all()
+        assert (under_way.state, under_way.share) == (ForgettingState.WORKING, 0.5)
+        assert "50%" in one.problems()[0]
+        worker.go.set()
+        until(lambda: one.all()[0].state is ForgettingState.DONE)
+        (done,) = one.all()
+        assert (done.records, done.files, one.problems()) == (7, 2, ())
+    assert [one.subject_id for one in told] == ["p-1"]
+
+
+def test_the_same_wish_is_one_and_others_wait_their_turn(tmp_path: Path) -> None:
+    worker = Worker()
+    with desk(worker, tmp_path) as one:
+        first = one.add("ada", "person", "p-1")
+        assert one.add("bo", "person", "p-1").forgetting_id == first.forgetting_id
+        one.add("ada", "person", "p-2")
+        worker.half.wait()
+        assert worker.began == ["p-1"]
+        worker.go.set()
+        until(lambda: worker.done == ["p-1", "p-2"])
+
+
+def test_a_station_that_ends_in_the_middle_goes_on_when_it_is_back(tmp_path: Path) -> None:
+    worker = Worker()
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        worker.half.wait()
+        one._closed.set()
+        worker.go.set()
+    assert worker.done == []
+    with desk(worker, tmp_path) as again:
+        until(lambda: again.all()[0].state is ForgettingState.DONE)
+    assert worker.done == ["p-1"]
+
+
+def test_what_was_done_before_a_kill_and_not_written_down_is_done(tmp_path: Path) -> None:
+    worker = Worker()
+    desk(worker, tmp_path).add("ada", "person", "p-1")
+    text = (tmp_path / "kept.json").read_text().replace('"began":false', '"began":true')
+    (tmp_path / "kept.json").write_text(text)
+    worker.fails = [UserError("nobody knows that person")]
+    with desk(worker, tmp_path) as again:
+        until(lambda: again.all()[0].state is ForgettingState.DONE)
+
+
+def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
+    worker = Worker()
+    worker.fails = [UserError("nobody knows that person")]
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ForgettingState.FAILED)
+        assert one.all()[0].problem == "nobody knows that person"
+
+
+def test_a_store_that_fails_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("base_station.forgetting.desk._AGAIN_S", 0.01)
+    worker = Worker()
+    worker.fails = [StoreError("the disk is full")]
+    worker.go.set()
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ForgettingState.DONE)
+    assert worker.began == ["p-1", "p-1"]
+
+
+def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
+    worker = Worker()
+    with desk(worker, tmp_path, may_work=lambda: False) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: "standby" in one.all()[0].problem)
+    assert worker.began == []
+
+
+def test_a_wish_that_cannot_be_kept_is_refused(tmp_path: Path) -> None:
+    one = desk(Worker(), tmp_path / "missing")
+    with pytest.raises(StoreError, match="nothing is forgotten"):
+        one.add("ada", "person", "p-1")
+    assert one.all() == ()
