@@ -9,8 +9,11 @@ with, and whoever came in with a better one tells the others.
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
 from shared.geo import wrap_pi
 
@@ -166,7 +169,10 @@ class AxisFilter(msgspec.Struct):
         self.turn_variance = variance
 
 
-def quarter(angle_rad: float) -> float:
+Angle = TypeVar("Angle", float, NDArray[np.float64])
+
+
+def quarter(angle_rad: Angle) -> Angle:
     """The nearest that is as good, within an eighth of a turn."""
     return (angle_rad + QUARTER_RAD / 2.0) % QUARTER_RAD - QUARTER_RAD / 2.0
 

@@ -52,18 +52,12 @@ class LearntBuilding(msgspec.Struct, frozen=True):
 
     stairs: tuple[KnownStairs, ...] = ()
     axes: tuple[tuple[str, Axis], ...] = ()  # by unit
-
-    @property
-    def axis(self) -> Axis | None:
-        """The mean of most words: of those that lie near the one with the most about it."""
-        words = [axis for _, axis in self.axes]
-        if not words:
-            return None
-        return _mean(max((_near(word, words) for word in words), key=_weight))
+    axis: Axis | None = None  # what most of them agree upon
 
     def with_axis(self, unit_id: str, axis: Axis) -> LearntBuilding:
         others = tuple(word for word in self.axes if word[0] != unit_id)
-        return msgspec.structs.replace(self, axes=(*others, (unit_id, axis)))
+        axes = (*others, (unit_id, axis))
+        return msgspec.structs.replace(self, axes=axes, axis=_agreed(axes))
 
     def which(self, seen: Stairs) -> int | None:
         """The stairs that a climb was on; -1: such as nobody knows yet; None: it cannot be told."""
@@ -100,23 +94,19 @@ class LearntBuilding(msgspec.Struct, frozen=True):
             (name, Axis(quarter(axis.direction_rad + turn_rad), axis.variance))
             for name, axis in self.axes
         )
-        return LearntBuilding(stairs, axes)
+        return LearntBuilding(stairs, axes, _agreed(axes))
 
 
-def _near(one: Axis, words: Sequence[Axis]) -> list[Axis]:
-    return [
-        word
-        for word in words
-        if quarter(word.direction_rad - one.direction_rad) ** 2
-        < OUTLIER2 * (word.variance + one.variance)
-    ]
-
-
-def _weight(words: Sequence[Axis]) -> float:
-    return sum(1.0 / word.variance for word in words)
-
-
-def _mean(words: Sequence[Axis]) -> Axis:
-    north = sum(math.cos(4.0 * word.direction_rad) / word.variance for word in words)
-    east = sum(math.sin(4.0 * word.direction_rad) / word.variance for word in words)
-    return Axis(math.atan2(east, north) / 4.0, 1.0 / _weight(words))
+def _agreed(axes: Sequence[tuple[str, Axis]]) -> Axis | None:
+    """The mean of most words: of those that lie near the one with the most about it."""
+    if not axes:
+        return None
+    directions_rad = np.array([axis.direction_rad for _, axis in axes])
+    variances = np.array([axis.variance for _, axis in axes])
+    apart_rad = quarter(directions_rad[:, None] - directions_rad)
+    near = apart_rad**2 <= OUTLIER2 * (variances[:, None] + variances)
+    weights = 1.0 / variances
+    weights = np.where(near[np.argmax(near @ weights)], weights, 0.0)
+    north = float(weights @ np.cos(4.0 * directions_rad))
+    east = float(weights @ np.sin(4.0 * directions_rad))
+    return Axis(math.atan2(east, north) / 4.0, 1.0 / float(weights.sum()))
