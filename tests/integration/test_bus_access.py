@@ -1,21 +1,16 @@
-"""Who may do what on the bus, over real Zenoh: certificates, access rules, revocation."""
+"""Who may do what on the bus, over real Zenoh: access rules and revocation."""
 
 from __future__ import annotations
 
-import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
-from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
 
 import pytest
-from cryptography import x509
 
-from base_station.pki.access import access_control
-from base_station.pki.folder import PkiFolder
-from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
+from shared.bus_zenoh import ClientEndpoint
 from shared.channels import (
     COMMAND,
     DESCRIPTION,
@@ -28,90 +23,21 @@ from shared.channels import (
     clock_key,
     tracker_id,
 )
-from shared.enrolment import Enrolment, Holder
-from shared.errors import BusError
-from shared.tls import TlsIdentity
-
-# Long enough for what is allowed to have arrived twice over: what is forbidden must not have.
-QUIET_S = 0.7
-
-
-def until(holds: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + 20.0
-    while not holds():
-        assert time.monotonic() < deadline, f"never came: {what}"
-        time.sleep(0.01)
-
-
-class Site:
-    """A router with the rules of an authority, and the station as its client."""
-
-    def __init__(self, data: Path, stack: ExitStack) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        self.address = f"127.0.0.1:{port}"
-        self.unnamed_address = f"127.0.0.2:{port}"  # its certificate does not stand for it
-        self.pki = PkiFolder(data)
-        self.pki.create("Test", hosts=[], connect=[f"tls/{self.address}"])
-        self._stack = stack
-        self.heard: list[tuple[str, bytes]] = []
-        self.alive: set[str] = set()
-
-    def open(self) -> None:
-        """After everyone is enrolled: rules are read when the router opens."""
-        self.router = self._open_router()
-        self.station = self.join(
-            ClientEndpoint((f"tls/{self.address}",), self.pki.station_identity())
-        )
-        self.station.subscribe("muster/v1/**", lambda k, p: self.heard.append((k, p)))
-        self.station.watch_alive("muster/v1/**", self._token)
-
-    def reopen(self) -> None:
-        self.router.close()
-        self.router = self._open_router()
-
-    def _open_router(self) -> ZenohBus:
-        router = ZenohBus(
-            StationEndpoint(
-                (f"tls/{self.address}", f"tls/{self.unnamed_address}"),
-                self.pki.station_identity(),
-                access_control(self.pki.registry()),
-            )
-        )
-        self._stack.callback(router.close)
-        return router
-
-    def join(self, endpoint: UnitEndpoint | ClientEndpoint) -> ZenohBus:
-        bus = ZenohBus(endpoint)
-        self._stack.callback(bus.close)
-        return bus
-
-    def unit(self, enrolment: Enrolment) -> ZenohBus:
-        return self.join(UnitEndpoint(enrolment.connect, enrolment.identity))
-
-    def heard_under(self, key: str) -> list[bytes]:
-        return [payload for heard, payload in self.heard if heard == key]
-
-    def _token(self, key: str, alive: bool) -> None:
-        (self.alive.add if alive else self.alive.discard)(key)
+from shared.enrolment import Holder
+from tests.secured_bus import (
+    QUIET_S,
+    Site,
+    assert_powerless,
+    assert_speechless,
+    publish_until_heard,
+    until,
+)
 
 
 @pytest.fixture
 def site(tmp_path: Path) -> Iterator[Site]:
     with ExitStack() as stack:
         yield Site(tmp_path, stack)
-
-
-def publish_until_heard(site: Site, unit: ZenohBus, unit_id: str) -> None:
-    key = POSITION.key(unit_id)
-    before = len(site.heard_under(key))
-
-    def arrived() -> bool:
-        unit.publish(key, b"here", Qos.LIVE)
-        return len(site.heard_under(key)) > before
-
-    until(arrived, f"a message of {unit_id}")
 
 
 def test_an_enrolled_unit_speaks_lives_hears_its_commands_and_answers(site: Site) -> None:
@@ -306,124 +232,3 @@ def test_an_operator_hears_and_says_nothing(site: Site) -> None:
     assert commands == []
     assert b"forged" not in {payload for _, payload in site.heard}
     token.close()
-
-
-def test_a_certificate_that_has_ended_is_refused(site: Site, tmp_path: Path) -> None:
-    year_ago = PkiFolder(tmp_path, lambda: datetime.now(UTC) - timedelta(days=366))
-    expired = year_ago.enroll("anna", valid=timedelta(days=300))
-    site.open()
-    assert_never_linked(site, UnitEndpoint(expired.connect, expired.identity))
-
-
-def test_a_link_ends_with_its_certificate(site: Site) -> None:
-    enrolment = site.pki.enroll("anna", valid=timedelta(seconds=4))
-    site.open()
-    unit = site.unit(enrolment)
-    publish_until_heard(site, unit, "anna")
-    until(lambda: datetime.now(UTC) > ends(enrolment), "the end of the certificate")
-    until(lambda: not unit.is_linked(), "the end of the link")
-    site.heard.clear()
-    unit.publish(POSITION.key("anna"), b"late", Qos.LIVE)
-    time.sleep(QUIET_S)
-    assert site.heard == []
-
-
-def test_a_certificate_of_another_authority_is_refused(site: Site, tmp_path: Path) -> None:
-    elsewhere = PkiFolder(tmp_path / "elsewhere")
-    elsewhere.create("Test", hosts=[], connect=[f"tls/{site.address}"])
-    foreign = elsewhere.enroll("anna")
-    own = site.pki.enroll("anna")
-    site.open()
-    assert_never_linked(site, UnitEndpoint(foreign.connect, foreign.identity))
-    # It trusts the station, but is not of its authority.
-    mixed = TlsIdentity(
-        own.identity.authority, foreign.identity.certificate, foreign.identity.private_key
-    )
-    assert_never_linked(site, UnitEndpoint(own.connect, mixed))
-
-
-def test_a_station_of_another_authority_is_refused_by_the_unit(site: Site, tmp_path: Path) -> None:
-    elsewhere = PkiFolder(tmp_path / "elsewhere")
-    elsewhere.create("Test", hosts=[], connect=[f"tls/{site.address}"])
-    foreign = elsewhere.enroll("anna")
-    own = site.pki.enroll("anna")
-    site.open()
-    trusting_another = TlsIdentity(
-        foreign.identity.authority, own.identity.certificate, own.identity.private_key
-    )
-    assert_never_linked(site, UnitEndpoint(own.connect, trusting_another))
-
-
-def test_a_unit_that_asks_for_the_station_by_a_wrong_name_stays_out(site: Site) -> None:
-    own = site.pki.enroll("anna")
-    site.open()
-    assert_never_linked(site, UnitEndpoint((f"tls/{site.unnamed_address}",), own.identity))
-
-
-def test_plain_tcp_is_refused(site: Site) -> None:
-    site.pki.enroll("anna")
-    site.open()
-    assert_never_linked(site, UnitEndpoint((f"tcp/{site.address}",)))
-
-
-def test_a_client_without_a_certificate_is_refused(site: Site) -> None:
-    import ssl  # noqa: PLC0415  # Zenoh itself will not open without one
-
-    site.open()
-    context = ssl.create_default_context(
-        cadata=site.pki.station_identity().authority.decode("ascii")
-    )
-    host, _, port = site.address.partition(":")
-    with (
-        socket.create_connection((host, int(port)), 5.0) as plain,
-        context.wrap_socket(plain, server_hostname=host) as secured,
-        pytest.raises(ssl.SSLError, match="CERTIFICATE_REQUIRED"),
-    ):
-        secured.recv(1)
-
-
-def test_a_station_whose_router_is_away_says_where_it_looked(site: Site) -> None:
-    endpoint = ClientEndpoint((f"tls/{site.address}",), site.pki.station_identity(), patience_s=0.3)
-    with pytest.raises(BusError, match=site.address):
-        ZenohBus(endpoint)
-
-
-def ends(enrolment: Enrolment) -> datetime:
-    certificate = x509.load_pem_x509_certificate(enrolment.identity.certificate)
-    return certificate.not_valid_after_utc
-
-
-def assert_powerless(site: Site, enrolment: Enrolment) -> None:
-    """Linked, and yet nothing goes either way."""
-    unit = site.unit(enrolment)
-    until(unit.is_linked, "the link")
-    assert_speechless(site, unit, enrolment.name)
-
-
-def assert_speechless(site: Site, unit: ZenohBus, name: str) -> None:
-    site.heard.clear()
-    heard: list[str] = []
-    unit.subscribe(COMMAND.key(name), lambda key, _: heard.append(key))
-    token = unit.declare_alive(alive_key(name))
-    unit.serve(f"muster/v1/{name}/journal/**", lambda *_: [b"forged"])
-    deadline = time.monotonic() + QUIET_S
-    while time.monotonic() < deadline:
-        unit.publish(POSITION.key(name), b"forged", Qos.LIVE)
-        site.station.publish(COMMAND.key(name), b"secret", Qos.ALERT)
-        time.sleep(0.02)
-    assert not unit.is_heard(POSITION.key(name))
-    assert list(site.station.query(f"muster/v1/{name}/journal/range", b"", 0.5)) == []
-    assert site.heard_under(POSITION.key(name)) == []
-    assert heard == []
-    assert site.alive == set()
-    token.close()
-
-
-def assert_never_linked(site: Site, endpoint: UnitEndpoint) -> None:
-    unit = site.join(endpoint)
-    deadline = time.monotonic() + QUIET_S
-    while time.monotonic() < deadline:
-        unit.publish(POSITION.key("anna"), b"forged", Qos.LIVE)
-        assert not unit.is_linked()
-        time.sleep(0.02)
-    assert site.heard == []
