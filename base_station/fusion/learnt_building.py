@@ -21,6 +21,7 @@ SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any s
 ODDS = 10.0  # so much likelier the same stairs than others: believed
 SHARED_M = 0.6  # by which everybody errs alike: where the engine stands, and the sky
 LEAST_M2 = 0.05  # of what is left, each way
+MOST_WORDS = 64  # about the walls' direction; more tell nothing that these do not
 OUTLIER2 = 9.0  # squared standard deviations apart: not about the same
 
 
@@ -101,8 +102,9 @@ def _agreed(axes: Sequence[tuple[str, Axis]]) -> Axis | None:
     """The mean of most words: of those that lie near the one with the most about it."""
     if not axes:
         return None
-    directions_rad = np.array([axis.direction_rad for _, axis in axes])
-    variances = np.array([axis.variance for _, axis in axes])
+    surest = sorted((axis for _, axis in axes), key=lambda axis: axis.variance)[:MOST_WORDS]
+    directions_rad = np.array([axis.direction_rad for axis in surest])
+    variances = np.array([axis.variance for axis in surest])
     apart_rad = quarter(directions_rad[:, None] - directions_rad)
     near = apart_rad**2 <= OUTLIER2 * (variances[:, None] + variances)
     weights = 1.0 / variances
