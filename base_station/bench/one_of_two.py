@@ -110,10 +110,10 @@ class Station:
         return self.process.wait(_STOP_S)
 
     def get(self, path: str) -> Any:
-        return self.place.call(lambda: self._logged_in().get(path))
+        return self.place.call(lambda: self.logged_in().get(path))
 
     def post(self, path: str, body: dict[str, Any]) -> Any:
-        return self.place.call(lambda: self._logged_in().post(path, body))
+        return self.place.call(lambda: self.logged_in().post(path, body))
 
     def refuses(self, path: str, body: dict[str, Any]) -> bool:
         """Whether it says that nothing is to be changed here."""
@@ -168,7 +168,7 @@ class Station:
                 continue
         return Logged(messages, events)
 
-    def _logged_in(self) -> Api:
+    def logged_in(self) -> Api:
         if self._api is None:
             self._api = Api(self.url, *self.login())
         return self._api

@@ -15,6 +15,7 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
+from base_station.bench.long_log import measure_long_log, table_of
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.one_of_two import Place
 from base_station.bench.two_stations import TwoStations, wait_until
@@ -41,9 +42,15 @@ class StandbyReport:
 
 def bench_standby(
     units: Annotated[int, typer.Option(min=2, max=20, help="How many are there.")] = 4,
+    minutes: Annotated[
+        float, typer.Option(min=0.0, help="Of log that a new standby finds; 0: leave that out.")
+    ] = 60.0,
+    walkers: Annotated[int, typer.Option(min=1, help="Units in that log.")] = 20,
     json_file: FiguresFile = None,
 ) -> None:
-    """Kill, stop and cut off the station that leads; the last needs to be root, on Linux."""
+    """Kill, stop and cut off the station that leads, which last needs to be root, on Linux; and put
+    a new standby beside a long log.
+    """
     terminal = Terminal()
     reports = []
     faults = (("kill -9", _kill), ("stopped in order", _stop), ("cable cut", _cut))
@@ -54,8 +61,13 @@ def bench_standby(
                     reports.append(fault(name, Path(folder), units, closing))
                 except BusError as error:
                     terminal.print(f"{name}: left out: {error}")
-    terminal.print(_table(reports))
-    write_figures(json_file, reports)
+        terminal.print(_table(reports))
+        long_logs = []
+        if minutes > 0.0:
+            with TemporaryDirectory(prefix="muster-bench-") as folder:
+                long_logs.append(measure_long_log(Path(folder), walkers, minutes, progress))
+            terminal.print(table_of(long_logs[0]))
+    write_figures(json_file, [*reports, *long_logs])
 
 
 def _kill(name: str, folder: Path, units: int, closing: ExitStack) -> StandbyReport:
