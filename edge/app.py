@@ -32,6 +32,7 @@ from edge.source_reader import SourceReader
 from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Source
+from edge.sources.with_reader import WithReader
 from edge.spool import open_spool
 from edge.station_clock import StationClock
 from edge.tracker import make_tracker
@@ -66,6 +67,8 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
         with closing(listener):
             _track_for(config, source, listener, station, stop, for_s)
         return
+    if config.sightings:
+        source = WithReader(source, config.sightings, SystemClock())
     speed = config.speed if paced else None
     _run_once(config, member.unit_id, source, station, stop, for_s, speed)
 

@@ -27,6 +27,10 @@ def run(
         str | None,
         typer.Option(help="Where samples come from; `muster edge sources` lists the kinds."),
     ] = None,
+    sightings: Annotated[
+        str | None,
+        typer.Option(help="A reader of beacons and tags: tcp:HOST:PORT or a device's path."),
+    ] = None,
     enrolment: Annotated[
         Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
     ] = None,
@@ -65,6 +69,7 @@ def run(
         "unit": unit,
         "enrolment": enrolment,
         "source": source,
+        "sightings": sightings,
         "connect": connect,
         "data": data,
         "tracker": tracker,

@@ -25,6 +25,7 @@ class EdgeConfig:
     """One agent, one wearable."""
 
     source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT
+    sightings: str = ""  # a reader of beacons and tags: tcp:HOST:PORT or a device's path
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
     connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
+from edge.simulation.beacons import BeaconPlace
 from edge.simulation.legs import Leg, Point, Segment
 from shared.errors import ConfigError
 from shared.geo import Anchor
@@ -33,6 +34,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     anchor: Anchor | None = None  # of the site frame; the training house's when left out
     ambient_degc: tuple[tuple[float, float], ...] = ((0.0, 18.0),)  # (time, value), linear between
     radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)
+    beacons: tuple[BeaconPlace, ...] = ()  # heard by a receiver that the wearer carries
     battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
     battery_life_s: Annotated[float, Meta(ge=1.0)] = 6 * 3600.0  # from full to empty
     acknowledges_every_s: Annotated[int, Meta(ge=1)] | None = None  # looks at the unit so often

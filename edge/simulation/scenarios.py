@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
+from edge.simulation.beacons import BeaconPlace
 from edge.simulation.building import load_building
 from edge.simulation.legs import Crawl, Leg, Lie, Point, Ride, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
@@ -162,6 +163,29 @@ SCENARIOS: tuple[Scenario, ...] = (
         ),
         start=(-8.0, 13.0),
         building=True,
+    ),
+    Scenario(
+        name="passes-beacons",
+        summary="searches both floors with a receiver that hears the beacons on the way",
+        legs=_enter(),
+        loop=(
+            _HOUSE.search("office"),
+            Walk(((_CORRIDOR_N, 12.0),)),
+            *_HOUSE.climb(),
+            _HOUSE.search("library", 1),
+            Walk(((_CORRIDOR_N, 14.25),)),
+            *_HOUSE.descend(),
+            _HOUSE.search("workshop"),
+            Walk(((_CORRIDOR_N, 12.0),)),
+        ),
+        start=(-8.0, 13.0),
+        building=True,
+        beacons=(
+            BeaconPlace("entrance", 0.5, 12.0),
+            BeaconPlace("corridor-west", 7.0, 3.0),
+            BeaconPlace("corridor-east", 7.0, 17.0),
+            BeaconPlace("stairs-1", 8.0, 13.5, -_STOREY_M),
+        ),
     ),
     Scenario(
         name="tower",

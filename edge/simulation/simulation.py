@@ -19,7 +19,9 @@ from edge.samples import (
     OtherSample,
     SensorBatch,
     SensorDescription,
+    SightingSample,
 )
+from edge.simulation.beacons import Beacons
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.building import load_building
 from edge.simulation.gps import Gps
@@ -115,6 +117,10 @@ class Simulation:
         """
         return [np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)]
 
+    def beacon_rng(self) -> np.random.Generator:
+        """What the loudness of beacons is drawn from, anew at each call."""
+        return np.random.default_rng(_children(self._sensor_seed, 6)[-1])
+
     def _body(self, t_s: Floats) -> Motion:
         return segment_motion(self.scenario.worn_on, self.plan, self._tremor, t_s)
 
@@ -176,6 +182,7 @@ class _Others:
         self._simulation = simulation
         self._gps = gps
         self._rng = rng
+        self._beacons = Beacons(simulation.scenario.beacons, simulation.beacon_rng())
 
     def between(self, start_s: float, end_s: float) -> tuple[OtherSample, ...]:
         samples: list[OtherSample] = []
@@ -184,10 +191,17 @@ class _Others:
                 samples.append(BatterySample(second * 1_000_000_000, self._battery(second)))
             samples.append(self._ambient(float(second)))
             samples.append(self._fix(float(second)))
+            samples += self._heard(second)
             every_s = self._simulation.scenario.acknowledges_every_s
             if every_s is not None and second % every_s == 0:
                 samples.append(ButtonPress(second * 1_000_000_000, ACKNOWLEDGE))
         return tuple(samples)
+
+    def _heard(self, second: int) -> list[SightingSample]:
+        if not self._simulation.scenario.beacons:
+            return []
+        north_m, east_m, down_m = self._simulation.truth(np.array([float(second)])).position_n_m[0]
+        return self._beacons.heard(second, (float(north_m), float(east_m), float(down_m)))
 
     def _battery(self, t_s: float) -> float:
         scenario = self._simulation.scenario
