@@ -30,6 +30,7 @@ from base_station.fusion.smoother.chain import (
 )
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.heights import solve_heights
+from base_station.fusion.smoother.legs import Legs, add_legs, axis_of, inside
 from base_station.fusion.smoother.links import Link, Places, add_link, told_by_links
 from base_station.fusion.smoother.live_estimates import add_shown, choose_shown, shown_floor_m
 from base_station.fusion.smoother.marginals import chain_covariances
@@ -47,6 +48,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+ALIKE_M = 0.9  # by which all err alike who are tied to each other inside
+AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
 TIE_TAIL = 3.0  # standard deviations from which a meeting counts less
 
 
@@ -58,7 +61,7 @@ class PathGraph:
     noise: WalkNoise = field(default_factory=WalkNoise)
     knot_m: float = 3.0
     knot_s: float = 15.0
-    turns: int = 6  # Gauss-Newton steps at most
+    turns: int = 10  # Gauss-Newton steps at most
     settled_m: float = 0.02  # no knot moved further: done
     aligned_rad: float = 0.5  # standard deviation from which a heading is told by the evidence
 
@@ -89,8 +92,10 @@ class _Graph:
         for unit_id, chain in self._chains.items():
             self._bases[unit_id] = count
             count += STATES * len(chain)
-        self._unknowns = count
+        self._unknowns = count + 1  # the last: what has to be added to the building's axis
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
+        self._legs = {unit_id: Legs.of(chain) for unit_id, chain in self._chains.items()}
+        self._axis_rad: float | None = None
         self._shown: dict[str, Ints] = {}
         self._links = [
             Link((tie.unit_id, tie.t_ns), (tie.other_id, tie.t_ns), tie.std_m, TIE_TAIL)
@@ -110,10 +115,13 @@ class _Graph:
     def _relax(self) -> NormalEquations:
         """Solve again and again about the last solution, until nothing moves."""
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
+        self._axis_rad = None
         normal = self._equations()
         self._take(normal.solve())
         self._align(normal)
         for _ in range(self._kind.turns):
+            if self._axis_rad is None:
+                self._axis_rad = axis_of(self._legs, self._beliefs)
             normal = self._equations()
             if self._take(normal.solve()) < self._kind.settled_m:
                 break
@@ -121,6 +129,7 @@ class _Graph:
 
     def _equations(self, with_links: bool = True) -> NormalEquations:
         equations = Equations(self._unknowns)
+        equations.add(AXIS_STD_RAD, 0.0, (np.array([self._unknowns - 1]), 1.0))
         for unit_id in self._units:
             base, chain, belief = (
                 self._bases[unit_id],
@@ -130,6 +139,9 @@ class _Graph:
             add_path(equations, base, chain, belief, self._kind.noise)
             add_fixes(equations, base, chain, belief, self._kind.noise)
             add_seen(equations, base, chain, self._used[unit_id])
+            if self._axis_rad is not None:
+                axis = self._axis_rad, self._unknowns - 1
+                add_legs(equations, base, self._legs[unit_id], belief, axis)
             if unit_id in self._shown:
                 shown = self._shown[unit_id]
                 add_shown(equations, base, chain, belief, shown)
@@ -144,6 +156,8 @@ class _Graph:
     def _take(self, x: Floats) -> float:
         """Believe a solution; gives how far the furthest knot moved."""
         moved_m = 0.0
+        if self._axis_rad is not None:
+            self._axis_rad += float(x[-1])
         for unit_id, base in self._bases.items():
             belief = self._beliefs[unit_id]
             now = x[base : base + STATES * len(self._chains[unit_id])].reshape(-1, STATES)
@@ -281,6 +295,8 @@ class _Graph:
         std_east = np.sqrt(covariance[:, 1, 1])
         correlation = (covariance[:, 0, 1] / (std_north * std_east))[knot]
         floor_m = shown_floor_m(path, self._shown.get(unit_id))
+        if self._links:
+            floor_m = np.where((floor_m == 0.0) & inside(path), ALIKE_M, floor_m)
         down, down_std, shift = solve_heights(path, self._used[unit_id])
         return SmoothedPath(
             t_ns=path.t_ns,

@@ -1,0 +1,107 @@
+"""Straight legs along the walls of one building, two ways at right angles (``building_axes``).
+
+The axis is what all legs of all units show together; each leg then tells its unit's heading, as far
+as it may be one along a wall.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.building_axes import ALONG_WALLS, CLEAR, QUARTER_RAD, LegWatch
+from base_station.fusion.path_history import BREAK, RESTART, PathArrays
+from base_station.fusion.smoother.chain import STATES, Belief, Chain
+from base_station.fusion.smoother.equations import Equations
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+OUTSIDE_NS = 10_000_000_000  # so near a fix people are outside, where nothing is at right angles
+LEAST_M = 40.0  # of legs, or they show no axis
+ALIKE = 2.0  # legs one after the other err alike, as a variance
+UNLIKELY = 0.05
+
+
+@dataclass(frozen=True)
+class Legs:
+    """Of one unit; a row each."""
+
+    knot: Ints
+    direction_rad: Floats  # own frame
+    length_m: Floats
+    variance: Floats
+
+    @staticmethod
+    def of(chain: Chain) -> Legs:
+        path, watch, is_inside = chain.path, LegWatch(), inside(chain.path)
+        rows, found = [], []
+        steps = np.diff(path.own_m, axis=0)
+        for row, (north_m, east_m) in enumerate(steps.tolist(), start=1):
+            if path.flags[row] & (BREAK | RESTART):
+                watch = LegWatch()
+                continue
+            leg = watch.follow(north_m, east_m)
+            if leg is not None and is_inside[row]:
+                rows.append(row - 1)
+                found.append((leg.direction_rad, leg.length_m, ALIKE * leg.variance))
+        knot = np.searchsorted(chain.knots, np.array(rows, dtype=np.int64), side="right") - 1
+        columns = np.array(found).reshape(-1, 3).T
+        return Legs(knot, *columns)
+
+    def turned_rad(self, belief: Belief) -> Floats:
+        """Their directions in the incident frame, as it is believed."""
+        turn = belief.x[self.knot, 2:4]
+        directions: Floats = np.arctan2(turn[:, 1], turn[:, 0]) + self.direction_rad
+        return directions
+
+
+def axis_of(legs: Mapping[str, Legs], beliefs: Mapping[str, Belief]) -> float | None:
+    """The direction that most legs have or stand at right angles to; None: they show none."""
+    whole, length_m = 0j, 0.0
+    for unit_id, one in legs.items():
+        told = beliefs[unit_id].aligned[one.knot]
+        four = np.exp(4j * one.turned_rad(beliefs[unit_id])[told])
+        whole += complex(four @ one.length_m[told])
+        length_m += float(one.length_m[told].sum())
+    if length_m < LEAST_M or abs(whole) < CLEAR * length_m:
+        return None
+    return math.atan2(whole.imag, whole.real) / 4.0
+
+
+def add_legs(
+    equations: Equations, base: int, legs: Legs, belief: Belief, axis: tuple[float, int]
+) -> None:
+    """Across a leg that follows a wall its unit does not go.  ``axis``: as it is believed, and the
+    column of what has to be added to it.
+    """
+    axis_rad, column = axis
+    off = (legs.turned_rad(belief) - axis_rad + QUARTER_RAD / 2.0) % QUARTER_RAD - QUARTER_RAD / 2.0
+    fits = np.exp(-0.5 * off**2 / legs.variance) / np.sqrt(math.tau * legs.variance)
+    along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
+    used = belief.aligned[legs.knot] & (along > UNLIKELY)
+    if not used.any():
+        return
+    columns = base + STATES * legs.knot[used]
+    turn = belief.x[legs.knot[used], 2:4]
+    wanted = np.arctan2(turn[:, 1], turn[:, 0]) - off[used]
+    equations.add(
+        np.sqrt(legs.variance[used] / along[used]), 0.0,
+        (columns + 2, -np.sin(wanted)), (columns + 3, np.cos(wanted)),
+        (np.full(len(columns), column), -1.0),
+    )  # fmt: skip
+
+
+def inside(path: PathArrays) -> NDArray[np.bool_]:
+    """Points that are far from every fix."""
+    if not len(path.fix_t_ns):
+        return np.ones(len(path), dtype=bool)
+    after = np.searchsorted(path.fix_t_ns, path.t_ns).clip(0, len(path.fix_t_ns) - 1)
+    before = np.maximum(after - 1, 0)
+    gaps_ns = [np.abs(path.fix_t_ns[one] - path.t_ns) for one in (before, after)]
+    far: NDArray[np.bool_] = np.minimum(*gaps_ns) > OUTSIDE_NS
+    return far
