@@ -35,5 +35,6 @@ def test_the_console_goes_to_the_station_that_has_taken_over(
         two.first.kill()
         expect(page.get_by_role("alert")).to_contain_text("Connection to the station lost")
         page.wait_for_url(f"{two.second.url}/**", timeout=PATIENCE_MS)
+        expect(page.get_by_role("status")).to_contain_text("The same user and password hold here")
         log_in(page, two.second)
         expect(page.get_by_text("Mill Lane").first).to_be_visible()

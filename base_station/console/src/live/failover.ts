@@ -3,6 +3,7 @@
 import type { StandbyView } from "../wire";
 import type { LinkState } from "./picture";
 import type { Session } from "./session";
+import { wayFrom } from "./arrival";
 
 export const PATIENCE_MS = 4000;
 const LOOK_EVERY_MS = 1000;
@@ -35,7 +36,7 @@ export function watchOver(session: Session, go: (url: string) => void): () => vo
     const url = wayOut({ link: link.peek(), standby, led, nowMs: performance.now() });
     if (url === null || asking) return;
     asking = true;
-    if (await leads(url)) go(url);
+    if (await leads(url)) go(wayFrom(standby?.station ?? "", url));
     asking = false;
   };
   const timer = window.setInterval(() => void look(), LOOK_EVERY_MS);

@@ -1,10 +1,12 @@
 import { useSignal } from "@preact/signals";
 import { begin } from "../sessions";
 import * as api from "../api";
+import { arrival } from "../live/arrival";
 
 export function Login() {
   const problem = useSignal("");
   const busy = useSignal(false);
+  const cameFrom = arrival(location.hash);
 
   async function submit(event: SubmitEvent) {
     event.preventDefault();
@@ -23,6 +25,7 @@ export function Login() {
       <form onSubmit={submit} aria-labelledby="login-title">
         <img src="/icon.svg" alt="" width="48" height="48" />
         <h1 id="login-title">Muster</h1>
+        {cameFrom !== "" && <p role="status">{cameFrom}</p>}
         <label>
           User
           <input name="username" autocomplete="username" required autofocus />

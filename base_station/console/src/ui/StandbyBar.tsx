@@ -1,5 +1,6 @@
 import { attempt, user } from "../sessions";
 import * as api from "../api";
+import { wayFrom } from "../live/arrival";
 import type { Picture } from "../live/picture";
 import type { StandbyView } from "../wire";
 import { ConfirmButton } from "./ConfirmButton";
@@ -28,7 +29,8 @@ export function StandbyBar({ picture }: { picture: Picture }) {
 /** The way to the other station's console, where it has said it. */
 export function OtherConsole({ standby }: { standby: StandbyView }) {
   if (!/^https?:/.test(standby.other_url)) return null;
-  return <a href={standby.other_url}>Open the console of {standby.other}</a>;
+  const way = wayFrom(standby.station, standby.other_url);
+  return <a href={way}>Open the console of {standby.other}</a>;
 }
 
 function TakeOver({ standby }: { standby: StandbyView }) {
