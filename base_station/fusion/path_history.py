@@ -209,7 +209,7 @@ class PathHistory(msgspec.Struct):
         self.packed_fixes = fixes.tobytes()
         rows = self._rows()
         _move(rows, "shown_north_mm", "shown_east_mm", *shift)
-        rows["shown_down_mm"] += _mm(down_m)
+        rows["shown_down_mm"] = _saturated(rows["shown_down_mm"] + down_m * 1e3)
         packed = len(self.packed) // _POINT.itemsize
         self.packed = rows[:packed].tobytes()
         self.points = [Point(*row) for row in rows[packed:].tolist()]

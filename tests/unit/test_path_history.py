@@ -148,3 +148,14 @@ def test_trimmed_it_begins_later(at: Callable[..., Position]) -> None:
     history.trim(10**18)
     assert history.begin_ns is None
     assert len(history.arrays()) == 0
+
+
+def test_an_anchor_on_another_world_saturates_and_does_not_wrap(
+    at: Callable[..., Position],
+) -> None:
+    history = walked(at, 20)
+    for _ in range(3):
+        history.reframe(1.0, 1e300, -1e12, 2e6)
+    arrays = history.arrays()
+    assert arrays.down_m[0] > 2e6
+    assert np.isfinite(arrays.shown_m).all()
