@@ -6,21 +6,30 @@ One story in several tests: they run in the order in which they stand here.
 from __future__ import annotations
 
 import re
-from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
-from tests.e2e.conftest import CONSOLE, UNIT, log_in
+from tests.e2e.conftest import UNIT, log_in
+from tests.e2e.console_page import (
+    SOON_MS,
+    answer_to,
+    barriers,
+    click_plan,
+    close,
+    command,
+    drag,
+    menu,
+    metres_north,
+    painted,
+    pins,
+)
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
-AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
 INCIDENT = "Mill Road 7"
 NAME = "Ana Kovač"
-SOON_MS = 15_000
 
 # The tests end with the station's death; a page that waits longer than this is broken.
 pytestmark = pytest.mark.timeout(300)
@@ -60,24 +69,6 @@ def card(page: Page, complaints: list[str], hosts: set[str], wearable: Wearable)
     return card
 
 
-def menu(page: Page, name: str) -> Locator:
-    page.get_by_role("navigation").get_by_role("button", name=name).click()
-    dialog = page.get_by_role("dialog")
-    dialog.wait_for()
-    return dialog
-
-
-def command(page: Page, name: str) -> Locator:
-    page.get_by_role("group", name="Commands").get_by_role("button", name=name).click()
-    dialog = page.get_by_role("dialog")
-    dialog.wait_for()
-    return dialog
-
-
-def close(dialog: Locator) -> None:
-    dialog.get_by_role("button", name="Close", exact=True).click()
-
-
 def register(card: Locator) -> None:
     """In one press."""
     card.get_by_role("button", name="Register").click()
@@ -107,13 +98,6 @@ def open_incident(page: Page) -> None:
     dialog.get_by_role("button", name="Open incident").click()
     expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible(timeout=SOON_MS)
     close(dialog)
-
-
-def metres_north(card: Locator) -> float:
-    text = card.text_content() or ""
-    found = re.search(r"([\d.]+) m north", text)
-    assert found is not None, text
-    return float(found[1])
 
 
 def test_a_wrong_password_is_refused(chromium: Browser, station: StationProcess) -> None:
@@ -226,43 +210,6 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     assert pins(page) == []
 
 
-def pins(page: Page) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = answer_to(page, "pins")
-    return found
-
-
-def answer_to(page: Page, path: str) -> Any:
-    """What the station answers to who is logged in."""
-    return page.evaluate(f"fetch('/api/v1/{path}').then((answer) => answer.json())")
-
-
-def on_plan(page: Page, right_px: int, down_px: int) -> tuple[float, float]:
-    """A point of the page, from the plan's middle: that stays where it is when panels open."""
-    box = page.locator(".map").bounding_box()
-    assert box is not None
-    return box["x"] + box["width"] / 2 + right_px, box["y"] + box["height"] / 2 + down_px
-
-
-def click_plan(page: Page, right_px: int, down_px: int) -> None:
-    """And wait until the plan knows that it is no double click."""
-    page.wait_for_timeout(100)  # the plan has taken the size that a panel leaves it
-    page.mouse.click(*on_plan(page, right_px, down_px))
-    page.wait_for_timeout(350)
-
-
-def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, Any]:
-    """The pin as it is after it was drawn to another place of the plan."""
-    page.mouse.move(*on_plan(page, *start))
-    page.mouse.down()
-    page.mouse.move(*on_plan(page, *end), steps=8)
-    with page.expect_response(
-        lambda one: one.request.method == "PUT" and "/pins/" in one.url, timeout=SOON_MS
-    ) as moved:
-        page.mouse.up()
-    pin: dict[str, Any] = moved.value.json()
-    return pin
-
-
 def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()
     page.wait_for_timeout(600)  # the plan has come to rest
@@ -286,26 +233,6 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
         assert painted(page, colour) < before + 50, kind
     kinds.get_by_label("As shown at the time").check()
     page.get_by_text("Trails", exact=True).click()
-
-
-def painted(page: Page, colour: str) -> int:
-    """How many points of the plan are of a colour of the theme."""
-    count: int = page.evaluate(
-        """(name) => {
-          const said = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-          const wanted = [1, 3, 5].map((at) => parseInt(said.slice(at, at + 2), 16));
-          let found = 0;
-          for (const canvas of document.querySelectorAll(".map canvas")) {
-            const { width, height } = canvas;
-            const points = canvas.getContext("2d").getImageData(0, 0, width, height).data;
-            for (let i = 0; i < points.length; i += 4)
-              if (wanted.every((value, band) => Math.abs(points[i + band] - value) < 12)) found++;
-          }
-          return found;
-        }""",
-        colour,
-    )
-    return count
 
 
 def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
@@ -404,16 +331,6 @@ def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locato
     assert barriers(page) == []
     dialog.get_by_role("button", name="All incidents").click()
     close(page.get_by_role("dialog", name="Incidents"))
-
-
-def barriers(page: Page) -> list[tuple[str, list[str]]]:
-    """What keeps somebody from using what is shown, as axe-core finds it."""
-    if not AXE.is_file():
-        pytest.skip(f"axe-core is not installed: run npm ci in {CONSOLE}")
-    page.wait_for_timeout(300)
-    page.evaluate(Path(AXE).read_text(encoding="utf-8"))
-    found = page.evaluate("axe.run().then((result) => result.violations)")
-    return [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
 
 
 def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
