@@ -116,6 +116,14 @@ def forget(
     typer.echo(f"forgotten: {done}")
 
 
+@app.command("compile")
+def compile_() -> None:
+    """Compile what every position goes through now, so that the first station starts at once."""
+    from importlib import import_module  # noqa: PLC0415
+
+    import_module("base_station.fusion.kernels")
+
+
 @app.command()
 def smooth(
     incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
