@@ -130,4 +130,5 @@ class SensorDescription:
     gyro_full_scale_radps: float | None = None
     mag_present: bool = False
     barometer_present: bool = False
+    gain_std: float | None = None  # of scale and axes, left by a calibration; None: it has none
     mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none

@@ -19,7 +19,6 @@ Change = Callable[[SensorDescription, ImuBatch, np.random.Generator], Made]
 CUT_S = 3.0
 BIAS_RADPS = np.radians(0.5)
 ACCEL_SCALE = 0.03
-GYRO_SCALE = 0.01
 CLIPPED_AT = 0.7  # of the recording's largest reading
 LOST = 0.01
 JITTER = 0.5  # of a sample interval
@@ -60,9 +59,14 @@ def accel_scale(description: SensorDescription, imu: ImuBatch, rng: np.random.Ge
     return description, _with(imu, scale * imu.accel_mps2, imu.gyro_radps)
 
 
-def gyro_scale(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
-    scale = 1.0 + GYRO_SCALE * rng.choice((-1.0, 1.0), 3)
-    return description, _with(imu, imu.accel_mps2, scale * imu.gyro_radps)
+def gyro_scale(share: float) -> Change:
+    """Every axis off by ``share``, up or down."""
+
+    def change(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+        scale = 1.0 + share * rng.choice((-1.0, 1.0), 3)
+        return description, _with(imu, imu.accel_mps2, scale * imu.gyro_radps)
+
+    return change
 
 
 def thrice_the_noise(
@@ -134,7 +138,8 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("first 3 s missing", late_start),
     Perturbation("gyroscope 0.5 deg/s off", gyro_bias),
     Perturbation("accelerometer scale 3 % off", accel_scale),
-    Perturbation("gyroscope scale 1 % off", gyro_scale),
+    Perturbation("gyroscope scale 1 % off", gyro_scale(0.01)),
+    Perturbation("gyroscope scale 3 % off", gyro_scale(0.03)),
     Perturbation("noise x 3", thrice_the_noise),
     Perturbation("gyroscope clips at 70 %", gyro_clipped),
     Perturbation("the same, untold", gyro_clipped_untold),

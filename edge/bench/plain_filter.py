@@ -2,7 +2,8 @@
 
 It is the yardstick: the benchmark times the compiled filter beside it, and a
 test demands that both come to the same state.  When the foot stands, and how far
-that can be trusted, is given; detection, floor and smoothing are not part of it.
+that can be trusted, is given; detection, floor, smoothing and what turns the walk as a whole are
+not part of it.
 """
 
 from __future__ import annotations
@@ -14,20 +15,17 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
-    DRIFT,
     GYRO_BIAS,
     LEVER,
     POSITION,
     SIZE,
-    TURN,
-    TURN_SCALE,
     VELOCITY,
     transition_matrix,
 )
 
 
 class PlainFilter:
-    """The state of ``error_model`` with its covariance (24, 24); temperature is left out."""
+    """The state of ``error_model`` with its covariance (22, 22); temperature is left out."""
 
     def __init__(self, rotation_nb: Floats, covariance: Floats, config: EskfConfig) -> None:
         self.config = config
@@ -37,8 +35,6 @@ class PlainFilter:
         self.gyro_bias_radps = np.zeros(3)
         self.accel_bias_mps2 = np.zeros(3)
         self.lever_b_m = np.zeros(3)
-        self.drift = 0.0
-        self.turn_scale = 0.0
         self.covariance = covariance.copy()
         self._gravity_n_mps2 = np.array([0.0, 0.0, config.gravity_mps2])
         density = np.zeros(SIZE)
@@ -53,14 +49,11 @@ class PlainFilter:
         accel_mps2: Floats,
         gyro_radps: Floats,
         dt_s: float,
-        excursion: float = 0.0,
-        yawed_rad: float = 0.0,
         bend_vars: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         """Move over one interval by its mean readings (3,), sensor axes.
 
-        ``excursion`` and ``yawed_rad`` are the foot's, ``bend_vars`` those of accelerometer and
-        gyroscope.
+        ``bend_vars`` are those of accelerometer and gyroscope (see intervals).
         """
         half = turn(0.5 * dt_s * (gyro_radps - self.gyro_bias_radps))
         self.rotation_nb = self.rotation_nb @ half
@@ -69,16 +62,12 @@ class PlainFilter:
         step_mps = dt_s * (force_n_mps2 + self._gravity_n_mps2)
         self.position_n_m += dt_s * (self.velocity_n_mps + 0.5 * step_mps)
         self.velocity_n_mps += step_mps
-        moved_n_m = dt_s * self.velocity_n_mps
-        transition = transition_matrix(
-            self.rotation_nb, moved_n_m, force_n_mps2, excursion, yawed_rad, dt_s
-        )
+        transition = transition_matrix(self.rotation_nb, force_n_mps2, dt_s)
         self.covariance = transition @ self.covariance @ transition.T
         self.covariance += dt_s * self._noise_density
         for first, bend_var in zip((VELOCITY, ATTITUDE), bend_vars, strict=True):
             bend = self.covariance[first : first + 3, first : first + 3]
             bend += dt_s**2 * bend_var * np.eye(3)
-        self._turn_walk(self.drift * excursion + self.turn_scale * yawed_rad)
 
     def stand(self, gyro_radps: Floats, velocity_variance: float, rate_variance: float) -> None:
         """Use the pseudo-measurements of a stance sample, all six at once."""
@@ -105,14 +94,6 @@ class PlainFilter:
         self.gyro_bias_radps += error[GYRO_BIAS : GYRO_BIAS + 3]
         self.accel_bias_mps2 += error[ACCEL_BIAS : ACCEL_BIAS + 3]
         self.lever_b_m += error[LEVER : LEVER + 3]
-        self.drift += error[DRIFT]
-        self.turn_scale += error[TURN_SCALE]
-        self._turn_walk(error[TURN])
-
-    def _turn_walk(self, angle_rad: float) -> None:
-        about_down = turn(np.array([0.0, 0.0, angle_rad]))
-        self.velocity_n_mps = about_down @ self.velocity_n_mps
-        self.rotation_nb = about_down @ self.rotation_nb
 
 
 def skew(vector: Floats) -> Floats:

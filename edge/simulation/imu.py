@@ -39,9 +39,10 @@ class TriadErrors:
 class ImuErrors:
     accel: TriadErrors
     gyro: TriadErrors
+    gain_std: float | None = None  # of scale and axes, as far as a calibration tells
 
 
-IDEAL_IMU = ImuErrors(TriadErrors(), TriadErrors())
+IDEAL_IMU = ImuErrors(TriadErrors(), TriadErrors(), gain_std=0.0)
 
 # Data-sheet noise of the consumer class (BMI270, ICM-42688, LSM6DSO); scale and axes as they are
 # left by a calibration at the bench.
@@ -67,6 +68,7 @@ CONSUMER_IMU = ImuErrors(
         full_scale=radians(2000),
         resolution=radians(4000) / 2**16,
     ),
+    gain_std=0.002,
 )
 
 # The same class as it leaves the factory and is soldered: data-sheet tolerances of zero offset,

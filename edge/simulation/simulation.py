@@ -97,6 +97,7 @@ class Simulation:
             gyro_full_scale_radps=gyro if np.isfinite(gyro) else None,
             mag_present=True,
             barometer_present=True,
+            gain_std=imu.gain_std,
         )
 
     def activity(self, t_s: float) -> Activity:

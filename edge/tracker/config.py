@@ -28,6 +28,7 @@ class EskfConfig(NamedTuple):
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
     rest_off_mps2: float = 1.2  # further off is no rest
     rest_weight: float = 0.03  # of one sample
+    steady_motion_m2ps4: float = 0.05  # beyond the mean rate; below it that is the gyroscope's bias
     rest_bias_mps2: float = 0.2  # a rest norm further off is the scale's, not a bias
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
@@ -110,6 +111,14 @@ class EskfConfig(NamedTuple):
     gyro_bias_walk_warm_radps2_rthz: float = 2e-5  # where the temperature is known
     accel_bias_walk_mps3_rthz: float = 7e-5
 
+    # How good sensor and foot are (landing.py): velocity for each radian of the swing, m/s.
+    landing_off: float = 0.014  # before any landing
+    landing_worth: float = 8.0  # that is worth so many landings
+    landing_memory: float = 40.0  # landings
+    landing_off_most: float = 0.06  # of one
+    landing_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
+    landing_off_poor: float = 0.025  # then the noise is what the filter works with
+
     # What clipping hides (clipping.py).
     hidden_rate_limit_radps: float = 6.0
     hidden_rate_floor_radps: float = 0.5
@@ -118,11 +127,11 @@ class EskfConfig(NamedTuple):
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005
+    start_gyro_bias_gate: float = 3.0  # deviations
     start_accel_bias_std_mps2: float = 0.14
     start_lever_std_m: float = 0.1
-    drift_std: float = 8e-5  # rad of heading for each unit of excursion
-    turn_scale_std: float = 0.002  # of what the foot turns about the vertical
-    excursion_per_force: float = 0.4  # rad for each m/s
+    data_sheet_gain_std: float = 0.01  # of scale and axes of sensors that nobody calibrated
+    gain_per_force: float = 0.04  # rad/s that a m/s^2 adds, by the gain's error
     start_tilt_std_rad: float = 0.014
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
     start_speed_std_mps: float = 1.0  # when the recording starts on the move

@@ -45,6 +45,7 @@ class EskfTracker:
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
         self._block = slots // 4
+        self._state["gains"]["std"] = gain_std(description, self.config)
         self._state["compass"]["calibrated"] = description.mag_iron_std_ut is not None
         self._state["compass"]["iron_std_ut"] = iron_std_ut(description, self.config)
 
@@ -76,6 +77,12 @@ class EskfTracker:
         first = int(self._progress["released"][0])
         stop = work(self._ring, self._progress, self._state, self.config, final)
         return rows_of(self._ring, first, stop)
+
+
+def gain_std(description: SensorDescription, config: EskfConfig) -> float:
+    """How far scale and axes may be off."""
+    left = description.gain_std
+    return config.data_sheet_gain_std if left is None else left
 
 
 def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:

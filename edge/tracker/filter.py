@@ -14,26 +14,27 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
-    DRIFT,
     GYRO_BIAS,
     GYRO_WARMTH,
     LEVER,
     POSITION,
     SIZE,
-    TURN_SCALE,
     VELOCITY,
     propagate,
 )
 from edge.tracker.floor import settle
+from edge.tracker.gain_errors import follow_gain_errors
 from edge.tracker.intervals import mean_readings
+from edge.tracker.landing import land, lift_off
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
+from edge.tracker.stated import bend_way, state_position
 from edge.tracker.strapdown import advance, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
 from edge.tracker.warmth import follow_warmth
-from edge.tracker.zero_velocity import stance_threshold, unrest
+from edge.tracker.zero_velocity import stance_threshold, steady_rate, unrest
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
 
@@ -58,14 +59,20 @@ def filter_sample(
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
+        if not progress.in_stance:
+            land(ring, state, slot, config)
         stand(ring, state, slot, config)
+        state.swing_rad = 0.0
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             settle(ring, progress, state, slot, config)
+    elif progress.in_stance:
+        lift_off(state, config)
     heed_field(ring, state, slot, still, config)
     heed_pressure(ring, progress, state, slot, still, config)
-    note_faults(ring, progress, slot)
+    if note_faults(ring, progress, slot):
+        state.faulty_stride = True
     _count_steps(progress, state, still, ring[slot].t_s)
-    _write_row(ring, progress, state, slot, still)
+    _write_row(ring, progress, state, slot, still, config)
     judge(ring, progress, state, slot, config)
 
 
@@ -77,19 +84,23 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
     moving = ring[0].motion_m2ps4 > config.threshold_min_m2ps4
     speed_std_mps = config.start_speed_std_mps if moving else config.start_still_std_mps
+    rest_rate_radps = steady_rate(ring, 0, stop, ahead_s, config)
     for i in range(3):
         state.covariance[VELOCITY + i, VELOCITY + i] = speed_std_mps**2
-        state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
+        bias_std_radps = config.start_gyro_bias_std_radps
+        if abs(rest_rate_radps[i]) > config.start_gyro_bias_gate * bias_std_radps:
+            bias_std_radps = abs(rest_rate_radps[i])  # a rest shows more than was to be expected
+        state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] = bias_std_radps**2
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] = config.start_accel_bias_std_mps2**2
         state.covariance[LEVER + i, LEVER + i] = config.start_lever_std_m**2
         state.covariance[GYRO_WARMTH + i, GYRO_WARMTH + i] = config.gyro_bias_per_k_std_radps**2
-    state.covariance[DRIFT, DRIFT] = config.drift_std**2
-    state.covariance[TURN_SCALE, TURN_SCALE] = config.turn_scale_std**2
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
     state.covariance[ATTITUDE + 1, ATTITUDE + 1] = tilt_std_rad**2
     for i in range(3):
         state.rest_force_mps2[i] = ring[0].accel_mps2[i]
+        state.gains.down_b[i] = state.rotation_nb[2, i]
+    state.landing_off = config.landing_off
     progress.last_stance_s = ring[0].t_s
 
 
@@ -121,21 +132,10 @@ def _predict(
         state.force_n_mps2,
         state.angle_rad,
     )
-    excursion = _excursion(state, dt_s, config)
-    yawed_rad = _yawed_rad(state, dt_s)
-    moved_n_m = ring[slot].moved_n_m
-    for i in range(2):
-        moved_n_m[i] = dt_s * state.velocity_n_mps[i]
-    propagate(
-        state.covariance,
-        state.rotation_nb,
-        moved_n_m,
-        state.force_n_mps2,
-        excursion,
-        yawed_rad,
-        dt_s,
-    )
-    turn_walk(state, state.drift * excursion + state.turn_scale * yawed_rad)
+    propagate(state.covariance, state.rotation_nb, state.force_n_mps2, dt_s)
+    turn_walk(state, follow_gain_errors(state, dt_s, config))
+    bend_way(state, dt_s)
+    state.swing_rad += dt_s * math.sqrt((state.gyro_radps**2).sum())
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
@@ -158,35 +158,10 @@ def _predict(
             dt_s * config.accel_bias_walk_mps3_rthz**2
         )
     ring[slot].interval_s = dt_s
-    ring[slot].excursion = excursion
-    ring[slot].yawed_rad = yawed_rad
     for i in range(3):
         ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
         for j in range(3):
             ring[slot].rotation_nb[i, j] = state.rotation_nb[i, j]
-
-
-@njit()
-def _excursion(state: FilterState, dt_s: float, config: EskfConfig) -> float:
-    """Return how far the foot has left the rest in which the gyroscope bias was learned.
-
-    Counted are the radians it turned, up and back alike, and the force beyond that of rest.
-    """
-    turned = 0.0
-    off = 0.0
-    for i in range(3):
-        turned += state.gyro_radps[i] ** 2
-        off += (state.accel_mps2[i] - state.rest_force_mps2[i]) ** 2
-    return float(dt_s * (math.sqrt(turned) + config.excursion_per_force * math.sqrt(off)))
-
-
-@njit()
-def _yawed_rad(state: FilterState, dt_s: float) -> float:
-    """Return how far the foot turned about the vertical, clockwise seen from above."""
-    rate_radps = 0.0
-    for i in range(3):
-        rate_radps += state.rotation_nb[2, i] * state.gyro_radps[i]
-    return float(dt_s * rate_radps)
 
 
 @njit()
@@ -253,15 +228,20 @@ def _count_steps(progress: Progress, state: FilterState, still: bool, t_s: float
 
 
 @njit()
-def _write_row(ring: Ring, progress: Progress, state: FilterState, slot: int, still: bool) -> None:
+def _write_row(
+    ring: Ring,
+    progress: Progress,
+    state: FilterState,
+    slot: int,
+    still: bool,
+    config: EskfConfig,
+) -> None:
     for i in range(3):
         ring[slot].position_n_m[i] = state.position_n_m[i]
         ring[slot].velocity_n_mps[i] = state.velocity_n_mps[i]
     for i in range(4):
         ring[slot].quaternion_nb[i] = state.quaternion_nb[i]
-    for i in range(10):
-        for j in range(SIZE):
-            ring[slot].covariance[i, j] = state.covariance[i, j]
+    state_position(ring, state, slot, config)
     ring[slot].stationary = still
     ring[slot].distance_m = progress.distance_m
     ring[slot].steps = progress.steps

@@ -12,7 +12,6 @@ from edge.samples import Floats
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
-    DRIFT,
     GYRO_BIAS,
     GYRO_WARMTH,
     HEADING,
@@ -20,12 +19,12 @@ from edge.tracker.error_model import (
     POSITION,
     SIZE,
     TURN,
-    TURN_SCALE,
     VELOCITY,
     update_heading,
     update_one,
     update_with_lever,
 )
+from edge.tracker.gain_errors import learn_gain_errors
 from edge.tracker.state import FilterState, Ring
 from edge.tracker.strapdown import rotate_navigation, rotation_matrix
 
@@ -113,13 +112,13 @@ def end_updates(state: FilterState) -> None:
         state.accel_bias_mps2[i] += error[ACCEL_BIAS + i]
         state.lever_b_m[i] += error[LEVER + i]
         state.gyro_bias_per_k[i] += error[GYRO_WARMTH + i]
-    state.drift += error[DRIFT]
-    state.turn_scale += error[TURN_SCALE]
     rotate_navigation(
         state.quaternion_nb, error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
     )
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
-    turn_walk(state, error[TURN])
+    if error[TURN] != 0.0:
+        learn_gain_errors(state)
+        turn_walk(state, error[TURN])
 
 
 @njit()

@@ -37,7 +37,7 @@ def rows_of(ring: Ring, first: int, stop: int) -> TrackBatch:
         position_n_m=ring["position_n_m"][slots],
         velocity_n_mps=ring["velocity_n_mps"][slots],
         quaternion_nb=ring["quaternion_nb"][slots],
-        position_cov_m2=ring["covariance"][slots, :3, :3],
+        position_cov_m2=ring["position_cov_m2"][slots],
         heading_std_rad=ring["heading_std_rad"][slots],
         stationary=ring["stationary"][slots],
         distance_m=ring["distance_m"][slots],

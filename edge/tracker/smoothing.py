@@ -15,14 +15,12 @@ from edge.samples import Floats
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
-    DRIFT,
     GYRO_BIAS,
     GYRO_WARMTH,
     HEADING,
     LEVER,
     SIZE,
     TURN,
-    TURN_SCALE,
     VELOCITY,
 )
 from edge.tracker.state import Ring
@@ -91,10 +89,6 @@ def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
         for i in range(VELOCITY, ATTITUDE + 2):
             adjoint[i] = 0.0
         return
-    adjoint[DRIFT] += ring[slot].excursion * adjoint[TURN]
-    adjoint[TURN_SCALE] += ring[slot].yawed_rad * adjoint[TURN]
-    moved_n_m = ring[slot].moved_n_m
-    adjoint[TURN] += moved_n_m[0] * adjoint[1] - moved_n_m[1] * adjoint[0]
     fx = dt_s * ring[slot].force_n_mps2[0]
     fy = dt_s * ring[slot].force_n_mps2[1]
     fz = dt_s * ring[slot].force_n_mps2[2]

@@ -19,6 +19,7 @@ from edge.tracker.kernel_cache import SOURCES
 
 MAX_UPDATES = 10  # scalar updates one sample can bring
 COMPASS_SIZE = 13  # states of magnetic_field
+GAIN_ERRORS = 18  # see gain_errors
 BELIEFS = 5
 
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
@@ -43,6 +44,7 @@ RING = np.dtype(
         ("motion_m2ps4", np.float64),  # stillness statistic
         ("stride_minimum_m2ps4", np.float64),  # its smallest value in the stride around
         ("position_n_m", np.float64, 3),
+        ("position_cov_m2", np.float64, (3, 3)),
         ("velocity_n_mps", np.float64, 3),
         ("quaternion_nb", np.float64, 4),
         ("heading_std_rad", np.float64),
@@ -60,9 +62,6 @@ RING = np.dtype(
         # What the smoother needs to go back over this sample.
         ("interval_s", np.float64),  # since the sample before; negative after a gap
         ("force_n_mps2", np.float64, 3),  # over that interval
-        ("moved_n_m", np.float64, 2),
-        ("excursion", np.float64),
-        ("yawed_rad", np.float64),  # clockwise seen from above
         ("warmed_k", np.float64),  # step of the temperature that the biases took
         ("rotation_nb", np.float64, (3, 3)),  # at its end
         ("lever_row", np.float64, (3, 3)),  # how the lever enters the velocity updates
@@ -149,6 +148,21 @@ BAROMETER = np.dtype(
     align=True,
 )
 
+GAINS = np.dtype(
+    [
+        ("std", np.float64),  # of scale and axes
+        ("turned_rad", np.float64, GAIN_ERRORS),  # heading by each error so far
+        ("carried_m", np.float64, (2, GAIN_ERRORS)),  # position north and east
+        ("estimate", np.float64, GAIN_ERRORS),
+        ("covariance", np.float64, (GAIN_ERRORS, GAIN_ERRORS)),
+        ("heard", np.bool_),  # a compass
+        ("down_b", np.float64, 3),  # at the last sample
+        # Scratch.
+        ("column", np.float64, GAIN_ERRORS),
+    ],
+    align=True,
+)
+
 FILTER = np.dtype(
     [
         ("position_n_m", np.float64, 3),
@@ -158,10 +172,17 @@ FILTER = np.dtype(
         ("gyro_bias_radps", np.float64, 3),
         ("accel_bias_mps2", np.float64, 3),
         ("lever_b_m", np.float64, 3),  # from the point the foot rolls about to the sensor
-        ("drift", np.float64),  # rad of heading for each unit of excursion
-        ("turn_scale", np.float64),  # rad of heading for each rad turned about the vertical
         ("rest_force_mps2", np.float64, 3),  # sensor axes, where the gyroscope bias was learned
         ("gyro_bias_per_k", np.float64, 3),
+        ("gains", GAINS),  # see gain_errors
+        ("bent_n_m", np.float64, 2),  # see stated
+        # How an ordinary stride's noise is stated; see landing.
+        ("swing_rad", np.float64),  # that the foot has turned since it stood
+        ("landing_off", np.float64),  # mean velocity that a landing is off, m/s for each radian
+        ("landings", np.float64),  # from which that is known
+        ("faulty_stride", np.bool_),  # since the last lift-off
+        ("noise_m2", np.float64),  # of both horizontal axes at the last lift-off
+        ("ordinary_m2", np.float64),  # ... by strides without a fault
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
         ("compass", COMPASS),  # see magnetic_heading
         ("barometer", BAROMETER),  # see barometric_height
@@ -235,6 +256,8 @@ def new_filter_state() -> NDArray[Any]:
     state = np.zeros(1, FILTER)
     state["quaternion_nb"][0] = [1.0, 0.0, 0.0, 0.0]
     state["rotation_nb"][0] = np.eye(3)
+    state["gains"]["covariance"][0] = np.eye(GAIN_ERRORS)
+    state["faulty_stride"] = True
     state["compass"]["north_var_rad2"] = np.inf
     return state
 

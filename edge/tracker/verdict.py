@@ -14,6 +14,7 @@ from edge.tracker.conditioning import (
 )
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, heading_variance
+from edge.tracker.landing import noise_scale
 from edge.tracker.port import Quality, Reason
 from edge.tracker.state import FilterState, Progress, Ring
 
@@ -26,8 +27,8 @@ LOST = int(Quality.LOST)
 
 
 @njit()
-def note_faults(ring: Ring, progress: Progress, slot: int) -> None:
-    """Remember when a sample's own flags were last seen."""
+def note_faults(ring: Ring, progress: Progress, slot: int) -> bool:
+    """Remember when a sample's own flags were last seen; return whether it has any."""
     flags = ring[slot].flags
     t_s = ring[slot].t_s
     if flags & GYRO_SATURATED:
@@ -36,6 +37,7 @@ def note_faults(ring: Ring, progress: Progress, slot: int) -> None:
         progress.accel_saturated_s = t_s
     if flags & SAMPLE_GAP:
         progress.gap_s = t_s
+    return bool(flags != 0)
 
 
 @njit()
@@ -58,7 +60,8 @@ def judge(
     unseen_s = t_s - progress.last_stance_s
     if unseen_s > config.no_stance_degraded_s:
         reasons |= NO_STANCE
-    std_m = math.sqrt(max(p[0, 0], p[1, 1]))
+    stated_m2 = ring[slot].position_cov_m2
+    std_m = math.sqrt(max(stated_m2[0, 0], stated_m2[1, 1]))
     if std_m > config.degraded_std_m:
         reasons |= UNCERTAIN
     quality = GOOD if reasons == 0 else DEGRADED
@@ -66,4 +69,6 @@ def judge(
         quality = LOST
     ring[slot].reasons = reasons
     ring[slot].quality = quality
-    ring[slot].heading_std_rad = math.sqrt(heading_variance(p))
+    yaw = ATTITUDE + 2
+    heading_var = heading_variance(p) + (noise_scale(state, config) - 1.0) * p[yaw, yaw]
+    ring[slot].heading_std_rad = math.sqrt(heading_var)

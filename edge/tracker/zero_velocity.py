@@ -13,8 +13,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
+from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.state import FilterState, Progress, Ring, reach
 
@@ -36,6 +38,9 @@ def motion_statistic(
     mean_z = 0.0
     squares = 0.0
     rates = 0.0
+    turn_x = 0.0
+    turn_y = 0.0
+    turn_z = 0.0
     count = 0
     for i in range(first, stop):
         slot = i & mask
@@ -48,12 +53,17 @@ def motion_statistic(
         squares += x * x + y * y + z * z
         x, y, z = ring[slot].gyro_radps[0], ring[slot].gyro_radps[1], ring[slot].gyro_radps[2]
         rates += x * x + y * y + z * z
+        turn_x += x
+        turn_y += y
+        turn_z += z
         count += 1
     mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
     agitation = max(squares / count - mean_norm * mean_norm, 0.0)
     agitation += config.rate_weight_m2ps2 * rates / count
+    steady = (turn_x * turn_x + turn_y * turn_y + turn_z * turn_z) / (count * count)
     off_mps2 = mean_norm - progress.rest_norm_mps2
-    if agitation < config.rest_motion_m2ps4 and abs(off_mps2) < config.rest_off_mps2:
+    unsteady = agitation - config.rate_weight_m2ps2 * steady
+    if unsteady < config.rest_motion_m2ps4 and abs(off_mps2) < config.rest_off_mps2:
         progress.rest_norm_mps2 += config.rest_weight * off_mps2
     return float(agitation + off_mps2 * off_mps2)
 
@@ -115,6 +125,32 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
         off = mean - state.gyro_bias_radps[i]
         by_bias += mean * mean - off * off
     return float(max(total / count - config.rate_weight_m2ps2 * by_bias, 0.0))
+
+
+@njit()
+def steady_rate(ring: Ring, first: int, stop: int, ahead_s: float, config: EskfConfig) -> Floats:
+    """Return the mean rate (3,) at rest from sample ``first`` on, zeros in motion.
+
+    Looks at samples before ``stop`` and at most ``ahead_s`` after ``first``.  Neither a bias of
+    the gyroscope nor a scale of the accelerometer counts as motion.
+    """
+    mask = len(ring) - 1
+    while stop > first + 1 and ring[(stop - 1) & mask].t_s - ring[first & mask].t_s > ahead_s:
+        stop -= 1
+    count = stop - first
+    rate_radps = np.zeros(3)
+    force_mps2 = np.zeros(3)
+    squares = 0.0
+    for k in range(first, stop):
+        for i in range(3):
+            rate, force = ring[k & mask].gyro_radps[i], ring[k & mask].accel_mps2[i]
+            rate_radps[i] += rate / count
+            force_mps2[i] += force / count
+            squares += (force * force + config.rate_weight_m2ps2 * rate * rate) / count
+    squares -= (force_mps2**2).sum() + config.rate_weight_m2ps2 * (rate_radps**2).sum()
+    if squares > config.steady_motion_m2ps4:
+        rate_radps[:] = 0.0
+    return rate_radps
 
 
 @njit()

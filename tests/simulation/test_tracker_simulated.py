@@ -14,9 +14,8 @@ from edge.tracker.rows import join_rows
 from edge.tracker.strapdown import rotation_matrix
 
 SEEDS = range(6)
-# Up to 95 % of the mean of six chi-square values with two degrees of freedom: chi2(12) / 6.  The
-# lower bound is half of it: what is stated for real shoes is wide for simulated ones.
-NEES_BOUNDS = (2.2 / 6, 23.337 / 6)
+# 95 % of the mean of six chi-square values with two degrees of freedom: chi2(12) / 6.
+NEES_BOUNDS = (4.404 / 6, 23.337 / 6)
 
 
 @cache

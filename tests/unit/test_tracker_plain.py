@@ -11,12 +11,11 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
     ATTITUDE,
-    DRIFT,
     GYRO_BIAS,
     GYRO_WARMTH,
     LEVER,
     SIZE,
-    TURN_SCALE,
+    TURN,
     VELOCITY,
 )
 from edge.tracker.eskf import EskfTracker
@@ -45,8 +44,6 @@ def start(ring):
     std[GYRO_BIAS : GYRO_BIAS + 3] = CONFIG.start_gyro_bias_std_radps
     std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start_accel_bias_std_mps2
     std[LEVER : LEVER + 3] = CONFIG.start_lever_std_m
-    std[DRIFT] = CONFIG.drift_std
-    std[TURN_SCALE] = CONFIG.turn_scale_std
     std[GYRO_WARMTH : GYRO_WARMTH + 3] = CONFIG.gyro_bias_per_k_std_radps
     return PlainFilter(rotation, np.diag(std**2), CONFIG)
 
@@ -74,8 +71,6 @@ def test_both_come_to_the_same_state():
                 means["accel_mps2"],
                 means["gyro_radps"],
                 ring[k]["interval_s"],
-                ring[k]["excursion"],
-                ring[k]["yawed_rad"],
                 (means["accel_bend_var"], means["gyro_bend_var"]),
             )
         if ring[k]["stationary"]:
@@ -87,4 +82,6 @@ def test_both_come_to_the_same_state():
     np.testing.assert_allclose(state["gyro_bias_radps"], plain.gyro_bias_radps, atol=1e-8)
     np.testing.assert_allclose(state["accel_bias_mps2"], plain.accel_bias_mps2, atol=1e-6)
     np.testing.assert_allclose(state["lever_b_m"], plain.lever_b_m, atol=1e-6)
-    np.testing.assert_allclose(state["covariance"], plain.covariance, rtol=1e-4, atol=1e-9)
+    covariance = state["covariance"].copy()
+    covariance[TURN, TURN] = 0.0  # kept for a compass; see gain_errors
+    np.testing.assert_allclose(covariance, plain.covariance, rtol=1e-4, atol=1e-9)

@@ -1,0 +1,95 @@
+"""What scale, axes and sensitivity to force of the gyroscope make of heading and position.
+
+The rate that a gyroscope shows is off by a small matrix times the rate, and by another times the
+force: eighteen constants.  What each has made of the heading is an integral along the walk that
+needs no filter: a swing forth and back takes back most of what it adds, ten turns of a
+stairwell add up.  All of them turn the walk as a whole, which looks the same to every stance; so
+stances tell nothing of them, and what they do is known exactly.  Only a compass tells of them.
+
+A constant is counted in its standard deviations, so that before a compass is heard the
+covariance is the unit matrix.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import SIZE, TURN
+from edge.tracker.state import GAIN_ERRORS, FilterState
+
+
+@njit()
+def follow_gain_errors(state: FilterState, dt_s: float, config: EskfConfig) -> float:
+    """Take an interval's mean readings in; return by how much the known errors turn the walk."""
+    gains = state.gains
+    by_rate = gains.std * dt_s
+    by_force = config.gain_per_force * by_rate
+    known_rad = 0.0
+    for i in range(3):
+        down = 0.5 * (gains.down_b[i] + state.rotation_nb[2, i])
+        gains.down_b[i] = state.rotation_nb[2, i]
+        for j in range(3):
+            g = 3 * i + j
+            rate = by_rate * down * state.gyro_radps[j]
+            force = by_force * down * (state.accel_mps2[j] - state.rest_force_mps2[j])
+            gains.turned_rad[g] += rate
+            gains.turned_rad[g + 9] += force
+            known_rad += gains.estimate[g] * rate + gains.estimate[g + 9] * force
+    north_m, east_m = dt_s * state.velocity_n_mps[0], dt_s * state.velocity_n_mps[1]
+    for g in range(GAIN_ERRORS):
+        gains.carried_m[0, g] -= gains.turned_rad[g] * east_m
+        gains.carried_m[1, g] += gains.turned_rad[g] * north_m
+    state.covariance[TURN, TURN] = spread(state, gains.turned_rad, gains.turned_rad)
+    return known_rad
+
+
+@njit()
+def spread(state: FilterState, a: Floats, b: Floats) -> float:
+    """Return the covariance of ``a`` and ``b`` (18,) times the errors."""
+    gains = state.gains
+    total = 0.0
+    if not gains.heard:
+        for g in range(GAIN_ERRORS):
+            total += a[g] * b[g]
+        return total
+    for g in range(GAIN_ERRORS):
+        row = gains.covariance[g]
+        inner = 0.0
+        for h in range(GAIN_ERRORS):
+            inner += row[h] * b[h]
+        total += a[g] * inner
+    return total
+
+
+@njit()
+def learn_gain_errors(state: FilterState) -> None:
+    """Give the gains their share of what a compass has just told of the turn of the walk.
+
+    ``error[TURN]`` is that share, and the covariance of the turn what it has become by it.  Where
+    the walk would be had the gains been known is where it is put.
+    """
+    gains = state.gains
+    kept = state.covariance[TURN, TURN]
+    for j in range(SIZE):
+        state.covariance[TURN, j] = 0.0
+        state.covariance[j, TURN] = 0.0
+    gains.heard = True
+    before = spread(state, gains.turned_rad, gains.turned_rad)
+    if before <= 0.0:
+        return
+    for g in range(GAIN_ERRORS):
+        gains.column[g] = 0.0
+        for h in range(GAIN_ERRORS):
+            gains.column[g] += gains.covariance[g, h] * gains.turned_rad[h]
+    taken = max(before - kept, 0.0) / (before * before)
+    for g in range(GAIN_ERRORS):
+        learned = gains.column[g] * state.error[TURN] / before
+        gains.estimate[g] += learned
+        for i in range(2):
+            state.position_n_m[i] += gains.carried_m[i, g] * learned
+    for g in range(GAIN_ERRORS):
+        for h in range(GAIN_ERRORS):
+            gains.covariance[g, h] -= taken * gains.column[g] * gains.column[h]
+    state.covariance[TURN, TURN] = kept

@@ -1,0 +1,71 @@
+"""How good this sensor on this foot is, as the landings show.
+
+A stance finds the velocity that the swing before it has brought along.  How far that is off, for
+each radian that the foot has turned, tells an ordinary stride's noise: the filter weighs its
+measurements as if every stride were a hard one on a poor sensor, which finds the best path, and
+what is stated is scaled by the landings.  What came with a fault (a gap, clipping, a start on the
+move) or before a rest has shown the gyroscope's bias is stated in full.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import GYRO_BIAS, POSITION
+from edge.tracker.stance import lever_velocity_row
+from edge.tracker.state import FilterState, Ring
+
+SWING_RAD = 1.0  # that a foot turns at least in a stride
+
+
+@njit()
+def land(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+    """Learn from the first still sample after a swing, before the stance corrects it."""
+    if state.swing_rad < SWING_RAD:
+        return
+    for i in range(3):
+        state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
+    row = ring[slot].lever_row[0]
+    squares = 0.0
+    for i in range(2):
+        lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
+        off_mps = (row * state.lever_b_m).sum() - state.velocity_n_mps[i]
+        squares += off_mps * off_mps
+    off = min(math.sqrt(squares) / state.swing_rad, config.landing_off_most)
+    state.landings = min(state.landings + 1.0, config.landing_memory)
+    state.landing_off += (off - state.landing_off) / (config.landing_worth + state.landings)
+
+
+@njit()
+def lift_off(state: FilterState, config: EskfConfig) -> None:
+    """Tell what the stride since the last lift-off has added to an ordinary walk's noise."""
+    p = state.covariance
+    noise_m2 = p[POSITION, POSITION] + p[POSITION + 1, POSITION + 1]
+    if not state.faulty_stride and _bias_is_known(state, config):
+        state.ordinary_m2 += noise_m2 - state.noise_m2
+    state.ordinary_m2 = min(max(state.ordinary_m2, 0.0), noise_m2)
+    state.noise_m2 = noise_m2
+    state.faulty_stride = False
+
+
+@njit()
+def _bias_is_known(state: FilterState, config: EskfConfig) -> bool:
+    p = state.covariance
+    worst = max(p[GYRO_BIAS, GYRO_BIAS], p[GYRO_BIAS + 1, GYRO_BIAS + 1])
+    worst = max(worst, p[GYRO_BIAS + 2, GYRO_BIAS + 2])
+    return bool(worst <= config.landing_bias_std_radps**2)
+
+
+@njit()
+def noise_scale(state: FilterState, config: EskfConfig) -> float:
+    """Return by what the variance of the walk's noise is to be multiplied.
+
+    By 1 once a compass has been heard: then its doubts make up most of that variance.
+    """
+    if state.noise_m2 <= 0.0 or state.gains.heard:
+        return 1.0
+    ordinary = min(state.ordinary_m2 / state.noise_m2, 1.0)
+    return float(1.0 + ((state.landing_off / config.landing_off_poor) ** 2 - 1.0) * ordinary)

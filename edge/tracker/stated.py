@@ -1,0 +1,55 @@
+"""What is stated of a position: the filter's covariance, and what no filter sees.
+
+Beside the noise of the walk these are systematic, and as wide as they make the walk wrong as a
+whole: the gyroscope's gains turn it, those of the accelerometer make it too long or too short, and
+a heading that is wrong shortens it, whichever way it is wrong.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import SIZE, TURN, heading_variance
+from edge.tracker.gain_errors import spread
+from edge.tracker.landing import noise_scale
+from edge.tracker.state import FilterState, Ring
+
+
+@njit()
+def bend_way(state: FilterState, dt_s: float) -> None:
+    """Take an interval along: the way it goes, times the variance of its heading.
+
+    For large errors twice the mean of one minus the cosine takes the place of the variance.
+    """
+    variance = 2.0 * (1.0 - math.exp(-0.5 * heading_variance(state.covariance)))
+    for i in range(2):
+        state.bent_n_m[i] += variance * dt_s * state.velocity_n_mps[i]
+
+
+@njit()
+def state_position(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+    """Write the stated covariance of a row's position, and the rows that the smoother needs."""
+    for i in range(10):
+        for j in range(SIZE):
+            ring[slot].covariance[i, j] = state.covariance[i, j]
+    stated_m2 = ring[slot].position_cov_m2
+    for i in range(3):
+        for j in range(3):
+            stated_m2[i, j] = state.covariance[i, j]
+    gains = state.gains
+    less = noise_scale(state, config) - 1.0
+    for i in range(2):
+        carried_m = gains.carried_m[i]
+        ring[slot].covariance[i, TURN] = spread(state, carried_m, gains.turned_rad)
+        for j in range(i + 1):
+            more_m2 = less * state.covariance[i, j]
+            more_m2 += spread(state, carried_m, gains.carried_m[j])
+            more_m2 += gains.std**2 * state.position_n_m[i] * state.position_n_m[j]
+            # A normal error's fourth moment is three times its variance squared.
+            more_m2 += 0.75 * state.bent_n_m[i] * state.bent_n_m[j]
+            stated_m2[i, j] += more_m2
+            if i != j:
+                stated_m2[j, i] += more_m2
