@@ -17,6 +17,7 @@ from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
 from base_station.fusion.sky import Sky
 from base_station.fusion.weather import Barometers
+from base_station.pins.late import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
@@ -342,6 +343,7 @@ class StationState(msgspec.Struct):
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
+    late: dict[str, Late] = msgspec.field(default_factory=dict)  # pinned units: to be solved again
     learnt_building: LearntBuilding = LearntBuilding()
     learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station

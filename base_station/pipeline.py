@@ -6,7 +6,7 @@ nobody anything, and numbers its own outputs, so that the same events give the s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 from typing import assert_never
 
 import msgspec
@@ -32,6 +32,7 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, Fault, StationState, UnitState
+from base_station.pins.late import take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning import Positioning
 from base_station.thermal import dose_of
@@ -143,7 +144,8 @@ class StationPipeline:
                 outputs.append(UnitTouched(unit.unit_id))
             outputs.extend(self._review(unit))
         outputs.extend(CommandTouched(one.command_id) for one in command_book.expire(self.state))
-        return outputs
+        late = take_due(self.state.late, self.state.t_ns)
+        return outputs if late is None else [*outputs, *self._repin([late])]
 
     def _act(self, message: OperatorAction) -> list[Output]:
         try:
@@ -262,7 +264,7 @@ class StationPipeline:
             accountability.note_answer(self.state, unit, command, unit.name)
         return _touched(command)
 
-    def _repin(self, unit_ids: Iterable[str]) -> list[Output]:
+    def _repin(self, unit_ids: Collection[str]) -> list[Output]:
         """Pins of these units changed: their past is solved again."""
         solved = self._positioning.solve_pins(self.state, unit_ids)
         touched: list[Output] = [UnitTouched(unit_id) for unit_id in sorted(unit_ids)]

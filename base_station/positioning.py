@@ -18,6 +18,7 @@ from base_station.fusion.sky import Sky
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
 from base_station.pins.book import has_pins, reframe_pins
+from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
 from base_station.pins.pinning import floors_said
 from base_station.site.floor_grid import FloorGrid
@@ -30,6 +31,7 @@ from shared.geo import Anchor, anchor_through, rotate
 from shared.messages import FusedPosition, GpsFix, Header, Position
 from shared.quality import Quality
 
+LATE_NS = 5 * NS_PER_S  # a fix of so long ago came out of a journal
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
 OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
@@ -142,6 +144,7 @@ class Positioning:
         self._pinned.forget(unit)
         state.paths.pop(unit.unit_id, None)
         state.learnt_floors.forget(unit.unit_id)
+        state.late.pop(unit.unit_id, None)
         unit.fused, unit.position = None, None
         unit.trail.clear()
 
@@ -201,6 +204,7 @@ class Positioning:
         unit.fill_trail(fused)
         if unit.unit_id in state.paths:
             state.paths[unit.unit_id].fill(position, fused.t_meas_ns)
+        _note_late(state, unit)
         return fused
 
     def _message(
@@ -267,7 +271,10 @@ class Positioning:
             pinned.correct(place)
         if verdict.accepted:
             history = _history(state, unit)
-            history.fix(place, _station_ns(state, unit, place.t_mono_ns))
+            t_ns = _station_ns(state, unit, place.t_mono_ns)
+            history.fix(place, t_ns)
+            if t_ns < state.t_ns - LATE_NS:
+                _note_late(state, unit)
         return verdict
 
     def _anchor_itself(self, state: StationState, unit: UnitState, fix: GpsFix) -> bool:
@@ -342,6 +349,11 @@ def _station_ns(state: StationState, unit: UnitState, t_mono_ns: int) -> int:
     """The station's time of a time of the unit's path; not known yet: now."""
     boot = unit.path_boot
     return min(boot.station_ns(t_mono_ns), state.t_ns) if boot.is_placed else state.t_ns
+
+
+def _note_late(state: StationState, unit: UnitState) -> None:
+    if has_pins(state, unit.unit_id):
+        note_late(state.late, unit.unit_id, state.t_ns)
 
 
 def _count(unit: UnitState, reason: str) -> None:
