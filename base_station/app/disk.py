@@ -59,11 +59,18 @@ class Disk:
         )
 
     def forgetting_desk(
-        self, pulls: Pulls, act: Callable[[str, Action], object], may_work: Callable[[], bool]
+        self,
+        pulls: Pulls,
+        act: Callable[[str, Action], object],
+        save_soon: Callable[[], None],
+        may_work: Callable[[], bool],
     ) -> ForgettingDesk:
+        """``save_soon`` has the running station save its state, which forgetting has removed."""
+
         def note_done(done: Forgetting) -> None:
             if done.kind == "person":
                 self.roster.forget_photo(done.subject_id)
+            save_soon()
 
         forgetter = self.forgetter(pulls, act)
         return ForgettingDesk(forgetter, self.folder.forgettings, may_work, note_done)

@@ -120,7 +120,10 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         def act(by: str, action: Action) -> object:
             return drive.submit(by, action)
 
-        forgettings = disk.forgetting_desk(recordings, act, lambda: side.leads)
+        def save_soon() -> None:
+            drive.save_soon()
+
+        forgettings = disk.forgetting_desk(recordings, act, save_soon, lambda: side.leads)
         drive = _start_drive(
             disk.log,
             Surroundings(

@@ -56,6 +56,7 @@ def bench_faults(
     patience: Annotated[
         float, typer.Option(help="How long to wait, after a fault, for the rest to arrive.")
     ] = 180.0,
+    times: Annotated[int, typer.Option(min=1, help="Each one so often: luck differs.")] = 1,
     seed: Annotated[int, typer.Option(help="Of the link's luck.")] = 1,
     json_file: FiguresFile = None,
 ) -> None:
@@ -68,7 +69,7 @@ def bench_faults(
         known = ", ".join(fault.name for fault in FAULTS)
         raise UserError(f"no fault is left to be measured; there are: {known}")
     with Progress(transient=True) as progress:
-        reports = measure(faults, patience, seed, progress)
+        reports = measure(faults * times, patience, seed, progress)
     Terminal().print(table_of(reports))
     write_figures(json_file, reports)
 

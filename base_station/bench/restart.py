@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +20,10 @@ from base_station.bench.console import Console
 from base_station.bench.station import free_port, station_process
 from base_station.bench.units import unit_names
 from base_station.data_folder import DataFolder
+from base_station.drive import CHECKPOINT_NS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import StoreError
-from shared.mcap_log import segment_paths
+from shared.mcap_log import SegmentReader, segment_paths
 
 _TO_REACH_S = 5.0
 _PATIENCE_S = 600.0
@@ -69,11 +70,12 @@ def measure(units: int, minutes: float, progress: Progress) -> RestartReport:
                 station.run(60.0 * min(left, 1.0))
                 progress.advance(task, min(left, 1.0))
             messages = station.messages
-        log_bytes = sum(path.stat().st_size for path in segment_paths(folder.log))
+        walked = segment_paths(folder.log)
+        log_bytes = sum(path.stat().st_size for path in walked)
         with _started(folder, units, ""):
             pass  # makes the first login
         rows = [_measured(folder, units, "a stop")]
-        _as_killed(folder)
+        _as_killed(folder, walked)
         rows.append(_measured(folder, units, "a kill"))
         for path in folder.checkpoints.iterdir():
             path.unlink()
@@ -102,14 +104,19 @@ def _started(folder: DataFolder, units: int, after: str) -> Iterator[RestartRow]
         one.stop()
 
 
-def _as_killed(folder: DataFolder) -> None:
-    """What was saved at the orderly end is not there, and the newest segment is torn."""
-    saved = sorted(folder.checkpoints.iterdir())
-    for path in saved[-2:]:
+def _as_killed(folder: DataFolder, walked: Sequence[Path]) -> None:
+    """While they walked, just before the state would have been saved again: of the log only that is
+    left, its end torn, and of what was saved nothing that is newer.
+    """
+    for path in set(segment_paths(folder.log)) - set(walked):
         path.unlink()
-    newest = max(segment_paths(folder.log))
-    with newest.open("r+b") as file:
-        file.truncate(max(newest.stat().st_size - _TORN_BYTES, 0))
+    with SegmentReader(walked[-1]) as reader:
+        end_ns = reader.info().end_ns
+    for path in folder.checkpoints.iterdir():
+        if int(path.stem) > end_ns - CHECKPOINT_NS:
+            path.unlink()
+    with walked[-1].open("r+b") as file:
+        file.truncate(max(walked[-1].stat().st_size - _TORN_BYTES, 0))
 
 
 def _table(report: RestartReport) -> Table:

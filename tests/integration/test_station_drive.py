@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -19,7 +19,9 @@ from shared.messages.station import (
     RegisterUnit,
     SetPlan,
 )
-from tests.live_station import LiveStation, make_pipeline, until
+from tests.live_station import LiveStation, make_pipeline
+from tests.station_script import Script
+from tests.waiting import until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"
@@ -217,3 +219,34 @@ def test_an_action_after_the_end_is_refused_and_not_forgotten(tmp_path: Path) ->
         pass
     with pytest.raises(StoreError):
         station.drive.submit("chief", RegisterUnit(U, "one")).result(1.0)
+
+
+class Killed(Exception):  # noqa: N818  # it is no error
+    """While the log is being read."""
+
+
+def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: Path) -> None:
+    script = Script()
+    script.register(U)
+    for minute in range(30):
+        script.now_s = 60.0 * minute
+        script.position(U, float(minute), 0.0)
+        script.tick()
+    whole = LiveStation(tmp_path / "whole")
+    stepped = whole.drive.rebuild(script.records)
+    whole.close()
+
+    def until_killed() -> Iterator[tuple[int, str, bytes]]:
+        yield from script.records[: len(script.records) // 2]
+        raise Killed
+
+    first = LiveStation(tmp_path / "killed")
+    for record in script.records:
+        first.recorder.write(*record)
+    with pytest.raises(Killed):
+        first.drive.rebuild(until_killed())
+    first.close()
+    second = LiveStation(tmp_path / "killed")
+    assert stepped // 4 < second.rebuilt < stepped * 3 // 4
+    assert second.pipeline.checkpoint() == whole.pipeline.checkpoint()
+    second.close()
