@@ -10,7 +10,7 @@ import logging
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from threading import Condition, Thread
+from threading import Condition, RLock, Thread
 
 from shared.clock import NS_PER_S, Clock
 from shared.errors import LogError
@@ -76,7 +76,8 @@ class Recorder:
         except BaseException:
             self._lock.close()
             raise
-        self._news = Condition()
+        self._taking = RLock()
+        self._news = Condition(self._taking)
         self._queue: list[LogRecord] = []
         self._queued_bytes = 0
         self._flushes_asked = 0
@@ -98,7 +99,7 @@ class Recorder:
         Returns at once, or, where it is urgent, when it is on the disk; a disk that hangs is not
         waited for longer than two seconds.
         """
-        with self._news:
+        with self._taking:  # the condition's own lock, without what a condition costs
             if self._failure or self._queued_bytes > _QUEUED_BYTES_MAX:
                 self._refused += 1
                 return False

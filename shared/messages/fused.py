@@ -40,8 +40,7 @@ class FusedPosition(msgspec.Struct, frozen=True):
     floor_probability: float | None = None  # of the floor, where one is known
 
     def to_wire(self) -> fused_pb2.FusedPosition:
-        return fused_pb2.FusedPosition(
-            header=self.header.to_wire(),
+        wire = fused_pb2.FusedPosition(
             unit_id=self.unit_id,
             t_meas_ns=self.t_meas_ns,
             north_mm=signed32(self.north_m, 1e3),
@@ -62,6 +61,8 @@ class FusedPosition(msgspec.Struct, frozen=True):
             gps_ever=self.since_gps_s is not None,
             floor_permille=unsigned32(self.floor_probability or 0.0, 1e3),
         )
+        self.header.fill(wire.header)
+        return wire
 
     @staticmethod
     def from_wire(wire: fused_pb2.FusedPosition) -> FusedPosition:

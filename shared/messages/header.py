@@ -23,15 +23,17 @@ class Header(msgspec.Struct, frozen=True):
     schema: int = SCHEMA_REVISION
 
     def to_wire(self) -> header_pb2.Header:
-        return header_pb2.Header(
-            schema=self.schema,
-            unit_id=self.unit_id,
-            boot_id=self.boot_id,
-            seq=self.seq,
-            t_mono_ns=self.t_mono_ns,
-            t_utc_ns=self.t_utc_ns,
-            utc_std_ms=unsigned_known(self.utc_std_s, 1e3),
-        )
+        wire = header_pb2.Header()
+        self.fill(wire)
+        return wire
+
+    def fill(self, wire: header_pb2.Header) -> None:
+        """The same into a message that has one."""
+        wire.schema, wire.unit_id = self.schema, self.unit_id
+        wire.boot_id, wire.seq = self.boot_id, self.seq
+        wire.t_mono_ns, wire.t_utc_ns = self.t_mono_ns, self.t_utc_ns
+        if self.utc_std_s:
+            wire.utc_std_ms = unsigned_known(self.utc_std_s, 1e3)
 
     @staticmethod
     def from_wire(wire: header_pb2.Header) -> Header:
