@@ -10,9 +10,18 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from base_station.fusion.compass import bearing_of
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.path_history import PathHistory
-from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
+from base_station.fusion.port import (
+    Bearing,
+    Estimate,
+    FixVerdict,
+    Fuser,
+    FuserKind,
+    PlaceFix,
+    Start,
+)
 from base_station.fusion.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.sky import Sky
 from base_station.fusion.smoother.port import Smoother
@@ -89,6 +98,9 @@ class Positioning:
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=is_outside)
         if air is not None:
             fuser.feel(air)
+        bearing = _bearing(state, position)
+        if bearing is not None:
+            fuser.face(bearing)
         state.learnt_building = fuser.recognise(state.learnt_building)
         history = _history(state, unit)
         begins = history.end_ns is None
@@ -98,6 +110,8 @@ class Positioning:
             pinned.advance(position)
             if air is not None:
                 pinned.feel(air)
+            if bearing is not None:
+                pinned.face(bearing)
             pinned.recognise(state.learnt_building)
         if state.learnt_floors.follow(position, unit.unit_id):
             self._land(state, unit, t_ns, is_outside)
@@ -333,6 +347,13 @@ def _without_sky(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFi
         off_m = fix.north_m - start.north_m, fix.east_m - start.east_m
         state.sky.note(t_ns, off_m, fix.horizontal_std_m, start.std_m)
     return fix
+
+
+def _bearing(state: StationState, position: Position) -> Bearing | None:
+    """What the unit's compass tells, where it is known which way the plan lies on the Earth."""
+    if position.magnetic_north is None or state.anchor is None:
+        return None
+    return bearing_of(position.magnetic_north, state.anchor, state.t_ns)
 
 
 def _in_clock_of_path(unit: UnitState, fix: GpsFix) -> GpsFix:

@@ -13,17 +13,25 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
+from base_station.fusion.compassed import CompassedFilter
 from base_station.fusion.fix_trust import FixTrust
 from base_station.fusion.heading_bank import Sighting
 from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
-from base_station.fusion.horizontal import HorizontalFilter
 from base_station.fusion.kernels import Placed
 from base_station.fusion.knowledge import Knowledge, estimate_of
 from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.own_path import OwnPath, Stretch
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_memory import OwnPlace, PathMemory
-from base_station.fusion.port import AirHeight, Estimate, FixVerdict, PlaceFix, Present, Start
+from base_station.fusion.port import (
+    AirHeight,
+    Bearing,
+    Estimate,
+    FixVerdict,
+    PlaceFix,
+    Present,
+    Start,
+)
 from base_station.fusion.recognition import Recognition
 from base_station.fusion.since import since_then, unguided_m2, walls_std_m
 from base_station.fusion.walled import SavedWalled, WalledFilter
@@ -73,7 +81,7 @@ class GpsInertialFuser:
         self._kind = kind
         self._memory = memory
         self._horizontal = WalledFilter(
-            HorizontalFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
+            CompassedFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
         )
         self._horizontal.expect_drift(kind.drift_radps)
         self._height = HeightFilter(kind)
@@ -132,6 +140,9 @@ class GpsInertialFuser:
 
     def feel(self, air: AirHeight) -> None:
         self._height.feel(air)
+
+    def face(self, bearing: Bearing) -> None:
+        self._horizontal.go_by(bearing, assumed=self._memory.assumed)
 
     def rest_on(self, storeys: Sequence[Storey]) -> None:
         self._height.rest_near(storeys)
@@ -267,6 +278,7 @@ class GpsInertialFuser:
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
         self._memory.recognition = Recognition()
+        self._horizontal.hear_anew()
 
     def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:
         """``lasts``: so many fixes in a row have about the same doubtful error."""

@@ -142,6 +142,12 @@ class HeadingBank:
         weights = self._weights * np.exp(-0.5 * (distances2 - distances2.min()))
         self._weights = weights / weights.sum()
 
+    def weigh(self, turn_rad: float, variance: float) -> None:
+        """The heading correction was measured."""
+        off_rad = (self._turns_rad - turn_rad + math.pi) % (2.0 * math.pi) - math.pi
+        weights = self._weights * np.exp(-0.5 * off_rad**2 / variance)
+        self._weights = weights / weights.sum()
+
     def _innovations(self, sighting: Sighting) -> tuple[Floats, Floats]:
         """By hypothesis (n, 2), and the inverse of their covariance (2, 2)."""
         observe = _observe(sighting)

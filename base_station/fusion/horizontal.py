@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.heading_bank import HeadingBank, SavedBank, Sighting
 from base_station.fusion.kernels import Placed
+from base_station.fusion.told import told
+from shared.geo import wrap_pi
 
 Floats = NDArray[np.float64]
 
@@ -199,6 +201,36 @@ class HorizontalFilter:
             self._filter.update(place, R=noise, H=observe)
             return
         self._bank.update(sighting)
+        self._close_heading()
+
+    def weigh(self, turn_rad: float, variance: float) -> None:
+        """The heading correction was measured; only while it is open."""
+        assert self._bank is not None
+        self._bank.weigh(turn_rad, variance)
+        self._close_heading()
+
+    def turn_whole(self, turn_rad: float, std_rad: float) -> None:
+        """The own frame was shown with its north for the incident frame's, and is turned; only
+        where one heading is left.
+        """
+        self.reframe(turn_rad, 0.0, 0.0)
+        north_m, east_m, c, s = self._filter.x[:4, 0]
+        by = np.array([-east_m, north_m, -s, c, 0.0, 0.0, 0.0])
+        self._filter.P += std_rad**2 * np.outer(by, by)
+
+    def face(self, turn_rad: float, variance: float) -> None:
+        """The heading correction has come to be known as this; only where one heading is left."""
+        mean, covariance = self.moments()
+        c, s = float(mean[2]), float(mean[3])
+        scale2 = c * c + s * s
+        observe = np.array([[0.0, 0.0, -s / scale2, c / scale2, 0.0, 0.0, 0.0]])
+        to = observe @ mean + wrap_pi(turn_rad - math.atan2(s, c))
+        mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
+        mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
+        self._filter.x, self._filter.P = mean.reshape(_STATES, 1), covariance
+
+    def _close_heading(self) -> None:
+        """Known so well, one hypothesis is enough."""
         self._stale = True
         if turn_of(*self.moments())[1] < self._linear_rad:
             self._bank = None

@@ -38,6 +38,13 @@ class AirHeight(msgspec.Struct, frozen=True):
     referenced: bool  # the weather is taken out of it
 
 
+class Bearing(msgspec.Struct, frozen=True):
+    """What a compass tells; its error lasts."""
+
+    turn_rad: float  # heading of the unit's own north, in the incident frame
+    std_rad: float
+
+
 class Start(msgspec.Struct, frozen=True):
     """Where the origin of the unit's own frame lies, and the heading of its north."""
 
@@ -110,6 +117,12 @@ class Fuser(Protocol):
 
     def feel(self, air: AirHeight) -> None:
         """The air pressure that came with the last position."""
+        ...
+
+    def face(self, bearing: Bearing) -> None:
+        """What the unit's compass said with the last position; it is worth no more for being
+        repeated.
+        """
         ...
 
     def rest_on(self, storeys: Sequence[Storey]) -> None:

@@ -14,13 +14,14 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.compassed import CompassedFilter, SavedCompassed
 from base_station.fusion.heading_bank import Sighting
-from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
+from base_station.fusion.horizontal import turn_of
 from base_station.fusion.kernels import Placed, placed_before
+from base_station.fusion.port import Bearing
 from base_station.fusion.told import told
 from base_station.fusion.wall_cloud import SavedCloud, WallCloud
 from base_station.site.floor_grid import FloorGrid
-from shared.geo import wrap_pi
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ REPENT_M = 25.0  # walked after a cloud was given up until another begins
 
 
 class SavedWalled(msgspec.Struct, frozen=True):
-    plain: SavedHorizontal
+    plain: SavedCompassed
     cloud: SavedCloud | None
     clouds: int
     to_walk_m: float
@@ -42,7 +43,7 @@ class SavedWalled(msgspec.Struct, frozen=True):
 class WalledFilter:
     """The same questions as ``HorizontalFilter`` answers, walls considered."""
 
-    def __init__(self, plain: HorizontalFilter) -> None:
+    def __init__(self, plain: CompassedFilter) -> None:
         self._plain = plain
         self._cloud: WallCloud | None = None
         self._clouds = 0  # begun so far: the seed of the next
@@ -128,15 +129,16 @@ class WalledFilter:
 
     def face(self, turn_rad: float, variance: float) -> None:
         """The own frame's turn has come to be known as this; only where the filter is plain."""
-        mean, covariance = self._plain.moments()
-        c, s = float(mean[2]), float(mean[3])
-        scale2 = c * c + s * s
-        observe = np.array([[0.0, 0.0, -s / scale2, c / scale2, 0.0, 0.0, 0.0]])
-        by_rad = wrap_pi(turn_rad - math.atan2(s, c))
-        to = observe @ mean + by_rad
-        mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
-        mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
-        self._plain.adopt(mean, covariance)
+        self._plain.face(turn_rad, variance)
+
+    def go_by(self, bearing: Bearing, *, assumed: bool) -> None:
+        """Hear a compass; among walls they know better."""
+        if self._cloud is None:
+            self._plain.go_by(bearing, assumed=assumed)
+
+    def hear_anew(self) -> None:
+        """The unit has begun anew, and with it its compass."""
+        self._plain.hear_anew()
 
     def turn(self) -> tuple[float, float]:
         """Heading correction and its standard deviation, pi where it is not known."""
@@ -149,7 +151,9 @@ class WalledFilter:
         self._plain.begin(place_m, std_m, heading_rad, heading_std_rad)
 
     def settle(self, mean: Floats, covariance: Floats) -> None:
-        self._cloud = None
+        """What walls have told is kept, unless it is of another place."""
+        if self._cloud is not None and not self._cloud.agree(mean, covariance):
+            self._cloud = None
         self._plain.settle(mean, covariance)
 
     def forget_heading(self) -> None:
@@ -217,12 +221,18 @@ class WalledFilter:
             self._cloud.fade(keep)
 
     def distance2(self, sighting: Sighting) -> float:
-        if self._cloud is not None:
-            return self._cloud.distance2(sighting)
-        return self._plain.distance2(sighting)
+        """To what is believed; or, if nearer, to what would be without a compass."""
+        distance2 = self._plain.distance2(sighting)
+        if self._cloud is None:
+            return distance2
+        walled2 = self._cloud.distance2(sighting)
+        return min(walled2, distance2) if self._plain.is_contested else walled2
 
     def update(self, sighting: Sighting) -> None:
+        was_refuted = self._plain.is_refuted
         self._plain.update(sighting)
+        if self._plain.is_refuted and not was_refuted:
+            self._cloud = None  # its heading was the compass's
         if self._cloud is not None:
             self._cloud.update(sighting)
 
