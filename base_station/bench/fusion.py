@@ -107,6 +107,10 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
             truths = [person.truth for person in people]
             afterwards.note(name, truths, shown_m, kinds[name].histories, rng)
         for person in people:
+            best_m2 = bound_m2(person.truth, person.fixes, person.engine_fixes, person.building)
+            live_m, then_m = (draw_errors_m(rng, one_m2) for one_m2 in best_m2)
+            ways[BOUND].note(person.truth, person.truth.place_m[:, :2] + live_m, None)
+            afterwards.note_bound(person.truth, live_m, then_m)
             for name, places_m in _peers(person, rng).items():
                 ways[name].note(person.truth, places_m, None)
     return FusionReport(
@@ -149,9 +153,7 @@ def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
         alone[row] = last
         switching[row] = last + path_m[row] - last_path_m
     begin = truth.place_m[0, :2] - path_m[0]
-    best_m = draw_errors_m(rng, bound_m2(truth, person.fixes, person.engine_fixes, person.building))
     return {
-        BOUND: truth.place_m[:, :2] + best_m,
         "fixes alone": alone,
         "path alone": path_m + begin,
         "switching": switching,

@@ -48,8 +48,10 @@ def bound_m2(
     fixes: dict[int, PlaceFix],
     engine_fixes: dict[int, PlaceFix],
     building: SteelBuilding,
-) -> Floats:
-    """Covariance of north and east, row by row (n, 2, 2)."""
+) -> tuple[Floats, Floats]:
+    """Covariance of north and east, row by row (n, 2, 2): by what came until then, and by what
+    came afterwards too (Rauch, Tung and Striebel 1965).
+    """
     begin = [ENGINE_STD_M] * 2 + [math.pi, errors.DRIFT_STD_RADPS, errors.SCALE_STD, *[1.0] * 8]
     spread = np.diag(np.square([*begin, ENGINE_SAID_STD_M, ENGINE_SAID_STD_M]))
     for axis in (0, 1):
@@ -58,9 +60,10 @@ def bound_m2(
     for first, lasts_s in _LAST_S.items():
         fades[first : first + 2] = math.exp(-1.0 / RATE_HZ / lasts_s)
     lengths_m = np.linalg.norm(truth.steps_m[:, :2], axis=1)
-    bounds = np.empty((len(truth.t_s), 2, 2))
+    moves, expected, known = np.empty((3, len(truth.t_s), _STATES, _STATES))
     for row, (north_m, east_m, _) in enumerate(truth.steps_m):
-        spread = _moved(spread, fades, (north_m, east_m, float(lengths_m[row])))
+        moves[row], noise = _move(fades, (north_m, east_m, float(lengths_m[row])))
+        spread = expected[row] = moves[row] @ spread @ moves[row].T + np.diag(noise)
         if row in engine_fixes:
             spread = _corrected(
                 spread, errors.ROOF_WHITE_M, {_ENGINE: 1.0, _COMMON: errors.COMMON_M,
@@ -72,8 +75,8 @@ def bound_m2(
                 spread, errors.OPEN_WHITE_M, {0: 1.0, _COMMON: errors.COMMON_M,
                 _SLOW: errors.OPEN_SLOW_M, _WALL: walls_m},
             )  # fmt: skip
-        bounds[row] = spread[:2, :2]
-    return bounds
+        known[row] = spread
+    return known[:, :2, :2].copy(), _afterwards(moves, expected, known)[:, :2, :2]
 
 
 def draw_errors_m(rng: np.random.Generator, bounds_m2: Floats) -> Floats:
@@ -83,8 +86,15 @@ def draw_errors_m(rng: np.random.Generator, bounds_m2: Floats) -> Floats:
     return drawn
 
 
-def _moved(spread: Floats, fades: Floats, step: tuple[float, float, float]) -> Floats:
-    """``step``: north, east and length."""
+def _afterwards(moves: Floats, expected: Floats, known: Floats) -> Floats:
+    for row in range(len(known) - 2, -1, -1):
+        gain = np.linalg.solve(expected[row + 1], moves[row + 1] @ known[row]).T
+        known[row] += gain @ (known[row + 1] - expected[row + 1]) @ gain.T
+    return known
+
+
+def _move(fades: Floats, step: tuple[float, float, float]) -> tuple[Floats, Floats]:
+    """What a step (north, east and length) does to the state, and the variances it adds."""
     north_m, east_m, length_m = step
     moving_s = 1.0 / RATE_HZ if length_m * RATE_HZ > errors.MOVING_MPS else 0.0
     move = np.diag(fades)
@@ -95,7 +105,7 @@ def _moved(spread: Floats, fades: Floats, step: tuple[float, float, float]) -> F
     noise[:2] = errors.STEP_M_PER_SQRT_M**2 * length_m
     noise[_HEADING] = errors.HEADING_RAD_PER_SQRT_M**2 * length_m
     noise[_DRIFT] = errors.DRIFT_WANDER_RADPS**2 * moving_s / 60.0
-    return np.asarray(move @ spread @ move.T + np.diag(noise))
+    return move, noise
 
 
 def _corrected(spread: Floats, white_m: float, parts: dict[int, float]) -> Floats:

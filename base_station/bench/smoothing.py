@@ -44,6 +44,7 @@ class SmoothingReport:
     smoothed_mean_m: dict[str, dict[str, float]]
     live_ce95_m: dict[str, dict[str, float]]
     smoothed_ce95_m: dict[str, dict[str, float]]
+    bound_mean_m: dict[str, tuple[float, float]]  # best by path and fixes: live, afterwards
     held_95: dict[str, dict[str, float]]  # the smoothed trail's stated region held the truth
     pin_before_m: dict[str, float]  # mean error of the trail around a pin, without it
     pin_after_m: dict[str, float]  # and with it
@@ -113,6 +114,13 @@ class SmoothingScores:
         self._smoother = smoother
         self._errors: dict[str, dict[str, _Errors]] = {}
         self._pins: dict[str, list[tuple[float, float]]] = {}
+        self._bound: dict[str, list[tuple[Floats, Floats]]] = {}
+
+    def note_bound(self, truth: Truth, live_m: Floats, afterwards_m: Floats) -> None:
+        """Errors (n, 2) of whoever makes the best of one person's path and fixes."""
+        for stage, rows in _stages(truth).items():
+            live, afterwards = (np.hypot(*one[rows].T) for one in (live_m, afterwards_m))
+            self._bound.setdefault(stage, []).append((live, afterwards))
 
     def note(
         self,
@@ -148,6 +156,7 @@ class SmoothingScores:
             smoothed_mean_m=self._each(lambda one: float(np.concatenate(one.smoothed).mean())),
             live_ce95_m=self._each(lambda one: _ce95_m(one.live)),
             smoothed_ce95_m=self._each(lambda one: _ce95_m(one.smoothed)),
+            bound_mean_m={stage: _means(pairs) for stage, pairs in self._bound.items()},
             held_95=self._each(lambda one: float(np.concatenate(one.held).mean())),
             pin_before_m={way: float(gains[:, 0].mean()) for way, gains in pins.items()},
             pin_after_m={way: float(gains[:, 1].mean()) for way, gains in pins.items()},
@@ -194,6 +203,9 @@ def tables_of(report: SmoothingReport) -> list[Table]:
                 f"{smoothed_m / live_m:.2f}",
                 f"{report.held_95[way][stage]:.1%}",
             )
+    for stage, (live_m, then_m) in report.bound_mean_m.items():
+        cells = f"{live_m:.2f}", f"{then_m:.2f}", f"{then_m / live_m:.2f}"
+        errors.add_row("best by path and fixes", stage, *cells, "")
     errors.add_row("to reach", "", "", "", "0.50", "92 to 98 %")
     figures = Table(title="Pins and times")
     for heading in ("", "measured", "to reach"):
@@ -276,6 +288,11 @@ def _against(truth: Truth, path: SmoothedPath) -> tuple[Floats, NDArray[np.bool_
 def _stages(truth: Truth) -> dict[str, NDArray[np.bool_]]:
     inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
     return {"inside": inside, "outside": ~inside}
+
+
+def _means(pairs: list[tuple[Floats, Floats]]) -> tuple[float, float]:
+    live, afterwards = (float(np.concatenate(column).mean()) for column in zip(*pairs, strict=True))
+    return live, afterwards
 
 
 def _ce95_m(errors: list[Floats]) -> float:
