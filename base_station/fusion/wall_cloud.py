@@ -29,6 +29,7 @@ CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
 SHAKEN_M = 0.05  # and how far their places are shaken
 FLOOR_VAR_M2 = 0.15**2  # of any place: people do not walk on lines, and plans lie a little aside
+LEFT = 0.1  # of the guesses, that agree with what was told: else the cloud begins anew
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
 MEMORY = 1.0 / 30.0  # of that mean, a move
 
@@ -153,6 +154,38 @@ class WallCloud:
         self._slow_covariance = keep**2 * self._slow_covariance + (1.0 - keep**2) * np.eye(2)
         self._moments = None
 
+    def agree(self, mean: Floats, covariance: Floats) -> bool:
+        """Take over what is known of ``[north, east, c, s, drift]`` (5,), (5, 5) and keep what
+        walls have made of the rest: guesses are weighed by how much likelier they are by it than
+        by the cloud's own moments, which it has considered already.  False, and nothing changed,
+        where too few guesses are left: it lies elsewhere.
+        """
+        c, s = float(mean[2]), float(mean[3])
+        to_own = np.zeros((4, 5))
+        to_own[[0, 1, 3], [0, 1, 4]] = 1.0
+        to_own[2, 2:4] = np.array([-s, c]) / (c * c + s * s)
+        here = self._guesses.copy()
+        here[:, :2] += self._turned(float(self._pending[0]), float(self._pending[1]))
+        weights = _normal(self._log_weights)
+        turn_rad = math.atan2(
+            float(weights @ np.sin(here[:, 2])), float(weights @ np.cos(here[:, 2]))
+        )
+        here[:, 2] = turn_rad + (here[:, 2] - turn_rad + math.pi) % math.tau - math.pi
+        own = here - weights @ here
+        known = np.array([mean[0], mean[1], math.atan2(s, c), mean[4]])
+        known[2] = turn_rad + (known[2] - turn_rad + math.pi) % math.tau - math.pi
+        floor = np.diag([SHAKEN_M**2, SHAKEN_M**2, 1e-6, 1e-12])
+        spread = (own * weights[:, None]).T @ own + floor
+        told = to_own @ covariance @ to_own.T + floor
+        gain = 0.5 * (_squares(own, spread) - _squares(here - known, told))
+        log_weights = self._log_weights + gain
+        after = _normal(log_weights)
+        if 1.0 / float(after @ after) < LEFT * GUESSES:
+            return False
+        self._log_weights, self._moments, self._contradiction = log_weights, None, 0.0
+        self._draw_anew()
+        return True
+
     def distance2(self, sighting: Sighting) -> float:
         """From the cloud as a whole, chi-square of two degrees of freedom."""
         apart, spread = self._innovations(sighting)
@@ -233,6 +266,11 @@ class WallCloud:
         self._guesses, self._slow = guesses, self._slow[picked]
         self._log_weights = np.zeros(GUESSES)
         self._moments = None
+
+
+def _squares(apart: Floats, spread: Floats) -> Floats:
+    """Chi-squares (n,) of rows."""
+    return np.asarray(((apart @ np.linalg.inv(spread)) * apart).sum(axis=1))
 
 
 def _normal(log_weights: Floats) -> Floats:
