@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import time
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -13,16 +12,10 @@ from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, POSITION, Qos, alive_key
 from shared.enrolment import Enrolment
+from tests.waiting import until
 
 # Long enough for what is allowed to have arrived twice over: what is forbidden must not have.
 QUIET_S = 0.7
-
-
-def until(holds: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + 20.0
-    while not holds():
-        assert time.monotonic() < deadline, f"never came: {what}"
-        time.sleep(0.01)
 
 
 class Site:

@@ -6,8 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ from shared.clock import SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
 from shared.messages import Message
+from tests.waiting import until
 
 PATIENCE_S = 60.0
 # As ``shared.command_line.main`` does it, without the entry points of an installed program.
@@ -38,13 +37,6 @@ def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
-
-
-def wait_until(what: str, condition: Callable[[], object], patience_s: float = PATIENCE_S) -> None:
-    end_s = time.monotonic() + patience_s
-    while not condition():
-        assert time.monotonic() < end_s, f"it never came true that {what}"
-        time.sleep(0.05)
 
 
 class Command:
@@ -74,9 +66,9 @@ class Command:
 
     def wait_ready(self) -> str:
         """The address of the console."""
-        wait_until(
-            "the station is ready or has ended",
+        until(
             lambda: "\nready " in f"\n{self.said()}" or self.process.poll() is not None,
+            "the station is ready or has ended",
         )
         assert self.process.poll() is None, f"the station ended:\n{self.said()}"
         (line,) = (line for line in self.said().splitlines() if line.startswith("ready "))
@@ -135,7 +127,7 @@ class Unit:
         channel = channel_of(message)
         key = channel.key(self.stamper.unit_id)
         if not self._heard:
-            wait_until("a station listens", lambda: self.bus.is_heard(key))
+            until(lambda: self.bus.is_heard(key), "a station listens")
             self._heard = True
         self.bus.publish(key, encode(message), channel.qos)
 

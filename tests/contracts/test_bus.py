@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import logging
-import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
@@ -19,6 +18,7 @@ from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos, alive_key
 from shared.errors import BusError
 from tests.station_command import free_port
+from tests.waiting import until
 
 KEY = POSITION.key("anna")
 ALIVE = alive_key("anna")
@@ -62,14 +62,6 @@ class ZenohFabric:
         self._stack.callback(bus.close)
         wait_linked(self.station(), bus)
         return bus
-
-
-def until(holds: Callable[[], bool], what: str, timeout_s: float = 20.0) -> None:
-    """Poll: a bus delivers when it does."""
-    deadline = time.monotonic() + timeout_s
-    while not holds():
-        assert time.monotonic() < deadline, f"never came: {what}"
-        time.sleep(0.002)
 
 
 def wait_linked(station: Bus, unit: Bus) -> None:

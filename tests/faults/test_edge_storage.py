@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import errno
 import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -20,13 +18,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import parse_key
 from shared.codec import decode
 from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
-
-
-def wait_until(condition: Callable[[], object]) -> None:
-    end_s = time.monotonic() + 40.0
-    while not condition():
-        assert time.monotonic() < end_s, "it never came true"
-        time.sleep(0.01)
+from tests.waiting import until
 
 
 class Station:
@@ -74,7 +66,7 @@ class Running:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.agent.run, args=(self._stop,))
         self._thread.start()
-        wait_until(lambda: self.station.count(Position) > 5)
+        until(lambda: self.station.count(Position) > 5)
 
     def end(self) -> None:
         self._stop.set()
@@ -98,14 +90,14 @@ def set_room(running: Running, pages: int) -> None:
 
 def test_a_full_disk_under_the_journal(running):
     set_room(running, 1)
-    wait_until(running.station.faults)
+    until(running.station.faults)
     before = running.station.count(Position)
-    wait_until(lambda: running.station.count(Position) > before + 20)
+    until(lambda: running.station.count(Position) > before + 20)
     assert len(running.station.faults()) == 1
     assert "full" in running.station.faults()[0]
 
     set_room(running, 1_000_000)
-    wait_until(lambda: running.parts.outbox.storage_fault is None)
+    until(lambda: running.parts.outbox.storage_fault is None)
     spool = running.parts.spool
     kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
@@ -118,9 +110,9 @@ def test_a_full_disk_under_the_black_box(running, monkeypatch):
 
     with monkeypatch.context() as patch:
         patch.setattr("shared.mcap_log.durable_file.os.pwrite", full)
-        wait_until(running.station.faults)
+        until(running.station.faults)
         assert "No space left" in running.station.faults()[0]
         before = running.station.count(Heartbeat)
-        wait_until(lambda: running.station.count(Heartbeat) > before + 2)
-    wait_until(lambda: running.parts.black_box.fault is None)
+        until(lambda: running.station.count(Heartbeat) > before + 2)
+    until(lambda: running.parts.black_box.fault is None)
     assert len(running.station.faults()) == 1

@@ -17,7 +17,8 @@ import pytest
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log
-from tests.station_command import Browser, Command, free_port, wait_until
+from tests.station_command import Browser, Command, free_port
+from tests.waiting import until
 
 UNIT = "anna"
 COMPILING_S = 200.0  # the first agent on a machine compiles its tracker
@@ -85,7 +86,7 @@ def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> 
                     browser.call("POST", "/units", json={"unit_id": UNIT})
                 agent.kill()  # nothing the first time
                 agent.start()
-                wait_until("the unit is heard", partial(has_logged, data, count), COMPILING_S)
+                until(partial(has_logged, data, count), "the unit is heard", COMPILING_S)
                 time.sleep(chance.random())
                 station.kill()
             time.sleep(1.0 + chance.random())  # the unit goes on alone
@@ -94,7 +95,7 @@ def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> 
             station.wait_ready()
             said = agent.journalled()
             assert len({boot_id for boot_id, _ in said}) == 2
-            wait_until("the log has all", lambda: said <= logged(data)[0].keys())
+            until(lambda: said <= logged(data)[0].keys(), "the log has all")
             messages, fetched = logged(data)
             assert fetched > 0
             assert [message for message, count in messages.items() if count != 1] == []

@@ -25,6 +25,7 @@ from edge.station_clock import StationClock
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import DataFolderInUseError, UserError
 from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
+from tests.waiting import until
 
 U = "FF-01"
 BATCHES = 600
@@ -309,13 +310,6 @@ def test_two_pulls_from_one_unit_do_not_write_over_each_other(unit: Unit, tmp_pa
     with pytest.raises(DataFolderInUseError, match="pull"):
         begin(unit, tmp_path)
     fetch.close()
-
-
-def until(condition: Callable[[], object]) -> None:
-    end_s = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < end_s, "it did not come about"
-        time.sleep(0.01)
 
 
 def desk(ask: Ask, folder: Path) -> RecordingDesk:

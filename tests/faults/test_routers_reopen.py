@@ -21,7 +21,8 @@ from base_station.router.process import RouterProcess
 from base_station.router.router import station_endpoint
 from shared.bus_zenoh import ZenohBus
 from shared.channels import Qos
-from tests.station_command import free_port, wait_until
+from tests.station_command import free_port
+from tests.waiting import until
 
 ROUNDS = 10
 SEED = 4
@@ -61,7 +62,7 @@ class End:
 
 def wait_heard(one: End, other: End, words: str) -> None:
     what = f"{one.name} hears {other.name} in {words}"
-    wait_until(what, lambda: one.hears(other, words), LINKED_S)
+    until(lambda: one.hears(other, words), what, LINKED_S)
 
 
 @pytest.fixture

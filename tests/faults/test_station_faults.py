@@ -19,8 +19,9 @@ from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
 from shared.messages import Message, Position
 from shared.messages.station import RegisterUnit
-from tests.live_station import LiveStation, until
+from tests.live_station import LiveStation
 from tests.station_script import Script
+from tests.waiting import until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"

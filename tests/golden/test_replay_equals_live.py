@@ -37,8 +37,9 @@ from shared.messages.station import (
     SetStart,
 )
 from shared.quality import Quality
-from tests.live_station import LiveStation, make_pipeline, until
+from tests.live_station import LiveStation, make_pipeline
 from tests.station_script import Record, Script
+from tests.waiting import until
 
 PLAN = (
     b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'

@@ -30,8 +30,8 @@ from tests.secured_bus import (
     assert_powerless,
     assert_speechless,
     publish_until_heard,
-    until,
 )
+from tests.waiting import until
 
 
 @pytest.fixture

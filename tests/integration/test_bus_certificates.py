@@ -21,13 +21,8 @@ from shared.channels import (
 from shared.enrolment import Enrolment
 from shared.errors import BusError
 from shared.tls import TlsIdentity
-from tests.secured_bus import (
-    QUIET_S,
-    Site,
-    assert_never_linked,
-    publish_until_heard,
-    until,
-)
+from tests.secured_bus import QUIET_S, Site, assert_never_linked, publish_until_heard
+from tests.waiting import until
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ import pytest
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 from shared.errors import BusError
-from tests.station_command import free_port, wait_until
+from tests.station_command import free_port
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -25,7 +26,7 @@ def publish_until_heard(unit: ZenohBus, station: ZenohBus, what: str) -> None:
         unit.publish("muster/v1/anna/up/status", b"", Qos.LIVE)
         return bool(heard)
 
-    wait_until(what, arrived)
+    until(arrived, what)
 
 
 def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(address: str) -> None:

@@ -21,7 +21,8 @@ from shared.envelope import Stamper
 from shared.errors import BusError
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply
 from shared.messages.station import ConfirmCommand, RegisterUnit, SendCommand
-from tests.live_station import LiveStation, make_pipeline, until
+from tests.live_station import LiveStation, make_pipeline
+from tests.waiting import until
 
 U = "FF-01"
 

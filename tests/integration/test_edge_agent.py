@@ -6,7 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -31,16 +30,10 @@ from shared.messages import (
     Position,
     UnitEvent,
 )
+from tests.waiting import until
 
 RUN = "from edge.cli import app; app(prog_name='edge')"
 WALK = "simulated:search-ground-floor"
-
-
-def wait_until(condition: Callable[[], object], timeout_s: float = 40.0) -> None:
-    end_s = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < end_s, "it never came true"
-        time.sleep(0.02)
 
 
 class Station:
@@ -117,16 +110,16 @@ def start(port: int, tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[
 
 def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
     first = start()
-    wait_until(lambda: len(station.of(Position)) >= 10)
+    until(lambda: len(station.of(Position)) >= 10)
     first.kill()
     first.wait()
-    wait_until(lambda: station.alive == [True, False])
+    until(lambda: station.alive == [True, False])
     old_boot = station.messages[0].header.boot_id
     received = {seq: raw for (_, seq), raw in station.raw.items()}
 
     second = start()
-    wait_until(lambda: station.alive == [True, False, True])
-    wait_until(lambda: station.messages[-1].header.boot_id != old_boot)
+    until(lambda: station.alive == [True, False, True])
+    until(lambda: station.messages[-1].header.boot_id != old_boot)
     (index,) = station.ask("index")
     boots = JournalIndex.from_bytes(index).boots
     assert [boot.boot_id for boot in boots] == [old_boot, station.messages[-1].header.boot_id]
@@ -145,14 +138,14 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
     assert "no link: 127.0.0.1 is there but nothing listens" in agent.stderr.readline()
     station = Station(port)
     try:
-        wait_until(lambda: station.of(Position))
+        until(lambda: station.of(Position))
         first_heard = min(seq for _, seq in station.raw)
         assert first_heard > 1
         boot_id = station.messages[0].header.boot_id
         assert list(station.journal(boot_id, first_heard)) == list(range(1, first_heard + 1))
         agent.send_signal(signal.SIGINT)
         assert agent.wait(20) == 0
-        wait_until(lambda: station.of(UnitEvent))
+        until(lambda: station.of(UnitEvent))
         last = station.of(UnitEvent)[-1]
         assert isinstance(last, UnitEvent)
         assert (last.kind, last.detail) == (EventKind.STOPPED, "told to stop")
@@ -162,16 +155,16 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
 
 def test_a_command_is_answered_and_done(station, start):
     start()
-    wait_until(lambda: station.of(Position))
+    until(lambda: station.of(Position))
     header = Stamper("station", 1, SystemClock()).header()
     command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=20.0)
     station.bus.publish(COMMAND.key("u1"), b"\x00 no command", Qos.ALERT)
     station.bus.publish(COMMAND.key("all"), encode(command), Qos.ALERT)
-    wait_until(lambda: station.of(CommandReply))
+    until(lambda: station.of(CommandReply))
     (reply,) = station.of(CommandReply)
     assert isinstance(reply, CommandReply)
     assert (reply.command_id, reply.state) == ("c1", CommandState.RECEIVED)
-    wait_until(lambda: closest_positions_ns(station) <= 60_000_000)
+    until(lambda: closest_positions_ns(station) <= 60_000_000)
 
 
 def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
@@ -180,15 +173,15 @@ def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
         Stamper("station", 1, SystemClock()).header(), "c1", CommandKind.PAR_REQUEST, "anna", 0
     )
     first = start(WALK, "--speed", "5")
-    wait_until(lambda: station.of(Position))
+    until(lambda: station.of(Position))
     station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
-    wait_until(lambda: len(station.of(CommandReply)) == 2)
+    until(lambda: len(station.of(CommandReply)) == 2)
     first.kill()
     first.wait()
     start(WALK, "--speed", "5")
-    wait_until(lambda: station.alive == [True, False, True])
+    until(lambda: station.alive == [True, False, True])
     station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
-    wait_until(lambda: len(station.of(CommandReply)) == 3)
+    until(lambda: len(station.of(CommandReply)) == 3)
     replies = station.of(CommandReply)
     assert [(reply.state, reply.awaits_wearer) for reply in replies] == [
         (CommandState.RECEIVED, True),
@@ -204,8 +197,8 @@ def closest_positions_ns(station: Station) -> int:
 
 def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
     start("simulated:loses-radio", "--speed", "10")
-    wait_until(lambda: station.alive == [True, False, True])
-    wait_until(lambda: len(station.of(Position)) > 150)
+    until(lambda: station.alive == [True, False, True])
+    until(lambda: len(station.of(Position)) > 150)
     heard = sorted(seq for _, seq in station.raw)
     missed = set(range(heard[0], heard[-1] + 1)) - set(heard)
     assert len(missed) > 200  # 45 s of messages, at ten times their rate
@@ -216,7 +209,7 @@ def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
 def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
     agent = start("simulated:straight", "--speed", "20")
     assert agent.wait(60) == 0
-    wait_until(lambda: len(station.of(UnitEvent)) >= 2)
+    until(lambda: len(station.of(UnitEvent)) >= 2)
     kinds = [event.kind for event in station.of(UnitEvent) if isinstance(event, UnitEvent)]
     assert kinds[-2:] == [EventKind.SOURCE_ENDED, EventKind.STOPPED]
 

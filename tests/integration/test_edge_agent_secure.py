@@ -6,7 +6,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import partial
@@ -23,15 +22,9 @@ from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, clock_key
 from shared.clock import SystemClock
 from shared.codec import decode
 from shared.enrolment import Holder
+from tests.waiting import until
 
 RUN = "from edge.cli import app; app(prog_name='edge')"
-
-
-def wait_until(condition: Callable[[], object], what: str) -> None:
-    end_s = time.monotonic() + 40.0
-    while not condition():
-        assert time.monotonic() < end_s, f"never came: {what}"
-        time.sleep(0.02)
 
 
 class Site:
@@ -139,12 +132,12 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Agent]]:
 def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
     site.open()
     agent = start("--enrolment", str(site.enrolment))
-    wait_until(lambda: len(site.positions) >= 5, "positions")
+    until(lambda: len(site.positions) >= 5, "positions")
     assert set(site.positions) == {POSITION.key("u1")}
-    wait_until(lambda: site.alive == [True], "the liveliness token")
+    until(lambda: site.alive == [True], "the liveliness token")
     assert list(site.bus.query(f"{ROOT}/u1/journal/index", b"", 10.0))
-    wait_until(lambda: site.utc_std_s > 0.0, "the station's time, in its headers")
-    wait_until(lambda: "linked to the station" in agent.said, "the agent's word")
+    until(lambda: site.utc_std_s > 0.0, "the station's time, in its headers")
+    until(lambda: "linked to the station" in agent.said, "the agent's word")
     assert "not secured" not in agent.said
     assert agent.end() == 0
 
@@ -156,7 +149,7 @@ def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tm
     other.create("Other", hosts=[], connect=[f"tls/127.0.0.1:{port}"])
     other.enroll("u1").write(tmp_path / "foreign.toml")
     agent = start("--enrolment", str(tmp_path / "foreign.toml"))
-    wait_until(lambda: "no link:" in agent.said, "the reason")
+    until(lambda: "no link:" in agent.said, "the reason")
     assert "is not the one that enrolled this unit" in agent.said
     assert not site.positions
 
@@ -171,13 +164,13 @@ def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tm
 def test_flags_that_contradict_the_enrolment_are_refused(site, start, flags, said):
     agent = start("--enrolment", str(site.enrolment), *flags)
     assert agent.process.wait(30) != 0
-    wait_until(lambda: said in agent.said, said)
+    until(lambda: said in agent.said, said)
 
 
 def test_a_secure_station_needs_an_enrolment(start):
     agent = start("--unit", "u1", "--connect", "tls/127.0.0.1:1")
     assert agent.process.wait(30) != 0
-    wait_until(lambda: "needs the unit's enrolment" in agent.said, "the reason")
+    until(lambda: "needs the unit's enrolment" in agent.said, "the reason")
 
 
 def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, start, tmp_path):
@@ -185,10 +178,10 @@ def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, 
     site.pki.enroll("u1", Holder.TRACKER).write(file)
     site.open()
     tracker = start("--enrolment", str(file), "--source", "bus:u1")
-    wait_until(lambda: "waiting for the raw stream of u1" in tracker.said, "the agent")
+    until(lambda: "waiting for the raw stream of u1" in tracker.said, "the agent")
     for boots in (1, 2):
         unit = start("--enrolment", str(site.enrolment), "--tracker", "none")
-        wait_until(partial(site.has_heard_boots, boots), "positions of this run")
+        until(partial(site.has_heard_boots, boots), "positions of this run")
         assert unit.end() == 0
     assert "u1 has started again" in tracker.said
     assert set(site.positions) == {POSITION.key(tracker_id("u1"))}
@@ -211,10 +204,10 @@ def test_an_enrolment_is_good_for_what_it_was_made_for_only(
     site.pki.enroll("u2", holder).write(file)
     agent = start("--enrolment", str(file), "--source", source)
     assert agent.process.wait(30) != 0
-    wait_until(lambda: said in " ".join(agent.said.split()), said)
+    until(lambda: said in " ".join(agent.said.split()), said)
 
 
 def test_an_agent_that_waits_for_its_unit_ends_when_told(start, port):
     agent = start("--source", "bus:u1", "--connect", f"tcp/127.0.0.1:{port}")
-    wait_until(lambda: "trying again every second" in agent.said, "the agent")
+    until(lambda: "trying again every second" in agent.said, "the agent")
     assert agent.end() == 0

@@ -17,7 +17,8 @@ from edge.sources.black_box import BlackBoxSource
 from edge.warm_up import compile_trackers
 from shared.errors import UserError
 from shared.mcap_log import segment_paths
-from tests.station_command import Browser, Command, free_port, wait_until
+from tests.station_command import Browser, Command, free_port
+from tests.waiting import until
 
 UNIT = "anna"
 RUN = "from edge.cli import app; app()"
@@ -44,8 +45,8 @@ class Running:
             process = stack.enter_context(subprocess.Popen(command, stdout=said, stderr=said))
         stack.callback(process.kill)
         self.began_ms = round(time.time() * 1000) - 60_000
-        wait_until("the unit is linked", self._is_linked)
-        wait_until("the unit has recorded", lambda: self._recorded_bytes() > 20_000)
+        until(self._is_linked, "the unit is linked")
+        until(lambda: self._recorded_bytes() > 20_000, "the unit has recorded")
 
     def fetch(self, *arguments: str) -> tuple[int, str]:
         with Command(
@@ -90,7 +91,7 @@ def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -
         )
         return dict(pull)
 
-    wait_until("it is over", lambda: state()["state"] in ("done", "failed"))
+    until(lambda: state()["state"] in ("done", "failed"), "it is over")
     assert (state()["state"], state()["problem"]) == ("done", "")
     assert state()["done_bytes"] == state()["total_bytes"] != 0
 

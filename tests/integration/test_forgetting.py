@@ -53,9 +53,10 @@ from shared.messages.station import (
     SetStart,
     Unassign,
 )
-from tests.live_station import LiveStation, make_pipeline, until
+from tests.live_station import LiveStation, make_pipeline
 from tests.station import DeskStation
 from tests.station_script import Script
+from tests.waiting import until
 
 ANA, BO, CEM = "Anastazja Kovač", "Bo Lind", "Cem Öz"
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from base_station.router.router import Router
-from tests.station_command import free_port, wait_until
+from tests.station_command import free_port
+from tests.waiting import until
 
 LOOKS = 9  # more than a router waits before it opens again
 
@@ -24,9 +25,7 @@ def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
         closing(Router(tmp_path, (one,), (other,))) as first,
         closing(Router(tmp_path, (other,), (one,))) as second,
     ):
-        wait_until(
-            "they are linked", lambda: first._neighbour.answers() and second._neighbour.answers()
-        )
+        until(lambda: first._neighbour.answers() and second._neighbour.answers(), "they are linked")
         before = first._bus, second._bus
         for _ in range(LOOKS):
             first.refresh()
@@ -65,4 +64,4 @@ def test_a_router_opens_again_where_the_other_answers_and_there_is_no_link(
         for _ in range(LOOKS):
             router.refresh()
         assert router._bus is not before
-        wait_until("they are linked", router._neighbour.answers)
+        until(router._neighbour.answers, "they are linked")

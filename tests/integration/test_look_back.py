@@ -16,7 +16,8 @@ from shared.errors import UserError
 from shared.messages import Header, Position
 from shared.messages.pins import SetPin
 from shared.messages.station import CloseIncident, OpenIncident, RegisterUnit, SetStart
-from tests.live_station import LiveStation, until
+from tests.live_station import LiveStation
+from tests.waiting import until
 
 
 @pytest.fixture

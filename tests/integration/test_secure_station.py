@@ -17,7 +17,8 @@ from shared.channels import POSITION, Qos
 from shared.codec import encode
 from shared.enrolment import Enrolment
 from shared.messages import Position
-from tests.station_command import Browser, Command, free_port, wait_until
+from tests.station_command import Browser, Command, free_port
+from tests.waiting import until
 
 MakePosition = Callable[..., Position]
 
@@ -61,18 +62,18 @@ def test_a_unit_is_enrolled_and_revoked_while_the_station_runs(
     with Browser(station.wait_ready(), data) as browser:
         assert not browser.call("GET", "/health")["insecure"]
         with closing(join(pki.enroll("FF-01"))) as unit:
-            wait_until("the unit is let in", lambda: unit.is_heard(key))
+            until(lambda: unit.is_heard(key), "the unit is let in")
             unit.publish(key, encode(make_position()), Qos.LIVE)
-            wait_until("it is heard", lambda: browser.call("GET", "/health")["messages"] == 1)
+            until(lambda: browser.call("GET", "/health")["messages"] == 1, "it is heard")
             pki.revoke("FF-01")
-            wait_until("the unit is shut out", lambda: not unit.is_heard(key))
-            wait_until("its link is back all the same", unit.is_linked)
+            until(lambda: not unit.is_heard(key), "the unit is shut out")
+            until(unit.is_linked, "its link is back all the same")
             unit.publish(key, encode(make_position()), Qos.LIVE)
         again = pki.enroll("FF-01", valid=timedelta(days=3))
         with closing(join(again)) as unit:
-            wait_until("its successor is let in", lambda: unit.is_heard(key))
+            until(lambda: unit.is_heard(key), "its successor is let in")
             unit.publish(key, encode(make_position()), Qos.LIVE)
-            wait_until("it is heard", lambda: browser.call("GET", "/health")["messages"] >= 2)
+            until(lambda: browser.call("GET", "/health")["messages"] >= 2, "it is heard")
         assert browser.call("GET", "/health")["messages"] == 2  # not what was said in between
     assert station.stop() == 0
 
@@ -84,12 +85,12 @@ def test_what_ends_soon_is_among_the_problems(
     (listen,) = pki.registry().connect
     station = serve("--listen", listen)
     with Browser(station.wait_ready(), data) as browser:
-        wait_until(
-            "the expiry is shown",
+        until(
             lambda: any(
                 problem == "The certificate of unit FF-01 expires in 2 days: muster pki renew FF-01"
                 for problem in browser.call("GET", "/health")["problems"]
             ),
+            "the expiry is shown",
         )
 
 

@@ -14,7 +14,8 @@ from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import Command as UnitCommand
 from shared.messages import CommandReply
-from tests.station_command import Browser, Command, free_port, wait_until
+from tests.station_command import Browser, Command, free_port
+from tests.waiting import until
 
 U = "FF-01"
 
@@ -47,18 +48,18 @@ def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> Non
                 (command,) = browser.call("GET", "/commands")
                 return str(command["units"][0]["state"])
 
-            wait_until(
-                "the unit is ours",
+            until(
                 lambda: U in [u["unit_id"] for u in browser.call("GET", "/units")],
+                "the unit is ours",
             )
             order = {"kind": "par_request", "target": {"unit_id": U}, "expires_s": 60}
             browser.call("POST", "/commands", json=order)
             assert state() == "queued"
             hearing = bus.subscribe(COMMAND.key(U), take)
-            wait_until("it has the command", lambda: state() == "received")
+            until(lambda: state() == "received", "it has the command")
             for reply in desk.acknowledge():
                 say(reply)
-            wait_until("the wearer has answered", lambda: state() == "acknowledged")
+            until(lambda: state() == "acknowledged", "the wearer has answered")
             (told,) = browser.call("GET", "/commands")
             assert told["units"][0]["sent_ms"] is not None  # the station heard itself say it
             hearing.close()

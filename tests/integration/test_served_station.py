@@ -22,7 +22,8 @@ from shared.enrolment import Holder
 from shared.mcap_log import SegmentReader, segment_paths
 from shared.messages import EventKind, Position, Status, UnitEvent
 from shared.messages.status import Activity
-from tests.station_command import Browser, Command, Unit, free_port, wait_until
+from tests.station_command import Browser, Command, Unit, free_port
+from tests.waiting import until
 
 MakePosition = Callable[..., Position]
 
@@ -70,7 +71,7 @@ def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
         unit.say(make_position(header=unit.stamper.header()))
         return bool(browser.call("GET", "/health")["messages"])
 
-    wait_until("the unit is heard", is_heard)
+    until(is_heard, "the unit is heard")
 
 
 def walk(unit: Unit, make_position: MakePosition, from_m: int, to_m: int) -> None:
@@ -110,7 +111,7 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
         walk(unit, make_position, 0, 20)
         unit.say(Status(unit.stamper.header(), Activity.LYING, 3.0, 0.5, True, 7, 0.0, 0, 0, 0))
         unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
-        wait_until("mayday is raised", lambda: snapshot(browser)["alarms"])
+        until(lambda: snapshot(browser)["alarms"], "mayday is raised")
         (alarm,) = snapshot(browser)["alarms"]
         browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge")
         before = snapshot(browser)
@@ -196,7 +197,7 @@ def test_what_cannot_be_read_is_counted_and_kept(
         greet(browser, unit, make_position)
         for key in ("FF-01/up/position", "FF-01/up/nonsense", "FF-02/up/status"):
             unit.bus.publish(f"{ROOT}/{key}", b"\xff\xff\xff", Qos.LIVE)
-        wait_until("they are counted", lambda: browser.call("GET", "/health")["undecodable"] == 3)
+        until(lambda: browser.call("GET", "/health")["undecodable"] == 3, "they are counted")
         health = browser.call("GET", "/health")
         assert any("could not be read" in problem for problem in health["problems"])
         assert health["unknown_units"] == 1
@@ -218,7 +219,7 @@ def play_incident(
     greet(browser, unit, make_position)
     walk(unit, make_position, 0, 15)
     unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
-    wait_until("mayday is raised", lambda: browser.call("GET", "/alarms"))
+    until(lambda: browser.call("GET", "/alarms"), "mayday is raised")
     walk(unit, make_position, 15, 25)
     browser.call("POST", f"/incidents/{incident_id}/close")
     alarms: list[dict[str, Any]] = browser.call("GET", f"/incidents/{incident_id}/alarms")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
 from typing import cast
 
 import pytest
@@ -20,6 +19,7 @@ from shared.channels import EVENT, POSITION, backfilled_key
 from shared.clock import ManualClock
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
+from tests.waiting import until
 
 BOOT = 77
 
@@ -63,13 +63,6 @@ def bench(tmp_path):
     yield bench
     bench.backfill.close()
     bench.spool.close()
-
-
-def until(condition: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 5.0
-    while not condition():
-        assert time.monotonic() < deadline, "it did not come about"
-        time.sleep(0.01)
 
 
 def test_what_is_missing_comes_newest_gap_first_and_once(bench):

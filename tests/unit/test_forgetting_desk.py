@@ -12,7 +12,7 @@ import pytest
 from base_station.forgetting.desk import Forgetting, ForgettingDesk, ForgettingState
 from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress
 from shared.errors import StoreError, UserError
-from tests.live_station import until
+from tests.waiting import until
 
 
 class Worker:

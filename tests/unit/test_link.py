@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 
 import pytest
 
@@ -12,13 +11,7 @@ from edge.link import Link
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
 from shared.errors import BusError
-
-
-def wait_until(condition, timeout_s: float = 10.0) -> None:
-    end_s = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < end_s, "it never came true"
-        time.sleep(0.005)
+from tests.waiting import until
 
 
 class Station:
@@ -66,7 +59,7 @@ def make_link(open_bus, commands, other_end: OtherEnd | None = None) -> Link:
 def test_a_unit_on_the_link_is_alive_is_commanded_and_serves_its_journal(station):
     commands: list[bytes] = []
     link = make_link(station.router.attach_unit, commands)
-    wait_until(lambda: station.alive == [True])
+    until(lambda: station.alive == [True])
     station.bus.publish(COMMAND.key("u1"), b"own", Qos.ALERT)
     station.bus.publish(COMMAND.key(EVERY_UNIT), b"all", Qos.ALERT)
     station.bus.publish(COMMAND.key("u2"), b"another's", Qos.ALERT)
@@ -78,13 +71,13 @@ def test_a_unit_on_the_link_is_alive_is_commanded_and_serves_its_journal(station
 
 def test_an_outage_cuts_the_link_and_its_end_restores_it(station):
     link = make_link(station.router.attach_unit, [])
-    wait_until(lambda: station.alive == [True])
+    until(lambda: station.alive == [True])
     link.publish(POSITION.key("u1"), b"1", Qos.LIVE)
     link.set_up(up=False)
-    wait_until(lambda: station.alive == [True, False])
+    until(lambda: station.alive == [True, False])
     link.publish(POSITION.key("u1"), b"2", Qos.LIVE)
     link.set_up(up=True)
-    wait_until(lambda: station.alive == [True, False, True])
+    until(lambda: station.alive == [True, False, True])
     link.publish(POSITION.key("u1"), b"3", Qos.LIVE)
     assert station.positions == [b"1", b"3"]
     link.close()
@@ -103,7 +96,7 @@ def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplo
     with caplog.at_level(logging.WARNING):
         link = make_link(open_bus, [])
         link.publish(POSITION.key("u1"), b"lost", Qos.LIVE)  # no bus: no error
-        wait_until(lambda: station.alive == [True])
+        until(lambda: station.alive == [True])
         link.close()
     assert [record.message for record in caplog.records] == [
         "the bus cannot be opened; trying again every second"
@@ -116,9 +109,9 @@ def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
     bus.link_down()
     with caplog.at_level(logging.INFO):
         link = make_link(lambda: bus, [])
-        wait_until(lambda: "no link: nobody is there" in caplog.text)
+        until(lambda: "no link: nobody is there" in caplog.text)
         bus.link_up()
-        wait_until(lambda: "linked to the station" in caplog.text)
+        until(lambda: "linked to the station" in caplog.text)
         link.close()
     assert caplog.text.count("no link") == 1
 
@@ -137,8 +130,8 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
 
     with caplog.at_level(logging.INFO):
         link = make_link(open_bus, [])
-        wait_until(lambda: station.alive == [True])
-        wait_until(lambda: "linked to the station" in caplog.text)
+        until(lambda: station.alive == [True])
+        until(lambda: "linked to the station" in caplog.text)
         link.close()
     assert len(opened) == 4
     assert caplog.text.count("no link") == 1
@@ -154,13 +147,13 @@ def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, mon
 
     other_end = OtherEnd(open_bus)
     link = make_link(open_bus, [], other_end)
-    wait_until(lambda: station.alive == [True])
+    until(lambda: station.alive == [True])
     other_end.reachable.clear()
     opened[0].link_down()
-    wait_until(lambda: other_end.knocked > 3)
+    until(lambda: other_end.knocked > 3)
     assert len(opened) == 1, "no bus is opened towards nobody"
     other_end.reachable.set()
-    wait_until(lambda: station.alive == [True, False, True])
+    until(lambda: station.alive == [True, False, True])
     link.close()
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-import time
+from functools import partial
 
 import pytest
 
@@ -12,6 +12,7 @@ from edge.spool import Spool
 from shared.channels import Qos
 from shared.errors import StoreError
 from shared.messages import EventKind, Temperature, UnitEvent
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -19,13 +20,6 @@ def spool(tmp_path):
     spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
     yield spool
     spool.close()
-
-
-def wait_until(condition, timeout_s: float = 10.0) -> None:
-    end_s = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < end_s, "it never came true"
-        time.sleep(0.005)
 
 
 def test_everything_is_sent_in_order_and_was_on_disk_before(spool, stamper):
@@ -59,7 +53,7 @@ def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monk
 
     monkeypatch.setattr(spool, "append", refuse)
     outbox.put((Temperature(stamper.header(), 20.0), Temperature(stamper.header(), 21.0)))
-    wait_until(lambda: len(sent) == 2)
+    until(lambda: len(sent) == 2)
     assert "the disk is full" in str(outbox.storage_fault)
     assert outbox.is_working
     monkeypatch.setattr(spool, "append", append)
@@ -74,8 +68,11 @@ def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):
     monkeypatch.setattr("edge.outbox._GROUP_S", 60.0)
     sent = []
     outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(key))
-    for _ in range(5):
+    for count in range(1, 6):
         outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
-        count = len(sent)
-        wait_until(lambda count=count: len(sent) > count)
+        until(partial(holds, sent, count), "the alert is sent")
     outbox.close()
+
+
+def holds(sent: list[str], count: int) -> bool:
+    return len(sent) == count

@@ -16,8 +16,9 @@ from shared.clock import NS_PER_S, SystemClock
 from shared.errors import UserError
 from shared.messages import EventKind
 from shared.messages.station import Assign, OpenIncident
-from tests.live_station import Screen, make_pipeline, until
+from tests.live_station import Screen, make_pipeline
 from tests.station_script import START_NS, Script
+from tests.waiting import until
 
 DURATION_S = 120
 MAYDAY_S = 60

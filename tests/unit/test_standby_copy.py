@@ -26,7 +26,7 @@ from shared.codec import encode
 from shared.errors import StoreError
 from shared.messages import STATION_ID, Header, OperatorAction
 from shared.messages.station import Action, CloseIncident, ForgetWearers, TakeOver
-from tests.live_station import until
+from tests.waiting import until
 
 Record = tuple[int, str, bytes]
 T0 = 1_700_000_000_000_000_000

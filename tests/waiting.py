@@ -1,0 +1,19 @@
+"""Waiting for what other threads and processes do."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+PATIENCE_S = 60.0  # of a busy machine; nothing is measured by it
+_LOOK_EVERY_S = 0.02
+
+
+def until(
+    condition: Callable[[], object], what: str = "it", patience_s: float = PATIENCE_S
+) -> None:
+    """Until ``what`` is so; an AssertionError that names it where that does not come about."""
+    end_s = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < end_s, f"waited in vain for this: {what}"
+        time.sleep(_LOOK_EVERY_S)
