@@ -254,6 +254,7 @@ def test_what_was_forgotten_is_not_fetched_from_the_unit_again(story: Story) -> 
         before.step(event_of(*record))
     for unit_id in ("FF-01", "FF-02"):
         seen = [boot.seen for boot in again.state.units[unit_id].boots]
+        assert seen
         assert seen == [boot.seen for boot in before.state.units[unit_id].boots]
 
 

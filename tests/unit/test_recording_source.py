@@ -199,7 +199,9 @@ def test_truth_is_turned_z_down_without_a_mirror(tmp_path: Path) -> None:
 
 
 def test_recorded_walks_are_read(walks: Path) -> None:
-    for trial in sorted(walks.glob("*/*")):
+    trials = sorted(walks.glob("*/*"))
+    assert trials
+    for trial in trials:
         source = RecordingSource(trial)
         expected_s = read_trial(trial).duration_s
         assert expected_s is not None
