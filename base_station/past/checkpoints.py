@@ -10,6 +10,7 @@ import zlib
 from pathlib import Path
 
 import msgspec
+import zstandard
 
 from base_station.pipeline import Checkpoint, read_checkpoint
 from shared.clock import NS_PER_S
@@ -17,6 +18,7 @@ from shared.clock import NS_PER_S
 SUFFIX = ".checkpoint"
 KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
+KEPT_BYTES = 2_000_000_000
 SPARSE_NS = 60 * NS_PER_S  # what a seek in a replay steps at most
 
 
@@ -33,6 +35,7 @@ class _File(msgspec.Struct, frozen=True, array_like=True):
     events_at_t: int
     crc32: int
     pipeline: bytes
+    packed: bool = False  # with zstd; the checksum is of what is packed
 
 
 class Checkpoints:
@@ -44,7 +47,11 @@ class Checkpoints:
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
         """Raises OSError where the disk does not take it."""
-        content = msgspec.msgpack.encode(_File(t_ns, events_at_t, zlib.crc32(pipeline), pipeline))
+        packed = zstandard.ZstdCompressor(level=1).compress(
+            pipeline
+        )  # an hour of a hundred units is 27 MB as it is
+        file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, packed=True)
+        content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"
         part = path.with_suffix(".part")
         part.write_bytes(content)
@@ -79,8 +86,8 @@ class Checkpoints:
 
     def _thin_out(self) -> None:
         old = self._paths()[:-KEPT_CLOSE]
-        for path in old[:-KEPT_FAR]:
-            path.unlink(missing_ok=True)
+        while len(old) > KEPT_FAR or sum(path.stat().st_size for path in old) > KEPT_BYTES:
+            old.pop(0).unlink(missing_ok=True)
         if len(old) > 1 and int(old[-1].stem) - int(old[-2].stem) < SPARSE_NS:
             old[-1].unlink(missing_ok=True)
 
@@ -92,5 +99,9 @@ def _read(path: Path) -> SavedState | None:
         return None
     if zlib.crc32(file.pipeline) != file.crc32:
         return None
-    checkpoint = read_checkpoint(file.pipeline)
+    checkpoint = read_checkpoint(_unpacked(file))
     return SavedState(file.t_ns, file.events_at_t, checkpoint) if checkpoint else None
+
+
+def _unpacked(file: _File) -> bytes:
+    return zstandard.ZstdDecompressor().decompress(file.pipeline) if file.packed else file.pipeline

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import zlib
 from itertools import pairwise
 from pathlib import Path
+
+import msgspec
+import pytest
 
 from base_station.past.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints
 from shared.clock import NS_PER_S
@@ -47,3 +51,22 @@ def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
     assert (saved.t_ns, saved.events_at_t) == (200, 2)
     assert checkpoints.latest(until_ns=99) is None
     assert checkpoints.latest_ns(10**9) == 300
+
+
+def test_those_of_a_program_that_did_not_pack_them_are_read(tmp_path: Path) -> None:
+    state = make_pipeline().checkpoint()
+    content = msgspec.msgpack.encode((100, 3, zlib.crc32(state), state))
+    (tmp_path / f"{100:020d}.checkpoint").write_bytes(content)
+    saved = Checkpoints(tmp_path).latest()
+    assert saved is not None
+    assert (saved.t_ns, saved.events_at_t) == (100, 3)
+
+
+def test_all_of_them_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("base_station.past.checkpoints.KEPT_BYTES", 2000)
+    checkpoints = Checkpoints(tmp_path)
+    for number in range(1, 50):
+        checkpoints.save(number * SPARSE_NS, 1, make_pipeline().checkpoint())
+    old = sorted(tmp_path.iterdir())[:-KEPT_CLOSE]
+    assert old
+    assert sum(path.stat().st_size for path in old) <= 2000
