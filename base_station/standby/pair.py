@@ -18,17 +18,17 @@ from base_station.feed import LogFeed, SteadyClock
 from base_station.standby.confirming import OtherCopy
 from base_station.standby.election import Election, Me
 from base_station.standby.following import Follower, Leader
+from base_station.standby.hearing import Hearing
 from base_station.standby.places import BEGINNING, Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
-from base_station.standby.words import PROTOCOL, Beat, Have, key_of, pack, unpack
+from base_station.standby.words import PROTOCOL, Beat, key_of, pack
 from shared.bus import Bus
-from shared.channels import OPERATOR, STATIONS_ROOT, Qos, alive_key
+from shared.channels import OPERATOR, Qos
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.errors import WireError
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import TakeOver
 
@@ -62,21 +62,22 @@ class Pair:
         self._election = Election(round(config.lease_s * NS_PER_S), clock.monotonic_ns())
         self._run_id = secrets.randbits(63)
         self._stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
-        self._units: set[str] = set()
-        self._stranger = ""
         self._told = Condition()
         self._by_hand = False
         self._closed = False
         self._ends = False  # it is going to start again
         self._follower = Follower(config.name, around.bus, log, around.feed, self._start_again)
         self._shipping = Shipping(config.name, around.bus, log, around.disk, lambda: self.leads)
-        self._declared = [
-            around.bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._hear_beat),
-            around.bus.subscribe(f"{STATIONS_ROOT}/*/have", self._hear_have),
-            around.bus.watch_alive(alive_key("*"), self._note_unit),
-            around.bus.watch_alive(f"{STATIONS_ROOT}/*/alive", self._note_station),
-            around.bus.declare_alive(key_of(config.name, "alive")),
-        ]
+        self._hearing = Hearing(
+            config.name,
+            self._run_id,
+            around.bus,
+            clock,
+            self._election,
+            on_beat=self._wake,
+            on_have=self._note_copy,
+        )
+        self._token = around.bus.declare_alive(key_of(config.name, "alive"))
         self._thread = Thread(target=self._run, name="pair", daemon=True)
 
     def start(self) -> None:
@@ -94,8 +95,8 @@ class Pair:
         self.copy.close()
         self._follower.close()
         self._shipping.close()
-        for one in self._declared:
-            one.close()
+        self._hearing.close()
+        self._token.close()
 
     # ---- from any thread
 
@@ -157,40 +158,13 @@ class Pair:
 
     # ---- what is heard
 
-    def _hear_beat(self, _key: str, payload: bytes) -> None:
-        beat = _read(payload)
-        if beat is None or (beat.station, beat.run) == (self._config.name, self._run_id):
-            return
-        if beat.station == self._config.name:
-            self._stranger = (
-                f"Two stations call themselves {beat.station}: give each a name of its own in "
-                "[standby]"
-            )
-        elif beat.protocol != PROTOCOL:
-            self._stranger = (
-                f"Station {beat.station} is of another version: the two cannot stand by for each "
-                "other until both are updated"
-            )
-        else:
-            self._election.hear(beat, self._around.clock.monotonic_ns())
-            with self._told:
-                self._told.notify_all()
+    def _wake(self) -> None:
+        with self._told:
+            self._told.notify_all()
 
-    def _hear_have(self, key: str, payload: bytes) -> None:
-        try:
-            have = unpack(payload, Have)
-        except WireError as error:
-            logger.warning("%s: %s", key, error)
-            return
-        if have.run == self._run_id and self.leads:
-            self.copy.note(have.place)
-
-    def _note_unit(self, key: str, there: bool) -> None:
-        (self._units.add if there else self._units.discard)(key)
-
-    def _note_station(self, key: str, there: bool) -> None:
-        if key != key_of(self._config.name, "alive"):
-            self._election.note_token(there=there)
+    def _note_copy(self, place: Place) -> None:
+        if self.leads:
+            self.copy.note(place)
 
     # ---- in the thread
 
@@ -253,7 +227,7 @@ class Pair:
 
     def _me(self) -> Me:
         log, config, heard_ns = self._around.log, self._config, self._around.feed.unit_heard_ns
-        return Me(config.name, config.preferred, log.term, log.place, len(self._units), heard_ns)
+        return Me(config.name, config.preferred, log.term, log.place, self._hearing.units, heard_ns)
 
     def _say_beat(self) -> None:
         """A station that leads and writes no log, though it should every second, says nothing."""
@@ -281,7 +255,8 @@ class Pair:
 
     def _problems(self) -> list[str]:
         other, now_ns = self._election.other, self._around.clock.monotonic_ns()
-        found = [self._stranger] if self._stranger else []
+        stranger = self._hearing.stranger
+        found = [stranger] if stranger else []
         if self.leads:
             if not self.copy.is_there:
                 found.append("There is no standby: what is done now is on this station alone")
@@ -304,11 +279,3 @@ class Pair:
         if self._follower.problem:
             found.append(self._follower.problem)
         return found
-
-
-def _read(payload: bytes) -> Beat | None:
-    try:
-        return unpack(payload, Beat)
-    except WireError as error:
-        logger.warning("%s", error)
-        return None
