@@ -19,7 +19,7 @@ from base_station.fusion.told import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
 ODDS = 10.0  # so much likelier the same stairs than others: believed
-SHARED_M = 0.6  # by which everybody errs alike: where the engine stands, and the sky
+SHARED_M = 0.7  # by which everybody errs alike: where the engine stands, and the sky
 LEAST_M2 = 0.05  # of what is left, each way
 MOST_WORDS = 64  # about the walls' direction; more tell nothing that these do not
 OUTLIER2 = 9.0  # squared standard deviations apart: not about the same

@@ -26,7 +26,7 @@ class Parameters:
     air_m_per_sqrt_s: float = 0.02  # its shift's wander where the weather is known
     weather_m_per_sqrt_s: float = 0.2  # and where it is not: 350 Pa an hour
     wander_part: float = 0.8  # of a fix's variance that wanders slowly
-    wander_s: float = 30.0  # with this correlation time
+    wander_s: float = 60.0  # with this correlation time
     wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it
     wall_reach_m: float = 5.0  # falling off by distance
     inside_std_m: float = 8.0  # and being inside
