@@ -23,9 +23,10 @@ def kind(request: pytest.FixtureRequest) -> FuserKind:
     return found
 
 
-def walks(duration_s: float) -> list[tuple[Walk, Receiver]]:
+def walks(duration_s: float, fix_std_m: float = 3.0) -> list[tuple[Walk, Receiver]]:
     generators = [np.random.default_rng(seed) for seed in SEEDS]
-    return [(Walk.wander(rng, duration_s), Receiver(rng)) for rng in generators]
+    errors = Errors(fix_std_m=fix_std_m)
+    return [(Walk.wander(rng, duration_s), Receiver(rng, errors)) for rng in generators]
 
 
 def together(scores: list[Scores], begin_s: float, end_s: float) -> Floats:
@@ -34,10 +35,14 @@ def together(scores: list[Scores], begin_s: float, end_s: float) -> Floats:
     return np.concatenate([score.normalised2[part] for score in scores])
 
 
-def test_the_heading_is_found_all_the_way_round_within_a_walk_of_25_m(kind: FuserKind) -> None:
+@pytest.mark.parametrize(("fix_std_m", "worst_m"), [(1.5, 25.0), (3.0, 50.0)])
+def test_the_heading_is_found_all_the_way_round_within_a_walk_of_25_m(
+    kind: FuserKind, fix_std_m: float, worst_m: float
+) -> None:
+    """By a receiver as data sheets have it, always; by one of twice its error, mostly."""
     walked_m = []
     errors = []
-    for walk, receiver in walks(120.0):
+    for walk, receiver in walks(120.0, fix_std_m):
         fuser = kind.new()
         for index in range(len(walk)):
             fuser.advance(walk.position(index))
@@ -51,7 +56,7 @@ def test_the_heading_is_found_all_the_way_round_within_a_walk_of_25_m(kind: Fuse
                 break
     assert len(walked_m) == len(SEEDS)
     assert np.median(walked_m) < 25.0
-    assert max(walked_m) < 50.0
+    assert max(walked_m) < worst_m
     assert np.sqrt(np.mean(np.square(errors))) < 1.5
 
 
