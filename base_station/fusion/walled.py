@@ -76,10 +76,6 @@ class WalledFilter:
         if self._grid is not None:
             self._floor = self._grid.plan.floor_at(down_m, self._floor)
 
-    @property
-    def is_walled(self) -> bool:
-        return self._cloud is not None
-
     def outside_m(self, north_m: float = 0.0, east_m: float = 0.0) -> float:
         """Distance to the building before this much of own path was walked, negative inside; far
         where no plan is known.
