@@ -42,7 +42,8 @@ TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
 URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
-CHECKPOINT_NS = 30 * NS_PER_S  # what a restart steps at most; at 1,000 events/s some 2 s
+CHECKPOINT_NS = 15 * NS_PER_S  # what a restart steps at most; at 1,000 events/s a second's work
+CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
 REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
 FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
@@ -167,8 +168,9 @@ class StationDrive:
                 self._tick()
             self._look_around()
         if now_ns >= due.checkpoint_ns:
-            due.checkpoint_ns = now_ns + CHECKPOINT_NS
             self._save_checkpoint()
+            spent_ns = clock.monotonic_ns() - now_ns
+            due.checkpoint_ns = now_ns + max(CHECKPOINT_NS, spent_ns * CHECKPOINTS_SHARE)
         self._settle()
         sooner_ns = URGENT_SOONER_NS if self._picture.is_urgent else 0
         if now_ns >= due.delta_ns - sooner_ns:
