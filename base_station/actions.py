@@ -10,6 +10,7 @@ import msgspec
 
 from base_station import accountability
 from base_station.alarms.book import AlarmBook
+from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import PinsTouched
@@ -205,6 +206,7 @@ def _open(state: StationState, by: str, action: OpenIncident) -> Iterable[UnitSt
     state.incident = accountability.new_incident(state, action)
     for unit in state.units.values():
         unit.trail.clear()
+        unit.trust = TrustTally()
         unit.inside_since_ns = None
         accountability.begin(state, unit, by)
     return state.units.values()

@@ -157,12 +157,13 @@ def assess(
 ) -> None:
     """How good an incident's positions were, in the terms of ISO/IEC 18305."""
     from base_station.app import folder as station  # noqa: PLC0415
+    from base_station.assessment.report import with_people  # noqa: PLC0415
     from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
 
     with ExitStack() as closing:
         past = station.look_back(data, incident, closing)
         live = past.records.tracks_of(past.incident)
-        report = past.hindsight.assess(past.incident, live)
+        report = with_people(past.hindsight.assess(past.incident, live), past.people)
     print_report(report)
     if json_file is not None:
         write_report(report, json_file)

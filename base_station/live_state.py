@@ -11,6 +11,7 @@ from typing import Literal
 
 import msgspec
 
+from base_station.assessment.tally import TrustTally
 from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
 from base_station.fusion.learnt_building import LearntBuilding
@@ -118,6 +119,7 @@ class UnitState(msgspec.Struct):
     unplaced_since_ns: int | None = None  # the fused position is lost
     trail: list[TrailStep] = msgspec.field(default_factory=list)
     plain_trail: list[TrailStep] | None = None  # as it would be without any pin; None: as it is
+    trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
     mayday_ns: int | None = None  # when the button was last pressed
     mayday_cancelled_ns: int | None = None
     fall_ns: int | None = None
@@ -343,6 +345,7 @@ class StationState(msgspec.Struct):
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
+    trust_ns: int = 0  # when lights were last looked at
     late: dict[str, Late] = msgspec.field(default_factory=dict)  # pinned units: to be solved again
     learnt_building: LearntBuilding = LearntBuilding()
     learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)

@@ -15,6 +15,7 @@ from base_station import accountability
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
+from base_station.assessment.trust import note_trust
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import (
@@ -144,6 +145,7 @@ class StationPipeline:
                 outputs.append(UnitTouched(unit.unit_id))
             outputs.extend(self._review(unit))
         outputs.extend(CommandTouched(one.command_id) for one in command_book.expire(self.state))
+        note_trust(self.state)
         late = take_due(self.state.late, self.state.t_ns)
         return outputs if late is None else [*outputs, *self._repin([late])]
 

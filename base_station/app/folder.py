@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from base_station.app.parts import incident_or_refuse, new_pipeline, project_whole_log
+from base_station.app.parts import new_pipeline, project_whole_log
+from base_station.assessment.wearers import wearers
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
 from base_station.db.models import Incident
@@ -23,7 +24,7 @@ from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.recordings.desk import RecordingDesk
 from shared.clock import SystemClock
-from shared.errors import StoreError, UserError
+from shared.errors import UserError
 from shared.mcap_log import recover_log
 
 _BY_COMMAND = "muster base forget"  # in the audit
@@ -36,6 +37,7 @@ class LookBack:
     hindsight: Hindsight
     records: Records
     incident: Incident
+    people: Mapping[str, Sequence[str]]  # who wore each unit
 
 
 def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
@@ -102,19 +104,13 @@ def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
     store = closing.enter_context(Store(folder.database))
     clock = SystemClock()
     records = Records(store, clock)
-    incident = incident_or_refuse(records, incident_id)
+    incident = records.require_incident(incident_id)
     archive = Archive(LogFeed(folder.log).records, Checkpoints(folder.checkpoints), new_pipeline)
     hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
-    return LookBack(hindsight, records, incident)
+    return LookBack(hindsight, records, incident, wearers(Roster(store, clock), incident))
 
 
 def open_accounts(data: Path, closing: ExitStack) -> Accounts:
     """The accounts of a folder's database, beside a running station or without one."""
-    database = DataFolder(data).database
-    if not database.exists():
-        raise StoreError(
-            f"there is no station's database in {data}; give the folder with --data, or start the "
-            "station there once"
-        )
-    store = closing.enter_context(Store(database))
+    store = closing.enter_context(Store(DataFolder(data).require_database()))
     return Accounts(store, SystemClock())

@@ -229,7 +229,7 @@ def _housekeeping(
         if side.leads:
             enrolled.update()
         if hindsight is not None:
-            hindsight.catch_up(records.incidents())
+            hindsight.catch_up(records.incidents(), records.tracks_of)
 
     return keep_house
 

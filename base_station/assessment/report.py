@@ -17,6 +17,7 @@ from base_station.assessment.figures import (
     floor_probability,
     stated_figures,
 )
+from base_station.assessment.tally import TrustTally
 from base_station.db.records import TrackSample
 from base_station.fusion.smoother.port import Verdict
 from base_station.live_state import StationState
@@ -42,17 +43,29 @@ class PinResidual(msgspec.Struct, frozen=True):
     floor_right: bool | None  # was the floor shown the pin's?
 
 
+class TrustReport(msgspec.Struct, frozen=True):
+    """For how long the light was which, in seconds, and why it was not green."""
+
+    green_s: float
+    amber_s: float
+    red_s: float
+    causes: tuple[tuple[str, float], ...]  # longest first
+
+
 class UnitReport(msgspec.Struct, frozen=True):
     unit_id: str
     seconds: float
     walked_m: float
     stated: Figures | None  # as the standard deviations promised
     against_smoothed: Figures | None  # what was shown, held against the smoothed trail
-    floor_probability: float | None
+    floor_probability: float | None  # as the stated heights promise it
+    floor_right: float | None  # part of the time, by what is known since
+    trust: TrustReport
     pin_residuals: tuple[PinResidual, ...]
     loop_closure_m: float | None  # by the unit's own path alone
     loop_closure_percent: float | None  # of the way walked until then
     reentry_jumps_m: tuple[float, ...]  # of what was shown, when fixes came back
+    people: tuple[str, ...] = ()  # who wore it; not kept, so that people can be forgotten
 
 
 class IncidentReport(msgspec.Struct, frozen=True):
@@ -109,6 +122,8 @@ def _unit(
         stated=stated_figures(live),
         against_smoothed=figures_of(errors_against(live, smoothed)),
         floor_probability=_floor_probability(state, live),
+        floor_right=_floor_right(live, smoothed),
+        trust=_trust(state, unit_id),
         pin_residuals=_pin_residuals(state, verdicts, unit_id, live),
         loop_closure_m=None if closure is None else round(closure[0], 2),
         loop_closure_percent=None if closure is None else round(closure[1], 2),
@@ -123,6 +138,38 @@ def _floor_probability(state: StationState, live: Sequence[TrackSample]) -> floa
     downs = sorted(storey.down_m for storey in state.storeys_at(middle.north_m, middle.east_m))
     heights = [b - a for a, b in pairwise(downs)]
     return floor_probability(live, min(heights)) if heights and min(heights) > 0.0 else None
+
+
+def _floor_right(live: Sequence[TrackSample], smoothed: Sequence[TrackSample]) -> float | None:
+    """How often the floor shown was the one that is known since."""
+    told = [one for one in live if one.floor is not None]
+    right = []
+    for one in told:
+        since = _at(smoothed, one.t_ns)
+        if since is not None and since.floor is not None:
+            right.append(since.floor == one.floor)
+    return round(sum(right) / len(right), 4) if right else None
+
+
+def _trust(state: StationState, unit_id: str) -> TrustReport:
+    unit = state.units.get(unit_id)
+    tally = TrustTally() if unit is None else unit.trust
+    causes = sorted(tally.causes.items(), key=lambda one: (-one[1], one[0]))
+    return TrustReport(
+        round(tally.green_s, 1),
+        round(tally.amber_s, 1),
+        round(tally.red_s, 1),
+        tuple((cause, round(lasted_s, 1)) for cause, lasted_s in causes),
+    )
+
+
+def with_people(report: IncidentReport, people: Mapping[str, Sequence[str]]) -> IncidentReport:
+    """``people``: who wore each unit."""
+    units = tuple(
+        msgspec.structs.replace(unit, people=tuple(people.get(unit.unit_id, ())))
+        for unit in report.units
+    )
+    return msgspec.structs.replace(report, units=units)
 
 
 def _pin_residuals(

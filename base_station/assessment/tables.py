@@ -14,6 +14,7 @@ from base_station.assessment.report import IncidentReport, UnitReport
 
 def print_report(report: IncidentReport) -> None:
     Console().print(_errors_table(report))
+    Console().print(_trust_table(report))
     Console().print(_checks_table(report))
 
 
@@ -26,11 +27,23 @@ def _errors_table(report: IncidentReport) -> Table:
     for heading in ("unit", "", "circular", "vertical", "spherical", "floor right"):
         table.add_column(heading, justify="left" if heading in {"unit", ""} else "right")
     for unit in report.units:
-        floor = "" if unit.floor_probability is None else f"{unit.floor_probability:.1%}"
-        table.add_row(unit.unit_id, "as stated", *_cells(unit.stated), floor)
-        table.add_row("", "against the smoothed trail", *_cells(unit.against_smoothed), "")
+        promised, right = _share(unit.floor_probability), _share(unit.floor_right)
+        table.add_row(_name(unit), "as stated", *_cells(unit.stated), promised)
+        table.add_row("", "against the smoothed trail", *_cells(unit.against_smoothed), right)
     table.add_row("all", "as stated", *_cells(report.stated), "")
     table.add_row("", "against the smoothed trail", *_cells(report.against_smoothed), "")
+    return table
+
+
+def _trust_table(report: IncidentReport) -> Table:
+    table = Table(title="The light beside the name: for how long, and why not green")
+    for heading in ("unit", "green", "amber", "red", "why"):
+        table.add_column(heading, justify="left" if heading in {"unit", "why"} else "right")
+    for unit in report.units:
+        trust = unit.trust
+        lights = (f"{seconds:.0f} s" for seconds in (trust.green_s, trust.amber_s, trust.red_s))
+        why = ", ".join(f"{cause} {seconds:.0f} s" for cause, seconds in trust.causes)
+        table.add_row(_name(unit), *lights, why)
     return table
 
 
@@ -46,7 +59,7 @@ def _checks_table(report: IncidentReport) -> Table:
         table.add_column(heading)
     for unit in report.units:
         table.add_row(
-            unit.unit_id,
+            _name(unit),
             f"{unit.walked_m:.0f} m",
             _closure(unit),
             ", ".join(f"{one:.1f} m" for one in unit.reentry_jumps_m),
@@ -57,6 +70,14 @@ def _checks_table(report: IncidentReport) -> Table:
             ),
         )
     return table
+
+
+def _name(unit: UnitReport) -> str:
+    return f"{', '.join(unit.people)} ({unit.unit_id})" if unit.people else unit.unit_id
+
+
+def _share(part: float | None) -> str:
+    return "" if part is None else f"{part:.1%}"
 
 
 def _closure(unit: UnitReport) -> str:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from typing import Literal
 
 import msgspec
 
+from base_station.assessment.tally import LONGEST_S
 from base_station.live_state import StationState, UnitState
+from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
 from shared.quality import Quality
 
@@ -24,6 +27,7 @@ _RADII_95 = math.sqrt(-2.0 * math.log(0.05))
 class Trust(msgspec.Struct, frozen=True):
     level: Level
     reason: str = ""  # for a person; empty: green
+    cause: str = ""  # the same without figures, to be counted
 
 
 _SURE = Trust("green")
@@ -31,43 +35,73 @@ _SURE = Trust("green")
 
 def trust_of(state: StationState, unit: UnitState) -> Trust:
     """The worst of what speaks against believing where the unit is shown."""
-    worst = _SURE
-    for doubt in _doubts(state, unit):
-        if doubt.level == "red":
-            return doubt
-        if worst is _SURE:
-            worst = doubt
-    return worst
+    return _worst(unit, _conflicts(state).get(unit.unit_id, 0))
 
 
-def _doubts(state: StationState, unit: UnitState) -> Iterator[Trust]:
+def note_trust(state: StationState) -> None:
+    """Time went by for the lights of all that an open incident has heard of."""
+    lasted_s = (state.t_ns - state.trust_ns) / NS_PER_S
+    state.trust_ns = state.t_ns
+    if state.incident is None or state.incident.closed_ns is not None or lasted_s > LONGEST_S:
+        return
+    conflicts = _conflicts(state)
+    for unit in state.units.values():
+        if unit.registered and (unit.fused is not None or unit.person is not None):
+            trust = _worst(unit, conflicts.get(unit.unit_id, 0))
+            unit.trust.note(trust.level, trust.cause, lasted_s)
+
+
+def _worst(unit: UnitState, conflicts: int) -> Trust:
+    doubts = list(_doubts(unit, conflicts))
+    for level in ("red", "amber"):
+        worst = next((doubt for doubt in doubts if doubt.level == level), None)
+        if worst is not None:
+            return worst
+    return Trust("green")
+
+
+def _conflicts(state: StationState) -> Counter[str]:
+    """How many pins contradict each unit's trail."""
+    return Counter(
+        unit_id
+        for pin_id, verdict in state.pin_verdicts.items()
+        if verdict.state == "conflict" and pin_id in state.pins
+        for unit_id in {state.pins[pin_id].unit_id, state.pins[pin_id].other_id}
+    )
+
+
+def _doubts(unit: UnitState, conflicts: int) -> Iterator[Trust]:
     if not unit.registered:
-        yield Trust("red", "not a registered unit: not believed")
+        yield Trust("red", "not a registered unit: not believed", "not a registered unit")
     fused = unit.fused
     if fused is None:
-        yield Trust("red", "no position yet")
+        yield Trust("red", "no position yet", "no position yet")
         return
     if unit.link in {"lost", "stale"}:
-        yield Trust("red" if unit.link == "lost" else "amber", "not heard: shown where it last was")
+        level: Level = "red" if unit.link == "lost" else "amber"
+        yield Trust(level, "not heard: shown where it last was", "not heard")
     if fused.quality is Quality.LOST:
-        yield Trust("red", fused.quality_reason)
+        yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
     within_m = _RADII_95 * math.sqrt(_largest_var_m2(fused))
     if within_m > AMBER_M:
-        yield Trust("red" if within_m > RED_M else "amber", f"only known to {within_m:.0f} m")
-    conflicts = sum(
-        state.pin_verdicts[pin.pin_id].state == "conflict"
-        for pin in state.pins.values()
-        if unit.unit_id in (pin.unit_id, pin.other_id) and pin.pin_id in state.pin_verdicts
-    )
+        level = "red" if within_m > RED_M else "amber"
+        yield Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
     if conflicts:
         which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
-        yield Trust("amber", f"{which} the trail")
+        yield Trust("amber", f"{which} the trail", "a pin contradicts the trail")
     if fused.quality is Quality.DEGRADED:
-        yield Trust("amber", fused.quality_reason)
+        yield Trust("amber", fused.quality_reason, _cause_of(fused.quality_reason))
     if fused.floor_probability is not None and fused.floor_probability < AMBER_FLOOR:
-        yield Trust("amber", f"the floor is only {fused.floor_probability:.0%} sure")
+        text = f"the floor is only {fused.floor_probability:.0%} sure"
+        yield Trust("amber", text, "floor not sure")
     if fused.std_down_m > AMBER_DOWN_M:
-        yield Trust("amber", f"height only known to {2.0 * fused.std_down_m:.0f} m")
+        text = f"height only known to {2.0 * fused.std_down_m:.0f} m"
+        yield Trust("amber", text, "height only roughly known")
+
+
+def _cause_of(reason: str) -> str:
+    """A fuser may say how far; that is one cause."""
+    return "place only roughly known" if reason.startswith("within ") else reason
 
 
 def _largest_var_m2(fused: FusedPosition) -> float:

@@ -12,12 +12,14 @@ from base_station.db.models import (
     AlarmLife,
     Assignment,
     AuditEntry,
+    Incident,
+    LookedBack,
     Person,
     SmoothedPoint,
     TrackPoint,
     UnitStart,
 )
-from base_station.forgetting.erasure import Erasure, Wearing
+from base_station.forgetting.erasure import FOREVER_NS, Erasure, Wearing
 from base_station.forgetting.redaction import name_pattern
 from base_station.live_state import FORGOTTEN
 
@@ -31,6 +33,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
         session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
         session.execute(delete(SmoothedPoint).where(_within(SmoothedPoint, one)))
         session.execute(delete(UnitStart).where(_within(UnitStart, one)))
+    _looked_back(session, erasure)
     _alarms(session, erasure)
     _audit(session, erasure)
     if erasure.person_id:
@@ -40,6 +43,17 @@ def forget_in(session: Session, erasure: Erasure) -> None:
         session.execute(delete(Person).where(Person.person_id == erasure.person_id))
     else:
         _cut_out(session, erasure)
+
+
+def _looked_back(session: Session, erasure: Erasure) -> None:
+    """What was worked out of incidents in which anybody is forgotten; it can be again."""
+    spans = [(one.from_ns, one.until_ns) for one in erasure.wearings]
+    for incident in session.scalars(select(Incident)).all():
+        until_ns = incident.closed_ns or FOREVER_NS
+        if any(begin < until_ns and end > incident.opened_ns for begin, end in spans):
+            session.execute(
+                delete(LookedBack).where(LookedBack.incident_id == incident.incident_id)
+            )
 
 
 def known_names(session: Session, person_id: str) -> set[str]:

@@ -242,6 +242,16 @@ class SmoothedPoint(Base):
     quality: Mapped[str]
 
 
+class LookedBack(Base):
+    """What was worked out once of a closed incident; msgpack of ``base_station.past``."""
+
+    __tablename__ = "looked_back"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    raw_tracks: Mapped[bytes] = mapped_column(LargeBinary)  # by unit, compressed
+    report: Mapped[bytes | None] = mapped_column(LargeBinary)  # None: not assessed yet
+
+
 class LogSegment(Base):
     """One file of the log."""
 
@@ -267,5 +277,6 @@ PROJECTIONS: tuple[type[Base], ...] = (
     UnitStart,
     SmoothedIncident,
     SmoothedPoint,
+    LookedBack,
     LogSegment,
 )

@@ -1,13 +1,17 @@
-"""Smoothed trails of closed incidents, beside the tracks that were shown at the time."""
+"""What is known of closed incidents afterwards, beside the tracks that were shown at the time:
+smoothed trails, the units' own, and an assessment.
+"""
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping, Sequence
 
+import msgspec
 from sqlalchemy import delete, select
 from sqlalchemy.dialects.sqlite import insert
 
-from base_station.db.models import SmoothedIncident, SmoothedPoint
+from base_station.db.models import LookedBack, SmoothedIncident, SmoothedPoint
 from base_station.db.records import TrackSample
 from base_station.db.store import Store
 
@@ -26,8 +30,10 @@ class SmoothedTracks:
         smoother: str,
         made_ns: int,
         tracks: Mapping[str, Sequence[TrackSample]],
+        raw: Mapping[str, Sequence[TrackSample]],
     ) -> None:
-        """In the place of what was made before."""
+        """In the place of what was made before, the assessment included."""
+        raw_tracks = zlib.compress(msgspec.msgpack.encode(raw))
         rows = [
             {"incident_id": incident_id, "unit_id": unit_id}
             | {name: getattr(sample, name) for name in TrackSample.__struct_fields__}
@@ -35,15 +41,38 @@ class SmoothedTracks:
             for sample in track
         ]
         with self._store.write() as session:
-            for table in (SmoothedPoint, SmoothedIncident):
+            for table in (SmoothedPoint, SmoothedIncident, LookedBack):
                 session.execute(delete(table).where(table.incident_id == incident_id))
             session.execute(
                 insert(SmoothedIncident).values(
                     incident_id=incident_id, smoother=smoother, made_ns=made_ns
                 )
             )
+            session.execute(
+                insert(LookedBack).values(incident_id=incident_id, raw_tracks=raw_tracks)
+            )
             if rows:
                 session.execute(insert(SmoothedPoint), rows)
+
+    def put_report(self, incident_id: str, report: bytes) -> None:
+        """Of trails that are kept; without them it is not."""
+        with self._store.write() as session:
+            kept = session.get(LookedBack, incident_id)
+            if kept is not None:
+                kept.report = report
+
+    def report(self, incident_id: str) -> bytes | None:
+        with self._store.read() as session:
+            kept = session.get(LookedBack, incident_id)
+            return None if kept is None else kept.report
+
+    def raw(self, incident_id: str) -> dict[str, list[TrackSample]] | None:
+        with self._store.read() as session:
+            kept = session.get(LookedBack, incident_id)
+            packed = None if kept is None else kept.raw_tracks
+        if packed is None:
+            return None
+        return msgspec.msgpack.decode(zlib.decompress(packed), type=dict[str, list[TrackSample]])
 
     def has(self, incident_id: str) -> bool:
         with self._store.read() as session:

@@ -11,6 +11,7 @@ import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
 from base_station.assessment.report import IncidentReport, assess
@@ -72,21 +73,23 @@ class Hindsight:
 
     def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
         """Make it again from the log; ``on_progress`` hears the fraction done."""
-        known = self.known(incident, on_progress)
-        tracks = {
-            unit_id: _samples(incident, known.state, known.state.paths[unit_id].arrays(), path)
-            for unit_id, path in known.solution.paths.items()
-        }
+        return self._keep(incident, self.known(incident, on_progress))
+
+    def _keep(self, incident: Incident, known: Known) -> Smoothed:
         made = Smoothed(
-            incident.incident_id, self._smoother.name, self._clock.utc_ns(), _without_empty(tracks)
+            incident.incident_id,
+            self._smoother.name,
+            self._clock.utc_ns(),
+            _without_empty(_smoothed_tracks(incident, known)),
         )
         if incident.closed_ns is not None:
-            self._store.put(made.incident_id, made.smoother, made.made_ns, made.tracks)
+            raw = _without_empty(_raw_tracks(incident, known))
+            self._store.put(made.incident_id, made.smoother, made.made_ns, made.tracks, raw)
         return made
 
-    def catch_up(self, incidents: Iterable[Incident]) -> None:
-        """Smooth an incident that closed lately and was not smoothed yet, so that its trails are
-        there when somebody asks.
+    def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
+        """Smooth and assess an incident that closed lately and was not yet, so that it is there
+        when somebody asks; ``shown`` gives what was.
         """
         now_ns = self._clock.utc_ns()
         for incident in incidents:
@@ -95,40 +98,47 @@ class Hindsight:
             if not lately or incident_id in self._given_up or self._store.has(incident_id):
                 continue
             try:
-                self.smooth(incident)
+                self.assess(incident, shown(incident))
             except Exception:  # noqa: BLE001  # the station goes on without these trails
                 _log.exception("the trails of %s cannot be smoothed", incident_id)
                 self._given_up.add(incident_id)
             return
 
     def raw(self, incident: Incident) -> Tracks:
-        """Each unit's own path, placed where each of its frames began and never corrected."""
+        """Each unit's own path, placed where each of its frames began and never corrected; as it
+        was made when the incident had closed.
+        """
+        kept = self._store.raw(incident.incident_id) if incident.closed_ns is not None else None
+        if kept is not None:
+            return kept
         known = self.known(incident)
-        return _without_empty(
-            {
-                unit_id: _raw(incident, known.state.paths[unit_id].arrays(), path)
-                for unit_id, path in known.solution.paths.items()
-            }
-        )
+        if incident.closed_ns is not None:
+            self._keep(incident, known)
+        return _without_empty(_raw_tracks(incident, known))
 
     def assess(self, incident: Incident, live: Tracks) -> IncidentReport:
-        """How good the positions were; ``live`` is what was shown, by unit."""
+        """How good the positions were, as it was made when the incident had closed; ``live`` is
+        what was shown, by unit.
+        """
+        kept = self._store.report(incident.incident_id) if incident.closed_ns is not None else None
+        report = None if kept is None else _read_report(kept)
+        if report is not None:
+            return report
         known = self.known(incident)
-        points = {one: known.state.paths[one].arrays() for one in known.solution.paths}
-        paths = known.solution.paths
-        return assess(
+        report = assess(
             incident.incident_id,
             self._smoother.name,
             self._clock.utc_ns() // 1_000_000,
             known.state,
             known.solution.verdicts,
             live,
-            {
-                one: _samples(incident, known.state, points[one], path)
-                for one, path in paths.items()
-            },
-            {one: _raw(incident, points[one], path) for one, path in paths.items()},
+            _smoothed_tracks(incident, known),
+            _raw_tracks(incident, known),
         )
+        if incident.closed_ns is not None:
+            self._keep(incident, known)
+            self._store.put_report(incident.incident_id, msgspec.msgpack.encode(report))
+        return report
 
     def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> Known:
         with self._working:
@@ -146,6 +156,28 @@ class Hindsight:
             span_ns = max(until_ns - begin_ns, 1)
             on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
         return playback.pipeline.state
+
+
+def _read_report(kept: bytes) -> IncidentReport | None:
+    """None where another version of the program wrote it: it is worked out again."""
+    try:
+        return msgspec.msgpack.decode(kept, type=IncidentReport)
+    except msgspec.MsgspecError:
+        return None
+
+
+def _smoothed_tracks(incident: Incident, known: Known) -> Tracks:
+    return {
+        unit_id: _samples(incident, known.state, known.state.paths[unit_id].arrays(), path)
+        for unit_id, path in known.solution.paths.items()
+    }
+
+
+def _raw_tracks(incident: Incident, known: Known) -> Tracks:
+    return {
+        unit_id: _raw(incident, known.state.paths[unit_id].arrays(), path)
+        for unit_id, path in known.solution.paths.items()
+    }
 
 
 def _samples(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from base_station.assessment.report import with_people
 from base_station.db.models import Incident
 from base_station.db.projecting import project_into
 from base_station.db.records import Records, TrackSample
@@ -96,14 +97,15 @@ def test_what_was_made_is_not_made_again(past: Past) -> None:
 def test_what_closed_lately_is_smoothed_without_being_asked(
     past: Past, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    past.kept.put("i1", "gone", 0, {})
-    past.hindsight.catch_up(past.records.incidents())
+    past.kept.put("i1", "gone", 0, {}, {})
+    past.hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
     assert past.kept.of("i1") == ("gone", 0, {})
     monkeypatch.setattr(past.kept, "has", lambda _: False)
-    past.hindsight.catch_up(past.records.incidents())
+    past.hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
     made = past.kept.of("i1")
     assert made is not None
     assert made[0] == SMOOTHERS[0].name
+    assert past.kept.report("i1") is not None
 
 
 def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
@@ -111,6 +113,25 @@ def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
     smoothed = past.hindsight.smoothed(past.incident).tracks["FF-01"]
     assert (raw[0].north_m, raw[0].east_m) == (smoothed[0].north_m, smoothed[0].east_m)
     assert past.mean_off_m(raw) > 2.0 * past.mean_off_m(smoothed)
+
+
+def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(past: Past) -> None:
+    shown = past.records.tracks_of(past.incident)
+    report, raw = past.hindsight.assess(past.incident, shown), past.hindsight.raw(past.incident)
+    assert past.hindsight.assess(past.incident, {}) == report
+    assert past.kept.raw("i1") == raw
+    past.hindsight.smooth(past.incident)
+    assert past.kept.report("i1") is None
+    past.hindsight.assess(past.incident, shown)
+    past.kept.put_report("i1", b"of another version")
+    assert past.hindsight.assess(past.incident, shown).units == report.units
+
+
+def test_the_assessment_says_how_long_the_lights_were_which(past: Past) -> None:
+    report = past.hindsight.assess(past.incident, past.records.tracks_of(past.incident))
+    named = with_people(report, {"FF-01": ["Mia"]})
+    assert [unit.people for unit in named.units] == [("Mia",), ()]
+    assert all(0.0 <= (unit.floor_right or 0.0) <= 1.0 for unit in report.units)
 
 
 def test_an_exporter_takes_the_smoothed_trail(past: Past) -> None:

@@ -11,6 +11,8 @@ from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import hindsight_of
 from base_station.api.security import Viewer
 from base_station.api.services import Station
+from base_station.assessment.report import with_people
+from base_station.assessment.wearers import wearers
 
 router = APIRouter(tags=["incidents"])
 
@@ -36,13 +38,25 @@ class PinResidual(BaseModel):
     floor_right: bool | None
 
 
+class TrustSeconds(BaseModel):
+    """For how long the light was which, and why it was not green."""
+
+    green_s: float
+    amber_s: float
+    red_s: float
+    causes: list[tuple[str, float]]
+
+
 class UnitAssessment(BaseModel):
     unit_id: str
+    people: list[str]
     seconds: float
     walked_m: float
     stated: Figures | None
     against_smoothed: Figures | None
     floor_probability: float | None
+    floor_right: float | None
+    trust: TrustSeconds
     pin_residuals: list[PinResidual]
     loop_closure_m: float | None
     loop_closure_percent: float | None
@@ -64,4 +78,5 @@ def assess_incident(incident_id: Id, station: Station, _: Viewer) -> Response:
     incident = incident_or_404(station, incident_id)
     live = station.records.tracks_of(incident)
     report = hindsight_of(station).assess(incident, live)
+    report = with_people(report, wearers(station.roster, incident))
     return Response(msgspec.json.encode(report), media_type="application/json")

@@ -20,13 +20,24 @@ export interface PinResidual {
   floor_right: boolean | null;
 }
 
+/** For how long the light beside the name was which, and why it was not green. */
+export interface TrustSeconds {
+  green_s: number;
+  amber_s: number;
+  red_s: number;
+  causes: [string, number][]; // longest first
+}
+
 export interface UnitAssessment {
   unit_id: string;
+  people: string[]; // who wore it
   seconds: number;
   walked_m: number;
   stated: Figures | null; // as was promised at the time
   against_smoothed: Figures | null; // what was shown, against what is known since
-  floor_probability: number | null;
+  floor_probability: number | null; // as was promised at the time
+  floor_right: number | null; // part of the time, by what is known since
+  trust: TrustSeconds;
   pin_residuals: PinResidual[];
   loop_closure_m: number | null;
   loop_closure_percent: number | null; // of the way walked
@@ -65,6 +76,18 @@ export function tooSure(stated: Figures | null, known: Figures | null): boolean 
 
 const MUCH_MORE = 1.5;
 const WORTH_SAYING_M = 1;
+
+/** Who wore it, as people are called; the unit where nobody is known. */
+export function wearerOf(unit: UnitAssessment): string {
+  return unit.people.length === 0 ? unit.unit_id : `${unit.people.join(", ")} (${unit.unit_id})`;
+}
+
+/** Parts of the time in which the light was green, amber and red; null where none was seen. */
+export function lightParts(trust: TrustSeconds): { green: number; amber: number; red: number } | null {
+  const all = trust.green_s + trust.amber_s + trust.red_s;
+  if (all <= 0) return null;
+  return { green: trust.green_s / all, amber: trust.amber_s / all, red: trust.red_s / all };
+}
 
 /** How far the unit's own path missed where its wearer came back to the beginning. */
 export function closureOf(unit: UnitAssessment): string {

@@ -12,11 +12,14 @@ const FIGURES: assessment.Figures = {
 
 const UNIT: assessment.UnitAssessment = {
   unit_id: "FF-07",
+  people: [],
   seconds: 60,
   walked_m: 40,
   stated: FIGURES,
   against_smoothed: FIGURES,
   floor_probability: null,
+  floor_right: null,
+  trust: { green_s: 30, amber_s: 20, red_s: 10, causes: [["not heard", 10]] },
   pin_residuals: [],
   loop_closure_m: null,
   loop_closure_percent: null,
@@ -34,6 +37,16 @@ const PIN: assessment.PinResidual = {
 };
 
 describe("the assessment of an incident", () => {
+  it("calls people by their names, and a unit that nobody is known to have worn by its own", () => {
+    expect(assessment.wearerOf(UNIT)).toBe("FF-07");
+    expect(assessment.wearerOf({ ...UNIT, people: ["Mia", "Tom"] })).toBe("Mia, Tom (FF-07)");
+  });
+
+  it("says how long the light was which, as parts of the time", () => {
+    expect(assessment.lightParts(UNIT.trust)).toEqual({ green: 0.5, amber: 1 / 3, red: 1 / 6 });
+    expect(assessment.lightParts({ ...UNIT.trust, green_s: 0, amber_s: 0, red_s: 0 })).toBeNull();
+  });
+
   it("says the errors under their headings, and that there are none", () => {
     expect(assessment.cells(FIGURES)).toEqual(["1.0\u00a0m", "2.3\u00a0m", "0.8\u00a0m", "2.5\u00a0m"]);
     expect(new Set(assessment.cells(null))).toEqual(new Set([assessment.NOTHING]));

@@ -1,21 +1,22 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { attempt, picture } from "../sessions";
+import { attempt } from "../sessions";
 import { assessed, openDialog } from "../view";
 import * as api from "../api";
 import {
   cells,
   closureOf,
   jumpsOf,
+  lightParts,
   NOTHING,
   pinWords,
   TERMS,
   tooSure,
+  wearerOf,
   type Assessment,
   type Figures,
-  type UnitAssessment,
+  type TrustSeconds,
 } from "../assessment";
-import { displayName } from "../live/urgency";
 import { duration, percent } from "../words";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
@@ -51,6 +52,7 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
   if (report.units.length === 0) return <p>Nobody’s position was shown in this incident.</p>;
   return (
     <>
+      <Lights report={report} />
       <Errors report={report} />
       <dl class="terms">
         {TERMS.map(([term, words]) => (
@@ -73,12 +75,12 @@ function Errors({ report }: { report: Assessment }) {
       {report.units.map((unit) => (
         <ErrorRows
           key={unit.unit_id}
-          name={nameOf(unit, report)}
+          name={wearerOf(unit)}
           figures={unit}
-          floor={unit.floor_probability === null ? NOTHING : percent(unit.floor_probability)}
+          floors={[unit.floor_probability, unit.floor_right]}
         />
       ))}
-      <ErrorRows name="Everybody" figures={report} floor={NOTHING} />
+      <ErrorRows name="Everybody" figures={report} floors={[null, null]} />
     </table>
   );
 }
@@ -86,10 +88,10 @@ function Errors({ report }: { report: Assessment }) {
 interface ErrorRowsProps {
   name: string;
   figures: { stated: Figures | null; against_smoothed: Figures | null };
-  floor: string;
+  floors: [number | null, number | null]; // promised, and as is known since
 }
 
-function ErrorRows({ name, figures, floor }: ErrorRowsProps) {
+function ErrorRows({ name, figures, floors }: ErrorRowsProps) {
   const { stated, against_smoothed: known } = figures;
   return (
     <tbody>
@@ -99,7 +101,7 @@ function ErrorRows({ name, figures, floor }: ErrorRowsProps) {
         </th>
         <th scope="row">as promised then</th>
         <Cells of={stated} />
-        <td>{floor}</td>
+        <td>{share(floors[0])}</td>
       </tr>
       <tr>
         <th scope="row">
@@ -107,10 +109,62 @@ function ErrorRows({ name, figures, floor }: ErrorRowsProps) {
           {tooSure(stated, known) && <strong class="warned"> more than promised</strong>}
         </th>
         <Cells of={known} />
-        <td />
+        <td>{share(floors[1])}</td>
       </tr>
     </tbody>
   );
+}
+
+function share(part: number | null): string {
+  return part === null ? NOTHING : percent(part);
+}
+
+/** How far the station itself trusted each place, as it said at the time. */
+function Lights({ report }: { report: Assessment }) {
+  return (
+    <table class="assessment">
+      <caption>How far the places could be trusted, by the light beside the name</caption>
+      <Columns names={["Person", "Green, amber, red", "For how long", "Why not green"]} />
+      <tbody>
+        {report.units.map((unit) => (
+          <tr key={unit.unit_id}>
+            <th scope="row">{wearerOf(unit)}</th>
+            <td>
+              <LightBar trust={unit.trust} />
+            </td>
+            <td>{lightWords(unit.trust)}</td>
+            <td class="detail">
+              {unit.trust.causes
+                .map(([cause, seconds]) => `${cause} ${duration(1000 * seconds)}`)
+                .join("; ") || NOTHING}
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function LightBar({ trust }: { trust: TrustSeconds }) {
+  const parts = lightParts(trust);
+  if (parts === null) return <>{NOTHING}</>;
+  return (
+    <span class="light-bar" aria-hidden="true">
+      {(["green", "amber", "red"] as const).map((level) => (
+        <span key={level} class={level} style={{ flexGrow: parts[level] }} />
+      ))}
+    </span>
+  );
+}
+
+function lightWords(trust: TrustSeconds): string {
+  const said = [
+    [trust.green_s, "green"],
+    [trust.amber_s, "amber"],
+    [trust.red_s, "red"],
+  ] as const;
+  const words = said.filter(([seconds]) => seconds > 0);
+  return words.map(([seconds, level]) => `${duration(1000 * seconds)} ${level}`).join(", ") || NOTHING;
 }
 
 function Cells({ of }: { of: Figures | null }) {
@@ -140,7 +194,7 @@ function Checks({ report }: { report: Assessment }) {
       <tbody>
         {report.units.map((unit) => (
           <tr key={unit.unit_id}>
-            <th scope="row">{nameOf(unit, report)}</th>
+            <th scope="row">{wearerOf(unit)}</th>
             <td>{duration(1000 * unit.seconds)}</td>
             <td>{Math.round(unit.walked_m)} m</td>
             <td>{closureOf(unit)}</td>
@@ -151,11 +205,4 @@ function Checks({ report }: { report: Assessment }) {
       </tbody>
     </table>
   );
-}
-
-/** Who wears the unit now is known; who wore it in an incident of the past is not. */
-function nameOf({ unit_id }: UnitAssessment, { incident_id }: Assessment): string {
-  const shown = picture.value;
-  const unit = shown?.incident.value?.incident_id === incident_id ? shown.unit(unit_id)?.value : null;
-  return unit?.person ? `${displayName(unit)} (${unit_id})` : unit_id;
 }
