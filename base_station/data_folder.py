@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from base_station.recorder import LOG_FOLDER
-from shared.errors import LogError
+from shared.errors import LogError, StoreError
 from shared.folder_lock import FolderLock
 
 
@@ -23,6 +23,15 @@ class DataFolder:
         """LogError where there is nothing to read."""
         if not self.log.is_dir():
             raise LogError(f"there is no station's log in {self.path}; give the folder with --data")
+
+    def require_database(self) -> Path:
+        """StoreError where no station has ever run here."""
+        if not self.database.exists():
+            raise StoreError(
+                f"there is no station's database in {self.path}; give the folder with --data, or "
+                "start the station there once"
+            )
+        return self.database
 
     def lock(self) -> FolderLock:
         """To change what is in it; DataFolderInUseError while a station works on it."""

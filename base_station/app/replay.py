@@ -14,7 +14,6 @@ from base_station.api.services import Services
 from base_station.app.parts import (
     Announce,
     announce_first_login,
-    incident_or_refuse,
     new_pipeline,
     project_whole_log,
     replay_starter,
@@ -56,7 +55,7 @@ def run_replay_station(
         if not records.incidents():
             announce("the folder has no database; it is made from the log for this replay")
             project_whole_log(store, folder.log, lambda _: None)
-        incident = incident_or_refuse(records, incident_id)
+        incident = records.require_incident(incident_id)
         announce_first_login(accounts, scratch / "first-login.txt", announce)
 
         saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"

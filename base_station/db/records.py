@@ -22,6 +22,7 @@ from base_station.db.models import (
 )
 from base_station.db.store import Store
 from shared.clock import Clock
+from shared.errors import UserError
 
 FOREVER_NS = 2**63 - 1
 
@@ -68,6 +69,14 @@ class Records:
     def incident(self, incident_id: str) -> Incident | None:
         with self._store.read() as session:
             return session.get(Incident, incident_id)
+
+    def require_incident(self, incident_id: str) -> Incident:
+        """Raises UserError, which names those that are known."""
+        incident = self.incident(incident_id)
+        if incident is None:
+            known = ", ".join(f"{one.incident_id} ({one.name})" for one in self.incidents())
+            raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+        return incident
 
     # ---- tracks and alarms
 

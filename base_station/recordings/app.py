@@ -17,7 +17,7 @@ from base_station.recordings.fetch import Fetch, FetchState, Wanted, ask_over
 from base_station.router.router import station_endpoint
 from shared.bus_zenoh import ZenohBus
 from shared.clock import SystemClock
-from shared.errors import StoreError, UserError
+from shared.errors import UserError
 
 Show = Callable[[Fetch], None]
 _REST_S = 0.5  # when the unit does not answer
@@ -28,10 +28,7 @@ def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
     clock = SystemClock()
     with ExitStack() as closing:
         records = Records(_store(config, closing), clock)
-        incident = records.incident(incident_id)
-        if incident is None:
-            known = ", ".join(f"{one.incident_id} ({one.name})" for one in records.incidents())
-            raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+        incident = records.require_incident(incident_id)
         return incident.opened_ns, incident.closed_ns or clock.utc_ns()
 
 
@@ -65,9 +62,4 @@ def pull(config: StationConfig, wanted: Wanted, show: Show) -> Path:
 
 
 def _store(config: StationConfig, closing: ExitStack) -> Store:
-    database = DataFolder(config.data).database
-    if not database.exists():
-        raise StoreError(
-            f"there is no station's database in {config.data}; give the folder with --data"
-        )
-    return closing.enter_context(Store(database))
+    return closing.enter_context(Store(DataFolder(config.data).require_database()))
