@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from statistics import median
 
 import msgspec
-import numpy as np
 
 from base_station.site.levels import Height, levels_of, number_levels
 from base_station.site.storeys import Storey
@@ -26,6 +26,7 @@ APART_M = 25.0  # buildings
 GROUND_NEAR_M = 60.0  # of a building: that ground tells of its ground floor
 GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope
 MOST_LANDINGS = 300  # of a building, and on the ground
+ROOM = 30  # of them go at once
 LEARNT_SHARE = 16  # one new one of so many is enough to work the storeys out anew
 SAME_PLACE_M = 3.0  # of the same unit: tells nothing new
 SAME_HEIGHT_M = 0.25
@@ -119,6 +120,7 @@ class LearntFloors(msgspec.Struct):
     walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
     said: tuple[FloorSaid, ...] = ()
     open: tuple[Storey, ...] = ()  # where nobody has been in any building
+    ground_down_m: float = 0.0
     unlearnt: int = 0  # landings on the ground since all storeys were worked out
 
     def follow(self, position: Position, unit_id: str) -> bool:
@@ -133,7 +135,7 @@ class LearntFloors(msgspec.Struct):
         tells nothing.
         """
         walk = self.walks[landing.unit_id]
-        apart_m = abs(landing.down_m - self._ground_of(self.ground).down_m)
+        apart_m = abs(landing.down_m - self.ground_down_m)
         if (began_on_ground and not walk.left_ground) or (is_outside and apart_m < BEGAN_M):
             self.unlearnt += _keep(self.ground, landing)
             if _is_much(self.unlearnt, self.ground):
@@ -205,7 +207,9 @@ class LearntFloors(msgspec.Struct):
 
     def _learn_all(self) -> None:
         self.unlearnt = 0
-        self.open = number_levels((), self._ground_of(self.ground)) if self.ground else ()
+        ground = self._ground_of(self.ground)
+        self.ground_down_m = ground.down_m
+        self.open = number_levels((), ground) if self.ground else ()
         for building in self.buildings:
             self._learn(building)
 
@@ -227,7 +231,7 @@ class LearntFloors(msgspec.Struct):
         """Where nobody was seen outside or beginning, the frame's heights begin on the ground."""
         if not landings:
             return Height(0.0, GROUND_STD_M)
-        return Height(float(np.median([one.down_m for one in landings])), GROUND_STD_M)
+        return Height(median(one.down_m for one in landings), GROUND_STD_M)
 
 
 def _is_much(unlearnt: int, landings: Sequence[Landing]) -> bool:
@@ -252,12 +256,16 @@ def _keep(landings: list[Landing], landing: Landing) -> bool:
             return True
     landings.append(landing)
     if len(landings) > MOST_LANDINGS:
-        del landings[_oldest_of_most(landings)]
+        _make_room(landings)
     return True
 
 
-def _oldest_of_most(landings: Sequence[Landing]) -> int:
-    """At the height at which there are most, the oldest one."""
+def _make_room(landings: list[Landing]) -> None:
+    """Again and again, at the height at which there are most, the oldest one goes."""
     heights = [round(one.down_m) for one in landings]
-    fullest = max((count, height) for height, count in Counter(heights).items())[1]
-    return heights.index(fullest)
+    counts = Counter(heights)
+    for _ in range(ROOM):
+        fullest = max(counts, key=lambda height: (counts[height], height))
+        row = heights.index(fullest)
+        del landings[row], heights[row]
+        counts[fullest] -= 1
