@@ -108,8 +108,8 @@ def _moved_before_m(rows: TrackBatch, t_ns: int) -> float:
 def _says_so(rows: TrackBatch, score: Score) -> bool:
     if np.mean(rows.quality != Quality.GOOD) >= FLAGGED_SHARE:
         return True
-    if score.coverage_95 is not None:
-        return score.coverage_95 >= HELD_SHARE
+    if score.coverage_95_from_start is not None:
+        return score.coverage_95_from_start >= HELD_SHARE
     ends = rows.position_n_m[[0, -1]]
     nees = horizontal_nees(ends[1:], ends[:1], rows.position_cov_m2[-1:])
     return bool(nees[0] <= CHI2_95_2DOF)

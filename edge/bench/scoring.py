@@ -16,6 +16,7 @@ from edge.samples import Floats
 from edge.sources.recording import RecordedTruth
 from edge.tracker.port import TrackBatch
 
+_KNOWN_M = 0.02  # to which the truth is
 CHI2_95_2DOF = 5.991464547107979  # the 95 % quantile of chi-square with two degrees of freedom
 
 
@@ -32,7 +33,7 @@ class Score:
     per_cent_of_distance: float | None  # ATE, or the closure of a closed loop, by distance
     vertical_rms_m: float | None  # after fitting the mean height
     coverage_95: float | None  # share of reference points in the stated 95 % ellipse, fitted
-    coverage_95_from_start: float | None  # the same with the first point held; yaw fitted or known
+    coverage_95_from_start: float | None  # the same, start held, turned by the first heading only
     mean_nees: float | None  # of the fitted horizontal error; 2 is honest
 
 
@@ -85,8 +86,10 @@ def _against_truth(
     fitted_m, turned_m2 = fit_yaw(estimate_n_m, covariance_m2, truth.position_n_m)
     ate_m = rms_distance(fitted_m, truth.position_n_m)
     nees = horizontal_nees(fitted_m, truth.position_n_m, turned_m2)
-    held_m, held_m2 = (estimate_n_m, covariance_m2) if heading_known else (fitted_m, turned_m2)
-    held_m = held_m + (truth.position_n_m[0] - held_m[0])
+    held_m, held_m2 = estimate_n_m.copy(), covariance_m2
+    held_m[:, :2] += truth.position_n_m[0, :2] - held_m[0, :2]
+    if not heading_known:
+        held_m, held_m2 = turn_about_start(held_m, covariance_m2, truth.position_n_m)
     nees_from_start = horizontal_nees(held_m[1:], truth.position_n_m[1:], held_m2[1:])
     return {
         "ate_m": ate_m,
@@ -118,12 +121,32 @@ def fit_yaw(
     estimate = estimate_n_m[:, :2] - estimate_n_m[:, :2].mean(axis=0)
     truth = truth_n_m[:, :2] - truth_n_m[:, :2].mean(axis=0)
     sine = np.sum(estimate[:, 0] * truth[:, 1] - estimate[:, 1] * truth[:, 0])
-    yaw_rad = np.arctan2(sine, np.sum(estimate * truth))
+    yaw_rad = float(np.arctan2(sine, np.sum(estimate * truth)))
+    fitted, turned_m2 = _turned(estimate_n_m, covariance_m2, yaw_rad)
+    fitted[:, :2] += truth_n_m[:, :2].mean(axis=0) - fitted[:, :2].mean(axis=0)
+    return fitted, turned_m2
+
+
+def turn_about_start(
+    estimate_n_m: Floats, covariance_m2: Floats, truth_n_m: Floats
+) -> tuple[Floats, Floats]:
+    """Return ``estimate_n_m`` turned about its first point by the walk's first heading.
+
+    That is what the frame leaves open.  Every point tells of it as far as it is known, so what the
+    heading drifts by later is not spread over the beginning.
+    """
+    away, true = estimate_n_m[:, :2] - estimate_n_m[0, :2], truth_n_m[:, :2] - truth_n_m[0, :2]
+    weight = 1.0 / (np.trace(covariance_m2[:, :2, :2], axis1=1, axis2=2) + _KNOWN_M**2)
+    sine = np.sum(weight * (away[:, 0] * true[:, 1] - away[:, 1] * true[:, 0]))
+    yaw_rad = float(np.arctan2(sine, np.sum(weight[:, np.newaxis] * away * true)))
+    turned_m, turned_m2 = _turned(estimate_n_m - estimate_n_m[0], covariance_m2, yaw_rad)
+    return turned_m + estimate_n_m[0], turned_m2
+
+
+def _turned(position_n_m: Floats, covariance_m2: Floats, yaw_rad: float) -> tuple[Floats, Floats]:
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    fitted = estimate_n_m @ turn.T
-    fitted[:, :2] += truth_n_m[:, :2].mean(axis=0) - fitted[:, :2].mean(axis=0)
-    return fitted, turn @ covariance_m2 @ turn.T
+    return position_n_m @ turn.T, turn @ covariance_m2 @ turn.T
 
 
 def rms_distance(estimate_n_m: Floats, truth_n_m: Floats) -> float:

@@ -16,6 +16,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from edge.bench.cross_validation import cross_validate, left_out_table
+from edge.bench.honesty import honesty_table, measure_honesty
 from edge.bench.perturbed import perturbed_table, score_perturbed
 from edge.bench.scoring import Score, score_track
 from edge.bench.simulated import score_simulated, simulated_walks
@@ -75,6 +76,10 @@ def bench_track(
         bool,
         typer.Option("--perturbed", help="Also track every trial with worse sensors (a minute)."),
     ] = False,
+    honesty: Annotated[
+        bool,
+        typer.Option("--honesty", help="Also compare what is stated of simulated walks (minutes)."),
+    ] = False,
     cross_validation: Annotated[
         bool,
         typer.Option("--cross-validate", help="Also leave each dataset out once (a minute)."),
@@ -113,6 +118,10 @@ def bench_track(
                     f"{outcome.error_m:.2f} m"
                 )
         report["perturbed"] = [asdict(outcome) for outcome in outcomes]
+    if honesty:
+        results = measure_honesty()
+        console.print(honesty_table(results))
+        report["honesty"] = [asdict(result) for result in results]
     if cross_validation:
         left_out = cross_validate(trials)
         console.print(left_out_table(left_out))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -36,15 +36,8 @@ def walk_errors(rows: TrackBatch, truth: Motion) -> WalkErrors:
     """Compare ``rows`` with the truth at the same times, the first row being held."""
     step = max(1, round(_EVERY_S * 1e9 / float(np.median(np.diff(rows.t_ns)))))
     every = slice(0, None, step)
-    turn = np.einsum(
-        "nij,nkj->nik", rotations_of(rows.quaternion_nb[every]), truth.rotation_nb[every]
-    )
-    yaw_rad = np.unwrap(np.arctan2(turn[:, 1, 0] - turn[:, 0, 1], turn[:, 0, 0] + turn[:, 1, 1]))
-    c, s = np.cos(yaw_rad[0]), np.sin(yaw_rad[0])
-    frame = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    way_m = (truth.position_n_m[every] - truth.position_n_m[0]) @ frame.T
+    way_m, drift_rad = true_way_m(rows.quaternion_nb[every], _at(truth, every))
     error_m = rows.position_n_m[every] - way_m
-    drift_rad = yaw_rad - yaw_rad[0]
     height_std_m = np.sqrt(rows.position_cov_m2[every, 2, 2] + _KNOWN_M**2)
     late = slice(len(drift_rad) // 4, None)  # what is stated of the first steps is almost zero
     return WalkErrors(
@@ -54,6 +47,22 @@ def walk_errors(rows: TrackBatch, truth: Motion) -> WalkErrors:
         height_m=rms(error_m[:, 2]),
         height_stated=rms((error_m[:, 2] / height_std_m)[late]),
     )
+
+
+def true_way_m(quaternion_nb: Floats, truth: Motion) -> tuple[Floats, Floats]:
+    """Return the way since the start (n, 3) in the tracker's frame, and its heading's error (n,).
+
+    The tracker's frame has its heading right at the first row.
+    """
+    turn = np.einsum("nij,nkj->nik", rotations_of(quaternion_nb), truth.rotation_nb)
+    yaw_rad = np.unwrap(np.arctan2(turn[:, 1, 0] - turn[:, 0, 1], turn[:, 0, 0] + turn[:, 1, 1]))
+    c, s = np.cos(yaw_rad[0]), np.sin(yaw_rad[0])
+    frame = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return (truth.position_n_m - truth.position_n_m[0]) @ frame.T, yaw_rad - yaw_rad[0]
+
+
+def _at(truth: Motion, rows: slice) -> Motion:
+    return Motion(*(getattr(truth, field.name)[rows] for field in fields(Motion)))
 
 
 def rms(values: Floats) -> float:

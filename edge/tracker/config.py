@@ -117,6 +117,7 @@ class EskfConfig(NamedTuple):
     landing_memory: float = 40.0  # landings
     landing_off_most: float = 0.06  # of one
     landing_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
+    landing_off_usual: float = 0.02  # more than this, and the gains are worse than was told
     landing_off_poor: float = 0.025  # then the noise is what the filter works with
 
     # What clipping hides (clipping.py).
@@ -130,7 +131,7 @@ class EskfConfig(NamedTuple):
     start_gyro_bias_gate: float = 3.0  # deviations
     start_accel_bias_std_mps2: float = 0.14
     start_lever_std_m: float = 0.1
-    data_sheet_gain_std: float = 0.01  # of scale and axes of sensors that nobody calibrated
+    data_sheet_gain_std: float = 0.012  # of scale and axes of sensors that nobody calibrated
     gain_per_force: float = 0.04  # rad/s that a m/s^2 adds, by the gain's error
     start_tilt_std_rad: float = 0.014
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows

@@ -60,6 +60,17 @@ def _bias_is_known(state: FilterState, config: EskfConfig) -> bool:
 
 
 @njit()
+def gain_scale(state: FilterState, config: EskfConfig) -> float:
+    """Return by what the variance of the gains is to be multiplied: what is poor lands badly.
+
+    By 1 once a compass has been heard, for then it has told of them.
+    """
+    if state.gains.heard:
+        return 1.0
+    return float(max(1.0, (state.landing_off / config.landing_off_usual) ** 2))
+
+
+@njit()
 def noise_scale(state: FilterState, config: EskfConfig) -> float:
     """Return by what the variance of the walk's noise is to be multiplied.
 

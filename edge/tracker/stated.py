@@ -14,7 +14,7 @@ from numba import njit
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import SIZE, TURN, heading_variance
 from edge.tracker.gain_errors import spread
-from edge.tracker.landing import noise_scale
+from edge.tracker.landing import gain_scale, noise_scale
 from edge.tracker.state import FilterState, Ring
 
 
@@ -41,13 +41,14 @@ def state_position(ring: Ring, state: FilterState, slot: int, config: EskfConfig
             stated_m2[i, j] = state.covariance[i, j]
     gains = state.gains
     less = noise_scale(state, config) - 1.0
+    worse = gain_scale(state, config)
     for i in range(2):
         carried_m = gains.carried_m[i]
         ring[slot].covariance[i, TURN] = spread(state, carried_m, gains.turned_rad)
         for j in range(i + 1):
             more_m2 = less * state.covariance[i, j]
-            more_m2 += spread(state, carried_m, gains.carried_m[j])
-            more_m2 += gains.std**2 * state.position_n_m[i] * state.position_n_m[j]
+            more_m2 += worse * spread(state, carried_m, gains.carried_m[j])
+            more_m2 += worse * gains.std**2 * state.position_n_m[i] * state.position_n_m[j]
             # A normal error's fourth moment is three times its variance squared.
             more_m2 += 0.75 * state.bent_n_m[i] * state.bent_n_m[j]
             stated_m2[i, j] += more_m2

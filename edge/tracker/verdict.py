@@ -13,8 +13,8 @@ from edge.tracker.conditioning import (
     SAMPLE_GAP,
 )
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import ATTITUDE, heading_variance
-from edge.tracker.landing import noise_scale
+from edge.tracker.error_model import ATTITUDE, TURN, heading_variance
+from edge.tracker.landing import gain_scale, noise_scale
 from edge.tracker.port import Quality, Reason
 from edge.tracker.state import FilterState, Progress, Ring
 
@@ -71,4 +71,5 @@ def judge(
     ring[slot].quality = quality
     yaw = ATTITUDE + 2
     heading_var = heading_variance(p) + (noise_scale(state, config) - 1.0) * p[yaw, yaw]
+    heading_var += (gain_scale(state, config) - 1.0) * p[TURN, TURN]
     ring[slot].heading_std_rad = math.sqrt(heading_var)

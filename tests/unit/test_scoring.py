@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.bench.scoring import fit_yaw, horizontal_nees, rows_at, score_track
+from edge.bench.scoring import fit_yaw, horizontal_nees, rows_at, score_track, turn_about_start
 from edge.sources.recording import RecordedTruth
 from edge.tracker.port import TrackBatch
 
@@ -101,6 +101,22 @@ def test_covariance_turns_with_the_track():
     truth = curve() @ np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).T
     _, turned = fit_yaw(curve(), np.tile(np.diag([1.0, 4.0, 9.0]), (200, 1, 1)), truth)
     np.testing.assert_allclose(turned[0], np.diag([4.0, 1.0, 9.0]), atol=1e-9)
+
+
+def test_a_heading_that_drifts_is_not_spread_over_the_beginning():
+    """Fitted, the start of a walk that bends is wrong; held by its first heading it is right."""
+    along_m = np.linspace(0.0, 50.0, 200)
+    drift_rad = 0.004 * along_m
+    truth = np.column_stack((along_m, np.zeros(200), np.zeros(200)))
+    bent = np.column_stack((along_m * np.cos(drift_rad), along_m * np.sin(drift_rad), 0 * along_m))
+    std_m = 0.005 + 0.1 * along_m * drift_rad
+    covariance = std_m[:, None, None] ** 2 * np.eye(3)
+    held, _ = turn_about_start(bent, covariance, truth)
+    fitted, _ = fit_yaw(bent, covariance, truth)
+    held_off_m, fitted_off_m = (np.abs((one - truth)[20, :2]).max() for one in (held, fitted))
+    assert held_off_m < 0.2
+    assert fitted_off_m > 3.0 * held_off_m
+    assert held[0] == pytest.approx(truth[0], abs=1e-12)
 
 
 def test_rows_are_interpolated_at_the_reference_times():

@@ -1,0 +1,140 @@
+"""``muster bench track --honesty``: is what the tracker states of simulated walks true?
+
+Walks from half a minute to twenty minutes, many wearers each, by sensors that were calibrated and
+by sensors as a data sheet has them, held at the true start and heading.  No magnetometer, no
+barometer: nothing but the tracker.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+from rich.console import Console
+from rich.progress import track as progress_bar
+from rich.table import Table
+
+from edge.bench.scoring import CHI2_95_2DOF, horizontal_nees
+from edge.bench.walk_errors import rms, track, true_way_m
+from edge.samples import Floats, ImuBatch
+from edge.simulation import SCENARIOS, Simulation
+from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS
+
+SEARCH = "search-ground-floor"
+WALKS: tuple[tuple[str, str, float], ...] = (  # as it is called, the scenario, how long if looped
+    ("straight", "straight", 0.0),
+    ("square of 60 m", "square-60m", 0.0),
+    ("J-shape", "j-shape", 0.0),
+    ("stairs", "stairs", 0.0),
+    ("gaits", "gaits", 0.0),
+    ("track of 400 m", "track-400m", 0.0),
+    ("3 min of search", SEARCH, 180.0),
+    ("10 min of search", SEARCH, 600.0),
+    ("20 min of search", SEARCH, 1200.0),
+)
+SEEDS = 12
+_BLOCK_S = 2.0
+_EVERY_S = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """One simulated walk."""
+
+    heading_rad: float  # error at the end
+    heading_std_rad: float
+    error_m: float  # horizontal, at the end
+    nees: float  # of it; 2 is honest
+    inside: float  # share of the walk in the stated 95 % ellipse
+
+
+@dataclass(frozen=True, slots=True)
+class Honesty:
+    """Walks of one kind by sensors of one kind."""
+
+    walk: str
+    calibrated: bool
+    walks: int
+    heading_deg: float
+    heading_stated_deg: float
+    error_m: float
+    mean_nees: float
+    inside: float
+
+
+def measure_honesty(seeds: int = SEEDS) -> list[Honesty]:
+    """Walk them all."""
+    jobs = [(walk, calibrated) for calibrated in (True, False) for walk, _, _ in WALKS]
+    bar = progress_bar(jobs, description="Walking", console=Console(stderr=True), transient=True)
+    return [_honesty(walk, calibrated, seeds) for walk, calibrated in bar]
+
+
+def _honesty(walk: str, calibrated: bool, seeds: int) -> Honesty:
+    endings = [ending(walk, seed, calibrated=calibrated) for seed in range(seeds)]
+    return Honesty(
+        walk=walk,
+        calibrated=calibrated,
+        walks=seeds,
+        heading_deg=float(np.degrees(rms(_all(endings, "heading_rad")))),
+        heading_stated_deg=float(np.degrees(rms(_all(endings, "heading_std_rad")))),
+        error_m=rms(_all(endings, "error_m")),
+        mean_nees=float(np.mean(_all(endings, "nees"))),
+        inside=float(np.mean(_all(endings, "inside"))),
+    )
+
+
+def _all(endings: list[Ending], name: str) -> Floats:
+    return np.array([getattr(ending, name) for ending in endings])
+
+
+def ending(walk: str, seed: int, *, calibrated: bool) -> Ending:
+    """Walk, track and compare."""
+    _, name, duration_s = next(entry for entry in WALKS if entry[0] == walk)
+    scenario = next(entry for entry in SCENARIOS if entry.name == name)
+    if duration_s:
+        scenario = msgspec.structs.replace(scenario, building=False, duration_s=duration_s)
+    sensors = CONSUMER_SENSORS if calibrated else UNCALIBRATED_SENSORS
+    simulation = Simulation(scenario, seed, sensors)
+    imu = _inertial(simulation)
+    rows = track(simulation.description, imu, "eskf")
+    at = np.arange(0, len(rows), round(_EVERY_S * simulation.description.rate_hz))
+    truth = simulation.truth(np.asarray(rows.t_ns[at] * 1e-9, np.float64))
+    way_m, drift_rad = true_way_m(rows.quaternion_nb[at], truth)
+    nees = horizontal_nees(rows.position_n_m[at], way_m, rows.position_cov_m2[at])
+    error_m = rows.position_n_m[at[-1], :2] - way_m[-1, :2]
+    return Ending(
+        heading_rad=float(drift_rad[-1]),
+        heading_std_rad=float(rows.heading_std_rad[at[-1]]),
+        error_m=float(np.hypot(*error_m)),
+        nees=float(nees[-1]),
+        inside=float(np.mean(nees[1:] <= CHI2_95_2DOF)),
+    )
+
+
+def _inertial(simulation: Simulation) -> ImuBatch:
+    parts = [batch.imu for batch in simulation.batches(_BLOCK_S)]
+    return ImuBatch(
+        np.concatenate([part.t_ns for part in parts]),
+        np.concatenate([part.accel_mps2 for part in parts]),
+        np.concatenate([part.gyro_radps for part in parts]),
+    )
+
+
+def honesty_table(results: list[Honesty]) -> Table:
+    table = Table(title="Simulated: stated beside true, at the end of the walk")
+    for title in ("walk", "sensors"):
+        table.add_column(title)
+    for title in ("heading, deg", "stated", "error, m", "mean NEES (2)", "inside 95 %"):
+        table.add_column(title, justify="right")
+    for entry in results:
+        table.add_row(
+            entry.walk,
+            "calibrated" if entry.calibrated else "data sheet",
+            f"{entry.heading_deg:.1f}",
+            f"{entry.heading_stated_deg:.1f}",
+            f"{entry.error_m:.2f}",
+            f"{entry.mean_nees:.2f}",
+            f"{100.0 * entry.inside:.0f}",
+        )
+    return table

@@ -1,0 +1,66 @@
+"""What is stated of simulated walks is true: by good sensors and by poor ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from edge.bench.honesty import Honesty, ending, honesty_table
+from edge.bench.walk_errors import rms, track
+from tests.walking import walk
+
+SEEDS = range(12)
+# 95 % of the mean of twelve chi-square values with two degrees of freedom: chi2(24) / 12.
+NEES_BOUNDS = (12.401 / 12, 39.364 / 12)
+# Of the root mean square of twelve standard normal values: sqrt(chi2(12) / 12).
+RATIO_BOUNDS = (0.606, 1.394)
+
+
+@pytest.mark.parametrize("name", ["straight", "square of 60 m", "J-shape"])
+def test_a_calibrated_sensor_is_as_good_as_is_stated(name):
+    endings = [ending(name, seed, calibrated=True) for seed in SEEDS]
+    assert NEES_BOUNDS[0] < np.mean([one.nees for one in endings]) < NEES_BOUNDS[1]
+    ratio = rms(np.array([one.heading_rad / one.heading_std_rad for one in endings]))
+    assert RATIO_BOUNDS[0] < ratio < RATIO_BOUNDS[1]
+
+
+def test_a_sensor_that_nobody_calibrated_is_not_stated_too_sure():
+    """Biases of 1 deg/s, axes off by half a degree: it may be stated too cautiously."""
+    for name in ("straight", "J-shape"):
+        endings = [ending(name, seed, calibrated=False) for seed in SEEDS]
+        assert np.mean([one.nees for one in endings]) < NEES_BOUNDS[1]
+        assert np.mean([one.inside for one in endings]) > 0.9
+        assert rms(np.array([one.heading_rad for one in endings])) < np.radians(20.0)
+
+
+@pytest.mark.parametrize("bias_radps", [0.005, 0.03, 0.06])
+def test_whatever_the_gyroscope_shows_at_rest_is_its_bias(bias_radps):
+    made = walk(strides=8, gyro_bias_radps=(0.3 * bias_radps, -bias_radps, 0.6 * bias_radps))
+    rows = track(made.description, made.imu, "eskf")
+    assert np.linalg.norm(rows.position_n_m[-1, :2]) == pytest.approx(8 * 1.3, rel=0.02)
+    turned_rad = np.arctan2(rows.position_n_m[-1, 1], rows.position_n_m[-1, 0])
+    assert abs(turned_rad) < 0.02 + 2.5 * bias_radps  # it turned while the bias was unknown
+
+
+def test_a_gap_is_stated_in_full_however_well_the_foot_lands():
+    made = walk(strides=20)
+    missing = np.ones(len(made.imu), np.bool_)
+    missing[2000:2200] = False
+    cut = replace(
+        made.imu,
+        t_ns=made.imu.t_ns[missing],
+        accel_mps2=made.imu.accel_mps2[missing],
+        gyro_radps=made.imu.gyro_radps[missing],
+    )
+    rows = track(made.description, cut, "eskf")
+    assert np.sqrt(rows.position_cov_m2[1990, 0, 0]) < 0.3
+    assert np.sqrt(rows.position_cov_m2[-1, 0, 0]) > 1.4  # 1.5 m/s for a second
+
+
+def test_the_table_says_which_sensors():
+    table = honesty_table([Honesty("straight", False, 3, 1.0, 2.0, 0.5, 1.9, 0.95)])
+    assert [next(iter(column.cells)) for column in table.columns] == [
+        "straight", "data sheet", "1.0", "2.0", "0.50", "1.90", "95",
+    ]  # fmt: skip
