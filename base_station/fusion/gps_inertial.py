@@ -268,9 +268,10 @@ class GpsInertialFuser:
         )
         if self._height.walked_level and self._horizontal.outside_m() < 0.0:
             self._height.rest_on(self._horizontal.storeys_down_m)
-        self._horizontal.stand_at(self._height.down_m)
+        down_m = self._height.down_m
+        self._horizontal.stand_at(down_m)
         self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
-        self._memory.recognition.follow(stretch, self._height.down_m)
+        self._memory.recognition.follow(stretch, down_m)
 
     def _restart(self) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown."""

@@ -97,11 +97,12 @@ class HeightFilter:
         """The own height went on by this much; ``own_std_m`` is how sure the unit is of it, and
         ``moves`` whether its wearer goes anywhere.
         """
-        self._filter.x[0, 0] += down_m
         ridden_m2 = self._rides.follow(own_std_m, down_m, moves=moves)
         stairs_m2 = climb_var_m2(self._kind, down_m, walked_m)
-        if self._rides.doubt_m2 < stairs_m2:  # else the unit knows of the ride, and how well
-            self._filter.P[0, 0] += max(stairs_m2, ridden_m2)
+        # Else the unit knows of the ride, and how well.
+        unknown = self._rides.doubt_m2 < stairs_m2
+        added_m2 = max(stairs_m2, ridden_m2) if unknown else 0.0
+        kernels.climb(self._filter.x, self._filter.P, down_m, added_m2)
         self._level_m += walked_m
         self._climbed_m += down_m
         if abs(self._climbed_m) > self._kind.level_m:

@@ -115,6 +115,13 @@ def walk(
     mean[2, 0], mean[3, 0] = c, s
 
 
+@_compiled(void(_MATRIX, _MATRIX, float64, float64))
+def climb(mean: Floats, covariance: Floats, down_m: float, added_m2: float) -> None:
+    """The own height went on: the state of ``HeightFilter`` is predicted."""
+    mean[0, 0] += down_m
+    covariance[0, 0] += added_m2
+
+
 @_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64))
 def feel_air(
     mean: Floats,

@@ -81,6 +81,8 @@ class OwnPath(msgspec.Struct):
     ) -> float:
         """What the unit says of its heading beyond its drift."""
         grown = position.heading_std_rad**2 - last.heading_std_rad**2
+        if grown <= 0.0:
+            return 0.0
         usual_rad = SUDDEN * self.drift_radps(kind, last) * duration_s
         return max(0.0, grown - 2.0 * position.heading_std_rad * usual_rad)
 

@@ -115,3 +115,14 @@ def test_arrays_of_any_layout_will_do() -> None:
     assert np.array_equal(one.x, other.x)
     with pytest.raises(TypeError):
         kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+
+
+def test_a_climb_is_filterpy_s_prediction() -> None:
+    expected = filter_of(3, 4)
+    mean, covariance = expected.x.copy(), expected.P.copy()
+    kernels.climb(mean, covariance, -0.3, 0.02)
+    expected.predict(
+        u=np.array([[-0.3]]), B=np.eye(3)[:, :1], F=np.eye(3), Q=np.diag([0.02, 0.0, 0.0])
+    )
+    same(mean, expected.x)
+    same(covariance, expected.P)
