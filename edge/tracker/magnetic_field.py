@@ -61,7 +61,10 @@ def _fade(belief: Aid, first: int, kept: float) -> None:
 
 @njit()
 def learn(compass: Aid, belief: Aid, config: EskfConfig) -> None:
-    """Take the mean field of a stance; what surprises makes the belief less likely."""
+    """Take the mean field of a stance; what surprises makes the belief less likely.
+
+    A stride away the wide bends are almost the same, so each look speaks as far as they are new.
+    """
     aim(belief)
     _judge_bend(compass, belief, config)
     for axis in range(3):
@@ -70,7 +73,8 @@ def learn(compass: Aid, belief: Aid, config: EskfConfig) -> None:
         expected = project(belief.covariance, compass.row, compass.column) + variance
         surprise = residual * residual / expected
         most = config.aid_gate**2
-        belief.log_weight -= 0.5 * (min(surprise, most) + math.log(expected))
+        told = min(surprise, most) + math.log(expected)
+        belief.log_weight -= 0.5 * belief.wide_is_new * told
         if surprise <= most:
             measure(
                 belief.estimate, belief.covariance, compass.row, residual, variance, compass.column
