@@ -38,7 +38,7 @@ const WRONG_MS = 10_000;
 /** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
 export function clockOffset({ ahead_ms, std_ms }: ClockView): string {
   const way = ahead_ms < 0 ? "behind" : "ahead";
-  return `${briefly(Math.abs(ahead_ms))} ${way} ± ${briefly(std_ms)}`;
+  return `${briefly(Math.abs(ahead_ms))} ${way} ±\u00a0${briefly(std_ms)}`;
 }
 
 /** Far enough for times in its black box to mislead. */
@@ -47,7 +47,7 @@ export function isSetWrong({ ahead_ms }: ClockView): boolean {
 }
 
 function briefly(ms: number): string {
-  return ms < 1000 ? `${Math.ceil(ms)} ms` : duration(ms);
+  return ms < 1000 ? `${Math.ceil(ms)}\u00a0ms` : duration(ms);
 }
 
 /** Time of the day where the console stands. */

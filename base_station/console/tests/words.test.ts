@@ -25,9 +25,9 @@ describe("words", () => {
   });
 
   it.each([
-    [12.2, 2.4, "13 ms ahead ± 3 ms", false],
-    [-75_000, 3, "1 min 15 s behind ± 3 ms", true],
-    [9_900, 1_500, "9.9 s ahead ± 1.5 s", false],
+    [12.2, 2.4, "13\u00a0ms ahead ±\u00a03\u00a0ms", false],
+    [-75_000, 3, "1 min 15 s behind ±\u00a03\u00a0ms", true],
+    [9_900, 1_500, "9.9 s ahead ±\u00a01.5 s", false],
   ])("say a clock %f ms ahead, sure to %f ms, as %s", (ahead_ms, std_ms, text, wrong) => {
     expect(words.clockOffset({ ahead_ms, std_ms })).toBe(text);
     expect(words.isSetWrong({ ahead_ms, std_ms })).toBe(wrong);

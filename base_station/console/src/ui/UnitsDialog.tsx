@@ -18,7 +18,7 @@ export function UnitsDialog() {
   return (
     <Dialog title="Units and who wears them" wide>
       <RegisterForm />
-      <table>
+      <table class="units">
         <Columns
           names={[
             "Unit",
