@@ -57,7 +57,7 @@ class Follower:
         self._delivering = Lock()
         self.delivered = BEGINNING  # up to here the feed has it
         self._closed = False
-        self.in_step = False  # it has what the leader has, but for the last moment
+        self.in_step = False  # it has stepped what the leader has, but for the last moment
         self.problem = ""  # why it cannot follow, as a sentence for a person
         self._threads = [
             Thread(target=self._run, name="following", daemon=True),
@@ -123,7 +123,8 @@ class Follower:
             batch = self._ask(leader, f"records?t={place.t_ns};n={place.events}", Batch)
             if batch is None or not self._deliver(leader, batch):
                 return
-            self.in_step = self.delivered >= history.place and len(batch.records) < _BACKLOG
+            at_once = max(len(batch.records), self._feed.waiting)
+            self.in_step = self.delivered >= history.place and at_once < _BACKLOG
 
     def _deliver(self, leader: Leader, batch: Batch) -> bool:
         with self._delivering:

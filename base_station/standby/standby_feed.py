@@ -45,6 +45,11 @@ class StandbyFeed:
         """Changes in ``take`` alone."""
         return self._follows
 
+    @property
+    def waiting(self) -> int:
+        """Events of the other's log that are not taken yet."""
+        return len(self._followed)
+
     def offer(self, key: str, payload: bytes) -> None:
         """What the bus calls."""
         with self._changed:

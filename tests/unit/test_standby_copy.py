@@ -163,6 +163,26 @@ def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> N
     assert pairing.cuts == []
 
 
+def test_a_standby_is_in_step_when_it_has_stepped_a_long_log_and_not_before(
+    pairing: Pairing,
+) -> None:
+    written(pairing.recorders[0], pairing.active, events(5000))
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    until(lambda: pairing.follower.delivered == pairing.active.place)
+    written(pairing.recorders[0], pairing.active, events(3, start=5000))
+    until(lambda: pairing.follower.delivered == pairing.active.place)
+    assert not pairing.follower.in_step
+
+    def stepped() -> bool:
+        pairing.step()
+        return pairing.standby.place == pairing.active.place
+
+    until(stepped)
+    written(pairing.recorders[0], pairing.active, events(3, start=5003))
+    until(lambda: pairing.follower.in_step)
+
+
 def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing: Pairing) -> None:
     shared = events(6)
     for recorder, log in zip(pairing.recorders, (pairing.active, pairing.standby), strict=True):
