@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from math import degrees, nan
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from edge.config import EdgeConfig
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import GpsSample, ImuBatch, SensorBatch, SensorDescription
 from edge.tracker.none import NoTracker
 from edge.whereabouts import Place, Whereabouts
 from shared.clock import NS_PER_S, ManualClock
+from shared.config import load_config
 from shared.earth_field import EarthField
 from shared.envelope import Stamper
+from shared.errors import ConfigError
 
 REYKJAVIK = Place(64.15, -21.94)
 SYDNEY = Place(-33.87, 151.21)
@@ -99,3 +103,27 @@ def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
     pipeline.step(samples(3.0))
     pipeline.step(samples(3.1, (fix(SYDNEY, 3.15),)))
     assert told == ["-11 from 3.0", "samples", "13 from 3.15", "samples"]
+
+
+def settings(folder: Path, place: str) -> EdgeConfig:
+    file = folder / "unit.toml"
+    file.write_text(f'source = "simulated:square-60m"\n{place}\n')
+    return load_config(file, EdgeConfig)
+
+
+def test_the_place_stands_in_the_agents_settings(tmp_path: Path):
+    assert settings(tmp_path, "").place is None
+    assert settings(tmp_path, "[place]\nlat_deg = 64.15\nlon_deg = -21.94").place == REYKJAVIK
+
+
+@pytest.mark.parametrize(
+    ("place", "named"),
+    [
+        ("[place]\nlat_deg = 64.15", "lon_deg"),
+        ("[place]\nlat_deg = 164.15\nlon_deg = 1.0", "lat_deg"),
+        ("[place]\nlat = 64.15\nlon_deg = 1.0", "lat_deg"),
+    ],
+)
+def test_a_place_that_is_none_is_named(tmp_path: Path, place: str, named: str):
+    with pytest.raises(ConfigError, match=named):
+        settings(tmp_path, place)
