@@ -24,7 +24,6 @@ from base_station.past.replay import ReplaySession, Window
 from base_station.pipeline import Checkpoint, StationPipeline
 from base_station.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
-from shared.errors import UserError
 from shared.mcap_log import SegmentReader, segment_paths
 
 Announce = Callable[[str], None]
@@ -47,14 +46,6 @@ def announce_first_login(accounts: Accounts, note: Path, announce: Announce) -> 
     password = ensure_administrator(accounts, note)
     if password is not None:
         announce(f"first login: {USERNAME}  password: {password}  (also in {note})")
-
-
-def incident_or_refuse(records: Records, incident_id: str) -> Incident:
-    incident = records.incident(incident_id)
-    if incident is None:
-        known = ", ".join(f"{one.incident_id} ({one.name})" for one in records.incidents())
-        raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
-    return incident
 
 
 def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
