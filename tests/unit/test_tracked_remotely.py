@@ -66,13 +66,13 @@ def script() -> Remote:
     return Remote()
 
 
-def walk(script: Remote, duration_s: int = 10) -> None:
+def walk(script: Remote, duration_s: int = 10, tracked_by: str = AGENT) -> None:
     start_m = script.now_s
 
     def step() -> None:
         script.status(U)
         way_m = script.now_s - start_m
-        script.position(AGENT, way_m, 0.0, distance_m=way_m)
+        script.position(tracked_by, way_m, 0.0, distance_m=way_m)
 
     script.wait(duration_s, step)
 
@@ -80,14 +80,7 @@ def walk(script: Remote, duration_s: int = 10) -> None:
 def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remote) -> None:
     walk(script)
     itself = Remote(tracker="eskf")
-    start_m = itself.now_s
-    itself.wait(
-        10,
-        lambda: (
-            itself.status(U),
-            itself.position(U, itself.now_s - start_m, 0.0, distance_m=itself.now_s - start_m),
-        ),
-    )
+    walk(itself, tracked_by=U)
     assert script.unit.trail == itself.unit.trail
     assert len(script.unit.trail) == 10
     assert {fused.unit_id for fused in script.fused} == {U}
@@ -190,14 +183,7 @@ def test_fixes_of_the_unit_meet_the_path_at_their_time_on_the_agents_clock(
     script.gps(U, 49.0, 8.0)
     script.wait(1, lambda: script.position(AGENT, 11.0, 0.0, distance_m=11.0))
     itself = Remote(tracker="eskf")
-    start_m = itself.now_s
-    itself.wait(
-        10,
-        lambda: (
-            itself.status(U),
-            itself.position(U, itself.now_s - start_m, 0.0, distance_m=itself.now_s - start_m),
-        ),
-    )
+    walk(itself, tracked_by=U)
     itself.gps(U, 49.0, 8.0)
     itself.wait(1, lambda: itself.position(U, 11.0, 0.0, distance_m=11.0))
     assert script.fused[-1].since_gps_s is not None
