@@ -9,6 +9,7 @@ with, and whoever came in with a better one tells the others.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TypeVar
 
 import msgspec
@@ -24,9 +25,10 @@ LONG_M = 6.0  # and a longer one is told of in parts
 LEG_STD_RAD = math.radians(3.0)  # nobody walks on lines
 ASIDE_M = 0.2
 QUARTER_RAD = math.pi / 2.0
-CLEAR_M = 20.0  # of the last legs that are asked for an axis
-CLEAR = 0.55  # of their length, summed as vectors of four times the angle: it shows
 ALONG_WALLS = 0.6  # of the legs, before anything is known of one
+WINDOW = 8  # of the last legs, one after each turn, that are asked for an axis
+SHOWN = 3.0  # log odds from which they show one
+TRIALS = 2.4  # of log odds that some axis fits by chance: a quarter turn by a leg's width
 OFF = 2.5  # standard deviations by which an axis that shows may be another
 LOST_RAD = math.radians(20.0)  # the heading's doubt then
 SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
@@ -77,7 +79,7 @@ class AxisFilter(msgspec.Struct):
     not known of the one is not known of the other.
     """
 
-    legs: list[Leg] = msgspec.field(default_factory=list)  # until an axis shows
+    legs: list[Leg] = msgspec.field(default_factory=list)  # the last ones
     axis: Axis | None = None
     turn_variance: float = 0.0
     crossed: float = 0.0  # covariance of both
@@ -86,17 +88,26 @@ class AxisFilter(msgspec.Struct):
         """Heading correction and variance after a leg, given what they were before: as far as the
         leg may be one along a wall (probabilistic data association, Bar-Shalom and Tse 1975).
         """
-        shown_rad = self._shown(leg)
+        remember(self.legs, leg)
+        del self.legs[:-WINDOW]
+        shown = shown_by(self.legs)
         if self.axis is None:
-            if shown_rad is not None:
-                self._begin(turn_rad + shown_rad, variance)
+            if shown is not None:
+                self._begin(Axis(turn_rad + shown.direction_rad, shown.variance), variance)
             return turn_rad, variance
         self._catch_up(variance)
-        if shown_rad is not None and self._contradicts(turn_rad + shown_rad, variance):
-            return turn_rad, variance + LOST_RAD**2
+        apart = variance - 2.0 * self.crossed + self.axis.variance
+        own_rad = self.axis.direction_rad - turn_rad
+        if shown is not None:
+            off_rad = quarter(shown.direction_rad - own_rad)
+            if off_rad**2 > OFF**2 * (apart + shown.variance):
+                self.legs.clear()  # they agree with each other, and not with what is held
+                return turn_rad, variance + LOST_RAD**2
+        if evidence(self.legs, Axis(own_rad, apart)) < 0.0:
+            return turn_rad, variance  # nobody walks along walls here
         axis = self.axis
         off_rad = quarter(turn_rad + leg.direction_rad - axis.direction_rad)
-        spread = variance - 2.0 * self.crossed + axis.variance + leg.variance
+        spread = apart + leg.variance
         fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
         along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
         learnt = along * spread - along * (1.0 - along) * off_rad**2  # less where it may be none
@@ -127,36 +138,9 @@ class AxisFilter(msgspec.Struct):
         self.turn_variance = variance - hangs_on**2 * gain * grown
         return turn_rad + hangs_on * gain * off_rad, self.turn_variance
 
-    def _shown(self, leg: Leg) -> float | None:
-        """The axis, in the own frame, that the last legs show by themselves."""
-        self.legs.append(leg)
-        length_m = sum(one.length_m for one in self.legs)
-        if length_m < CLEAR_M:
-            return None
-        four_rad = [4.0 * one.direction_rad for one in self.legs]
-        whole_m = (
-            sum(one.length_m * math.cos(a) for one, a in zip(self.legs, four_rad, strict=True)),
-            sum(one.length_m * math.sin(a) for one, a in zip(self.legs, four_rad, strict=True)),
-        )
-        del self.legs[0]
-        clear = math.hypot(*whole_m) > CLEAR * length_m
-        return _direction(whole_m) / 4.0 if clear else None
-
-    def _begin(self, axis_rad: float, variance: float) -> None:
-        leg_var = sum(one.variance for one in self.legs) / len(self.legs) ** 2
-        self.axis = Axis(quarter(axis_rad), variance + 2.0 * leg_var)
+    def _begin(self, axis: Axis, variance: float) -> None:
+        self.axis = Axis(quarter(axis.direction_rad), variance + axis.variance)
         self.turn_variance = self.crossed = variance
-        self.legs.clear()
-
-    def _contradicts(self, axis_rad: float, variance: float) -> bool:
-        """The last legs agree with each other, and not with what is held."""
-        assert self.axis is not None
-        off_rad = quarter(axis_rad - self.axis.direction_rad)
-        spread = variance - 2.0 * self.crossed + self.axis.variance + LEG_STD_RAD**2
-        if off_rad**2 < OFF**2 * spread:
-            return False
-        self.legs.clear()
-        return True
 
     def _catch_up(self, variance: float) -> None:
         """What the heading lost since is its own; what it learnt elsewhere tells of the axis."""
@@ -170,6 +154,43 @@ class AxisFilter(msgspec.Struct):
 
 
 Angle = TypeVar("Angle", float, NDArray[np.float64])
+
+
+def remember(legs: list[Leg], leg: Leg) -> None:
+    """One leg after each turn: to and fro along a line shows no right angle."""
+    if legs and abs(wrap_pi(2.0 * (leg.direction_rad - legs[-1].direction_rad))) < 2.0 * BENT_RAD:
+        legs.pop()
+    legs.append(leg)
+
+
+def evidence(legs: Sequence[Leg], axis: Axis) -> float:
+    """Log odds of walls with such an axis against legs of any direction."""
+    odds = 0.0
+    for leg in legs:
+        spread = axis.variance + leg.variance
+        off_rad = quarter(leg.direction_rad - axis.direction_rad)
+        fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
+        odds += math.log(ALONG_WALLS * fits * QUARTER_RAD + 1.0 - ALONG_WALLS)
+    return odds
+
+
+def shown_by(legs: Sequence[Leg]) -> Axis | None:
+    """The axis that legs show by themselves."""
+    about = [Axis(leg.direction_rad, leg.variance) for leg in legs]
+    if not about:
+        return None
+    best = max(about, key=lambda axis: evidence(legs, axis))
+    if evidence(legs, best) < SHOWN + TRIALS:
+        return None
+    offs_rad = [quarter(leg.direction_rad - best.direction_rad) for leg in legs]
+    near = [
+        (off_rad, leg.variance)
+        for off_rad, leg in zip(offs_rad, legs, strict=True)
+        if off_rad**2 < OFF**2 * (best.variance + leg.variance)
+    ]
+    weight = sum(1.0 / variance for _, variance in near)
+    mean_rad = sum(off_rad / variance for off_rad, variance in near) / weight
+    return Axis(best.direction_rad + mean_rad, 1.0 / weight)
 
 
 def quarter(angle_rad: Angle) -> Angle:

@@ -129,7 +129,7 @@ def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
 def test_legs_that_agree_with_each_other_and_not_with_the_axis_open_the_heading_again() -> None:
     axis, variances = AxisFilter(), []
     for number in range(16):
-        direction_rad = 0.0 if number < 6 else 0.6
+        direction_rad = number % 2 * math.pi / 2.0 + (0.0 if number < 6 else 0.6)
         variances.append(axis.look(Leg(direction_rad, 5.0), 0.0, 0.03**2)[1])
     assert max(variances[:8]) <= 0.03**2
     assert max(variances) > 0.3**2
@@ -137,16 +137,20 @@ def test_legs_that_agree_with_each_other_and_not_with_the_axis_open_the_heading_
 
 def test_without_right_angles_there_is_no_axis() -> None:
     rng, axis = np.random.default_rng(1), AxisFilter()
-    for _ in range(12):
+    for _ in range(100):
         axis.look(Leg(rng.uniform(-math.pi, math.pi), 4.0), 0.0, 0.01)
+    assert axis.axis is None
+    for number in range(20):  # to and fro along a line is none either
+        axis.look(Leg(0.3 + number % 2 * math.pi, 4.0), 0.0, 0.01)
     assert axis.axis is None
 
 
 def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
     axis = AxisFilter()
     turn_rad, variance = 0.2, 0.2**2
-    for _ in range(6):
-        turn_rad, variance = axis.look(Leg(-0.2, 5.0), turn_rad, variance)
+    for number in range(6):
+        leg = Leg(number % 2 * math.pi / 2.0 - 0.2, 5.0)
+        turn_rad, variance = axis.look(leg, turn_rad, variance)
     assert (turn_rad, math.sqrt(variance)) == pytest.approx((0.2, 0.2), abs=0.02)
     turn_rad, variance = axis.hear(Axis(0.1, 0.02**2), turn_rad, variance)
     assert turn_rad == pytest.approx(0.3, abs=0.02)

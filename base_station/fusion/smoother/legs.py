@@ -13,7 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.building_axes import ALONG_WALLS, CLEAR, QUARTER_RAD, LegWatch
+from base_station.fusion.building_axes import (
+    ALONG_WALLS,
+    QUARTER_RAD,
+    SHOWN,
+    TRIALS,
+    Axis,
+    Leg,
+    LegWatch,
+    evidence,
+    remember,
+)
 from base_station.fusion.path_history import BREAK, RESTART, PathArrays
 from base_station.fusion.smoother.chain import STATES, Belief, Chain
 from base_station.fusion.smoother.equations import Equations
@@ -22,7 +32,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 OUTSIDE_NS = 10_000_000_000  # so near a fix people are outside, where nothing is at right angles
-LEAST_M = 40.0  # of legs, or they show no axis
+UNSURE_RAD = 0.1  # of headings before they have heard of an axis
 ALIKE = 2.0  # legs one after the other err alike, as a variance
 UNLIKELY = 0.05
 
@@ -62,15 +72,15 @@ class Legs:
 
 def axis_of(legs: Mapping[str, Legs], beliefs: Mapping[str, Belief]) -> float | None:
     """The direction that most legs have or stand at right angles to; None: they show none."""
-    whole, length_m = 0j, 0.0
+    whole, turned = 0j, list[Leg]()
     for unit_id, one in legs.items():
         told = beliefs[unit_id].aligned[one.knot]
-        four = np.exp(4j * one.turned_rad(beliefs[unit_id])[told])
-        whole += complex(four @ one.length_m[told])
-        length_m += float(one.length_m[told].sum())
-    if length_m < LEAST_M or abs(whole) < CLEAR * length_m:
-        return None
-    return math.atan2(whole.imag, whole.real) / 4.0
+        turned_rad = one.turned_rad(beliefs[unit_id])[told]
+        whole += complex(np.exp(4j * turned_rad) @ one.length_m[told])
+        for direction_rad, length_m in zip(turned_rad, one.length_m[told], strict=True):
+            remember(turned, Leg(float(direction_rad), float(length_m)))
+    axis = Axis(math.atan2(whole.imag, whole.real) / 4.0, UNSURE_RAD**2)
+    return axis.direction_rad if evidence(turned, axis) > SHOWN + TRIALS else None
 
 
 def add_legs(

@@ -1,0 +1,75 @@
+"""A building that is learnt from everybody's paths helps everybody, and harms nobody elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from base_station.bench.fusion_walks import Floats, Receiver, Scores, Walk
+from base_station.bench.incident_run import Known, Run, Timing, draw_incident, fuse, fuse_all
+from base_station.bench.incident_scores import CHI2_95_2DOF
+from base_station.fusion import FUSERS
+from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.port import Fuser, FuserKind
+
+SEEDS = range(12)
+
+
+@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
+def kind(request: pytest.FixtureRequest) -> FuserKind:
+    found: FuserKind = request.param
+    return found
+
+
+def test_what_all_learn_of_a_building_holds_each_of_them(kind: FuserKind) -> None:
+    people = draw_incident(np.random.default_rng(8001))
+
+    def inside(runs: Sequence[Run]) -> tuple[Floats, Floats]:
+        errors, normalised2 = [], []
+        for person, run in zip(people, runs, strict=True):
+            truth = person.truth
+            rows = (truth.t_s > truth.goes_in_s + 300.0) & (truth.t_s < truth.comes_out_s)
+            off_m = run.places_m[rows] - truth.place_m[rows, :2]
+            errors.append(np.hypot(off_m[:, 0], off_m[:, 1]))
+            normalised2.append(run.normalised2[rows])
+        return np.concatenate(errors), np.concatenate(normalised2)
+
+    alone, _ = inside([fuse(kind, person, Timing(), with_plan=False) for person in people])
+    together, normalised2 = inside(fuse_all(kind, people, Timing(), Known(plan=False)))
+    assert together.mean() < 0.8 * alone.mean()
+    assert np.percentile(together, 95) < 5.0
+    assert np.mean(normalised2 < CHI2_95_2DOF) > 0.85
+
+
+def test_where_nothing_is_at_right_angles_nothing_is_lost(kind: FuserKind) -> None:
+    """People wander about; for two minutes with fixes, then for three without."""
+    with_it, without, held = [], [], []
+    for seed in SEEDS:
+        rng = np.random.default_rng(seed)
+        walk, receiver = Walk.wander(rng, 300.0), Receiver(rng)
+        learning, plain, learnt = kind.new(), kind.new(), LearntBuilding()
+        scores = Scores()
+        for index in range(len(walk)):
+            t_s = float(walk.t_s[index])
+            position = walk.position(index)
+            learning.advance(position)
+            plain.advance(position)
+            learnt = learning.recognise(learnt)
+            if index % 5 == 0 and t_s < 120.0:
+                fix = receiver.fix(t_s, walk.truth_m[index])
+                learning.correct(fix)
+                plain.correct(fix)
+            scores.note(learning, walk.truth_m[index])
+        with_it.append(scores.error_m[-1])
+        held += scores.normalised2[-500:]
+        without.append(_off_m(plain, walk))
+    assert np.mean(with_it) < 1.2 * np.mean(without)
+    assert np.mean(np.array(held) < CHI2_95_2DOF) > 0.9
+
+
+def _off_m(fuser: Fuser, walk: Walk) -> float:
+    scores = Scores()
+    scores.note(fuser, walk.truth_m[-1])
+    return scores.error_m[-1]
