@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from threading import Event
 from typing import cast
 
 import pytest
@@ -222,3 +223,40 @@ def test_a_unit_that_does_not_answer_is_asked_again_at_the_next_report(crowd):
         bus.answer(next(iter(bus.asked)))
         time.sleep(0.005)
     assert bus.questions.count((unit_id, "range")) == before + 1
+
+
+def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
+    bus, go, delivered = StubBus(), Event(), []
+
+    def deliver(key: str, payload: bytes) -> None:
+        delivered.append(payload)
+        if payload == b"old":
+            go.wait()
+
+    def chunk(payload: bytes, suffix: str, last: int, *, urgent_only: bool) -> bytes:
+        entries = (JournalEntry(1, suffix, payload),)
+        return JournalChunk(BOOT, 1, last, entries, urgent_only=urgent_only).to_bytes()
+
+    def report() -> None:
+        backfill.report({unit_id: (Held(BOOT, (Run(101, 101),)),) for unit_id in "ABC"})
+        time.sleep(0.05)
+
+    backfill = Backfill(cast("Bus", bus), deliver, ManualClock())
+    backfill.start()
+    report()
+    until(lambda: len(bus.asked) == 3)
+    for unit_id in "ABC":
+        bus.answer(unit_id, JournalIndex((JournalBoot(BOOT, 1, 101, 0, 0),)).to_bytes())
+    until(lambda: len(bus.asked) == 3)
+    for unit_id in "AB":
+        bus.answer(unit_id, JournalChunk(BOOT, 1, 101, (), urgent_only=True).to_bytes())
+    report()
+    until(lambda: [what for _, what in bus.questions].count("range") == 2)
+    bus.answer("A", chunk(b"old", "up/position", 1, urgent_only=False))
+    until(lambda: delivered == [b"old"])
+    bus.answer("B", chunk(b"old too", "up/position", 1, urgent_only=False))
+    bus.answer("C", chunk(b"fall", "alert/event", 101, urgent_only=True))
+    go.set()
+    until(lambda: len(delivered) == 3)
+    backfill.close()
+    assert delivered == [b"old", b"fall", b"old too"]
