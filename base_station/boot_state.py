@@ -70,7 +70,7 @@ class BootState(msgspec.Struct):
         drifted_ns = self.fastest_ns + round((t_ns - self.fastest_t_ns) * CLOCK_DRIFT)
         self.late = self.late + 1 if offset_ns > drifted_ns + CLOCK_SET_NS else 0
         was_set = self.late >= CLOCK_SET_MESSAGES
-        if not self.is_placed or offset_ns < drifted_ns or was_set:
+        if self.fastest_t_ns == 0 or offset_ns < drifted_ns or was_set:
             self.fastest_ns, self.fastest_t_ns, self.late = offset_ns, t_ns, 0
             drifted_ns = offset_ns
         self.clock_std_s = header.utc_std_s

@@ -147,14 +147,16 @@ class UnitState(msgspec.Struct):
     @property
     def path_boot(self) -> BootState:
         """In whose clock, and since whose start, its positions are."""
-        remote = self.tracker if self.is_tracked_remotely else None
-        return self.boots[-1] if remote is None else remote.boots[-1]
+        agent = self.tracker
+        return self.boots[-1] if agent is None or not self.is_tracked_remotely else agent.boots[-1]
 
     @property
     def shown_status(self) -> Status | None:
         """Its own status, with what only strides tell from the agent that tracks for it."""
-        agent = self.tracker if self.is_tracked_remotely else None
+        agent = self.tracker
         if self.status is None or agent is None or agent.status is None:
+            return self.status
+        if not self.is_tracked_remotely:
             return self.status
         gone = self.status_ns - agent.status_ns >= STALE_AFTER_S * NS_PER_S
         return msgspec.structs.replace(
