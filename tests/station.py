@@ -21,6 +21,7 @@ from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.api.wire import Delta, Snapshot
 from base_station.db.accounts import Accounts, Role
+from base_station.db.base_maps import BaseMaps
 from base_station.db.models import Incident
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
@@ -142,6 +143,7 @@ class DeskStation:
             accounts=Accounts(self.store, clock, QUICK_HASH),
             roster=roster,
             records=Records(self.store, clock),
+            base_maps=BaseMaps(self.store),
             hub=self.hub,
             gate=self.drive,
             settle=self.projection.flush,

@@ -16,6 +16,7 @@ from base_station.api.standing import Standing
 from base_station.api.wire import Snapshot
 from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
+from base_station.db.base_maps import BaseMaps
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.forgetting.desk import ForgettingDesk
@@ -34,6 +35,7 @@ class Services:
     accounts: Accounts
     roster: Roster
     records: Records
+    base_maps: BaseMaps
     hub: Hub
     gate: OperatorGate
     settle: Callable[[], object]  # waits until what was decided can be read from the store

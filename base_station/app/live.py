@@ -27,6 +27,7 @@ from base_station.clock_server import ClockServer
 from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
+from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
@@ -204,6 +205,7 @@ def _services(
         accounts=disk.accounts,
         roster=disk.roster,
         records=disk.records,
+        base_maps=BaseMaps(disk.store),
         hub=hub,
         gate=gate,
         settle=disk.projection.flush,

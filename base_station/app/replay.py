@@ -21,6 +21,7 @@ from base_station.app.parts import (
 from base_station.config import StationConfig, host_and_port
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
+from base_station.db.base_maps import BaseMaps
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
@@ -65,6 +66,7 @@ def run_replay_station(
             accounts=accounts,
             roster=roster,
             records=records,
+            base_maps=BaseMaps(store),
             hub=hub,
             gate=ReadOnlyGate(),
             settle=lambda: None,

@@ -25,6 +25,16 @@ class Base(DeclarativeBase):
 # ---- kept
 
 
+class BaseMap(Base):
+    """A picture of the ground about the site, and where its corners are; there is one or none."""
+
+    __tablename__ = "base_map"
+
+    image_hash: Mapped[str] = mapped_column(primary_key=True)
+    image: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)  # WebP
+    corners: Mapped[bytes]  # JSON of ``base_station.site.base_map.Corners``
+
+
 class Person(Base):
     __tablename__ = "people"
 

@@ -6,9 +6,11 @@ One story in several tests: they run in the order in which they stand here.
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
 from tests.e2e.conftest import UNIT, log_in
@@ -397,6 +399,47 @@ def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator)
     assert anchor["lat_deg"] * 110_574.3 == pytest.approx(-south_m, abs=0.5)
     assert (anchor["lon_deg"] - 16.0) * per_degree_m == pytest.approx(-west_m, abs=0.5)
     assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.01)
+
+
+def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
+    page: Page, card: Locator, tmp_path: Path
+) -> None:
+    """Two clicks on the plan and two on the map; then the map lies behind the plan."""
+    picture, world = tmp_path / "ground.png", tmp_path / "ground.pgw"
+    Image.new("RGB", (400, 200), (60, 110, 60)).save(picture)
+    per_degree_m = 111_319.5
+    pixel = 0.5 / per_degree_m  # half a metre
+    world.write_text(f"{pixel}\n0\n0\n{-pixel}\n16.0\n0.0\n")
+    site = menu(page, "Site")
+    site.get_by_label("Picture").set_input_files(picture)
+    site.get_by_label("World file").set_input_files(world)
+    site.get_by_role("button", name="Set base map").click()
+    expect(site.get_by_role("button", name="Remove base map")).to_be_visible(timeout=SOON_MS)
+    site.get_by_role("button", name="By two points of the plan").click()
+    form = page.get_by_role("form", name="Place on the Earth")
+    click_plan(page, -150, 60)
+    click_plan(page, 150, -60)
+    (south_m, west_m), (north_m, east_m) = clicked_places(form)
+    box = form.get_by_alt_text("Base map").bounding_box()
+    assert box is not None
+    scale = box["width"] / 200.0  # pixels a metre on the screen
+    across, down = 20.0, box["height"] - 10.0
+    ground = form.get_by_alt_text("Base map")
+    for to_east_m, to_north_m in ((0.0, 0.0), (east_m - west_m, north_m - south_m)):
+        at = {"x": across + to_east_m * scale, "y": down - to_north_m * scale}
+        ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
+    form.get_by_role("button", name="Set place").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    anchor = answer_to(page, "site/anchor")
+    assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.05)
+    lon_m = (anchor["lon_deg"] - 16.0) * per_degree_m
+    assert lon_m == pytest.approx(across / scale - west_m, abs=2.0)
+    page.wait_for_function("document.querySelector('canvas.base-map')?.width > 0")
+    assert barriers(page) == []
+    menu(page, "Site").get_by_role("button", name="Remove base map").click()
+    page.get_by_role("button", name="Yes, remove base map").click()
+    expect(page.get_by_role("button", name="Remove base map")).to_have_count(0)
+    page.keyboard.press("Escape")
 
 
 def clicked_places(form: Locator) -> list[tuple[float, float]]:

@@ -1,6 +1,7 @@
 /** The station's REST API, as far as the console uses it. */
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
+import type { BaseMap } from "./plan/baseMap";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 /** Each may do what those before it may. */
@@ -303,6 +304,14 @@ export const assessment = (incidentId: string) =>
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
+export const baseMap = () => call<BaseMap | null>("GET", "/site/base-map");
+export const setBaseMap = (image: Blob, world: readonly number[], crs: string) =>
+  call<BaseMap>(
+    "PUT",
+    `/site/base-map?crs=${id(crs)}${world.map((value) => `&world=${value}`).join("")}`,
+    image,
+  );
+export const removeBaseMap = () => call<void>("DELETE", "/site/base-map");
 export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);
 
 export const replays = () => call<RunningReplay[]>("GET", "/replays");

@@ -4,6 +4,7 @@ import * as api from "./api";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
+import { loadBaseMap } from "./plan/baseMap";
 
 export interface Replay {
   id: string;
@@ -44,6 +45,7 @@ export function begin(me: api.Me): void {
   if (live.value !== null) return;
   live.value = new Session(api.LIVE_PATH, forget);
   stopWatching = watchOver(live.value, (url) => location.assign(url));
+  void attempt(loadBaseMap());
 }
 
 let stopWatching: () => void = () => undefined;

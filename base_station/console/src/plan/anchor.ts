@@ -54,6 +54,16 @@ export function anchorThrough(one: Known, other: Known, heightM: number): Fit {
   };
 }
 
+/** Where a place on the Earth lies on the plan. */
+export function siteOf(anchor: AnchorView, latDeg: number, lonDeg: number): Place {
+  const perDegree = metresPerDegree((anchor.lat_deg + latDeg) / 2);
+  const earth = {
+    north_m: (latDeg - anchor.lat_deg) * perDegree.lat,
+    east_m: (lonDeg - anchor.lon_deg) * perDegree.lon,
+  };
+  return turned(earth, -anchor.plan_rotation_rad);
+}
+
 /** What is wrong with the two points; empty: nothing. */
 export function doubtOf(fit: Fit): string {
   const said = `The points are ${fit.plan_m.toFixed(1)} m apart on the plan and ${fit.earth_m.toFixed(1)} m on the Earth`;

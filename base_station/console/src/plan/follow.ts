@@ -4,6 +4,7 @@ import { floor, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import type { TrailPoint } from "../wire";
+import { followBaseMap } from "./baseMap";
 import { firstFloor, floorsOf } from "./floors";
 import type { PlanMap } from "./map";
 import { followTrails, pastTrails, shownKinds } from "./pastTrails";
@@ -45,6 +46,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
     () => theme.removeEventListener("change", recolour),
     () => redraw.cancel(),
     effect(() => map.showPlan(picture.plan.value)),
+    followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
       void [picture.nowMs.value, floor.value, selectedUnit.value, shownKinds.value];

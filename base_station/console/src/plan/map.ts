@@ -9,6 +9,7 @@ import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
 import type { FloorChoice } from "../view";
 import type { Plan } from "../wire";
+import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { Crowd, type Scene } from "./crowd";
@@ -38,6 +39,7 @@ export interface PlanEvents {
 export class PlanMap {
   private colours: Colours = readColours();
   private readonly grid = new Grid(this.colours);
+  readonly ground = new BaseMapLayer();
   private readonly building = new Building(this.colours);
   private readonly crowd = new Crowd();
   private readonly pins = new PinLayer();
@@ -65,6 +67,7 @@ export class PlanMap {
       view: this.view,
       layers: [
         this.grid,
+        this.ground,
         this.building.layer,
         this.past.layer,
         ...this.crowd.layers,

@@ -3,13 +3,17 @@ import { attempt } from "../sessions";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { anchorThrough, doubtOf, type Fit, type Known } from "../plan/anchor";
+import { baseMap, type LatLon } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
+import { MapPicker } from "./MapPicker";
 import { Ends } from "./PinPanel";
 import { fields } from "./useLoaded";
 
 /** Where the plan lies on the Earth: two points of it, clicked, with latitude and longitude. */
 export function AnchorPanel({ picture }: { picture: Picture }) {
   const fit = useSignal<Fit | null>(null);
+  const picked = useSignal<readonly LatLon[]>([]);
+  const map = baseMap.value;
   const [one, other] = clicked.value;
   const take = (given: Record<string, string>) => {
     if (one === undefined || other === undefined) return;
@@ -26,14 +30,26 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
   return (
     <form class="tool-panel" aria-label="Place on the Earth" onSubmit={send}>
       <h3>Place on the Earth</h3>
-      <Point name="one" label="First point" place={one} />
-      <Point name="other" label="Second point" place={other} />
+      <Point name="one" label="First point" place={one} at={picked.value[0]} />
+      <Point name="other" label="Second point" place={other} at={picked.value[1]} />
+      {map !== null && (
+        <MapPicker
+          map={map}
+          marks={picked.value}
+          pick={(at) => (picked.value = picked.value.length < 2 ? [...picked.value, at] : [at])}
+        />
+      )}
       {doubt !== "" && (
         <p class="verdict conflict" role="alert">
           {doubt}
         </p>
       )}
-      <p class="quiet">Take two corners far apart. A map or a GPS receiver tells where they are.</p>
+      <p class="quiet">
+        Take two corners far apart.{" "}
+        {map === null
+          ? "A map or a GPS receiver tells where they are."
+          : "Click the same two, in the same order, on the plan and on the map."}
+      </p>
       <Ends label={one !== undefined && other !== undefined ? "Set place" : null} />
     </form>
   );
@@ -43,9 +59,11 @@ interface PointProps {
   name: string;
   label: string;
   place: Place | undefined;
+  at: LatLon | undefined; // as clicked on the map
 }
 
-function Point({ name, label, place }: PointProps) {
+function Point({ name, label, place, at }: PointProps) {
+  const [lat, lon] = (at ?? []).map((degrees) => degrees.toFixed(7));
   return (
     <fieldset class="place">
       <legend>
@@ -56,11 +74,29 @@ function Point({ name, label, place }: PointProps) {
       </legend>
       <label>
         Latitude, °
-        <input name={`${name}-lat`} type="number" step="any" min={-90} max={90} required />
+        <input
+          key={lat}
+          name={`${name}-lat`}
+          type="number"
+          step="any"
+          min={-90}
+          max={90}
+          defaultValue={lat}
+          required
+        />
       </label>
       <label>
         Longitude, °
-        <input name={`${name}-lon`} type="number" step="any" min={-180} max={180} required />
+        <input
+          key={lon}
+          name={`${name}-lon`}
+          type="number"
+          step="any"
+          min={-180}
+          max={180}
+          defaultValue={lon}
+          required
+        />
       </label>
     </fieldset>
   );

@@ -3,6 +3,7 @@ import { attempt, live } from "../sessions";
 import { dialog } from "../view";
 import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
+import { BaseMapForm } from "./BaseMapForm";
 import { Dialog } from "./Dialog";
 import { fields } from "./useLoaded";
 
@@ -30,6 +31,8 @@ export function SiteDialog() {
           }}
         />
       </label>
+      <h3>Base map</h3>
+      <BaseMapForm />
       <h3>Place on the Earth</h3>
       <p>
         <button

@@ -1,0 +1,56 @@
+import { useSignal } from "@preact/signals";
+import { ApiError, removeBaseMap, setBaseMap } from "../api";
+import { baseMap, worldOf } from "../plan/baseMap";
+import { attempt, user } from "../sessions";
+import { ConfirmButton } from "./ConfirmButton";
+
+/** A picture of the ground with its world file; both stay on the station. */
+export function BaseMapForm() {
+  const image = useSignal<File | null>(null);
+  const world = useSignal<File | null>(null);
+  if (user.value?.role !== "administrator") {
+    return <p class="quiet">{baseMap.value === null ? "There is none." : "There is one."}</p>;
+  }
+  const send = async () => {
+    if (image.value === null || world.value === null) return;
+    const numbers = worldOf(await world.value.text());
+    if (numbers === null) throw new ApiError("A world file has six numbers, one a line.", 0);
+    const crs = numbers.slice(4).some((value) => Math.abs(value) > 180) ? "EPSG:3857" : "EPSG:4326";
+    baseMap.value = await setBaseMap(image.value, numbers, crs);
+  };
+  return (
+    <div class="row">
+      <label>
+        Picture (PNG, JPEG or WebP)
+        <input
+          type="file"
+          accept="image/png,image/jpeg,image/webp"
+          onChange={(event) => (image.value = event.currentTarget.files?.[0] ?? null)}
+        />
+      </label>
+      <label>
+        World file (.pgw, .jgw or .wld; degrees, or metres of the web’s maps)
+        <input
+          type="file"
+          accept=".pgw,.jgw,.wld,text/plain"
+          onChange={(event) => (world.value = event.currentTarget.files?.[0] ?? null)}
+        />
+      </label>
+      <button
+        type="button"
+        class="primary"
+        disabled={image.value === null || world.value === null}
+        onClick={() => void attempt(send())}
+      >
+        Set base map
+      </button>
+      {baseMap.value !== null && (
+        <ConfirmButton
+          label="Remove base map"
+          question="Remove the map for everybody?"
+          onConfirm={() => void attempt(removeBaseMap().then(() => (baseMap.value = null)))}
+        />
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,72 @@
+import { useSignal } from "@preact/signals";
+import { earthAt, type BaseMap, type LatLon } from "../plan/baseMap";
+
+const ZOOMS = [1, 2, 4, 8] as const;
+
+interface MapPickerProps {
+  map: BaseMap;
+  /** Where points were put already. */
+  marks: readonly LatLon[];
+  pick(at: LatLon): void;
+}
+
+/** The base map to click on; what is clicked is latitude and longitude. */
+export function MapPicker({ map, marks, pick }: MapPickerProps) {
+  const zoom = useSignal<number>(1);
+  return (
+    <div class="map-picker">
+      <div class="map-picker-zoom" role="group" aria-label="Size of the map">
+        {ZOOMS.map((one) => (
+          <button
+            key={one}
+            type="button"
+            aria-pressed={zoom.value === one}
+            onClick={() => (zoom.value = one)}
+          >
+            {one}×
+          </button>
+        ))}
+      </div>
+      <div class="map-picker-view" tabIndex={0} role="region" aria-label="Base map, to click on">
+        <div class="map-picker-sheet" style={{ width: `${100 * zoom.value}%` }}>
+          <img
+            src={map.image_url}
+            alt="Base map"
+            draggable={false}
+            onClick={(event) => {
+              const box = event.currentTarget.getBoundingClientRect();
+              pick(
+                earthAt(
+                  map,
+                  (event.clientX - box.left) / box.width,
+                  (event.clientY - box.top) / box.height,
+                ),
+              );
+            }}
+          />
+          {marks.map((at, index) => {
+            const [across, down] = partsOf(map, at);
+            return (
+              <span
+                key={index}
+                class="map-picker-mark"
+                style={{ left: `${100 * across}%`, top: `${100 * down}%` }}
+              >
+                {index + 1}
+              </span>
+            );
+          })}
+        </div>
+      </div>
+    </div>
+  );
+}
+
+/** The inverse of `earthAt`. */
+function partsOf(map: BaseMap, [lat, lon]: LatLon): [number, number] {
+  const [a, c] = [map.upper_right[0] - map.upper_left[0], map.lower_left[0] - map.upper_left[0]];
+  const [b, d] = [map.upper_right[1] - map.upper_left[1], map.lower_left[1] - map.upper_left[1]];
+  const [x, y] = [lat - map.upper_left[0], lon - map.upper_left[1]];
+  const whole = a * d - b * c;
+  return [(x * d - y * c) / whole, (a * y - b * x) / whole];
+}

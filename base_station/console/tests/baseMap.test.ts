@@ -1,0 +1,38 @@
+import { describe, expect, it } from "vitest";
+import { anchorThrough, siteOf } from "../src/plan/anchor";
+import { cornersOf, earthAt, worldOf, type BaseMap } from "../src/plan/baseMap";
+
+const MAP: BaseMap = {
+  image_url: "/api/v1/site/base-map/x",
+  upper_left: [52.001, 4.0],
+  upper_right: [52.001, 4.002],
+  lower_left: [52.0, 4.0],
+};
+
+describe("the base map", () => {
+  it("reads the six numbers of a world file, and says where there are none", () => {
+    expect(worldOf("1e-5\r\n0.0\r\n0\r\n-1e-5\r\n4\r\n52\r\n")).toEqual([1e-5, 0, 0, -1e-5, 4, 52]);
+    expect(worldOf("1 2 3")).toBeNull();
+    expect(worldOf("<html>")).toBeNull();
+    expect(worldOf("1 2 3 4 5 six")).toBeNull();
+  });
+
+  it("knows where a click on it lies", () => {
+    const [lat, lon] = earthAt(MAP, 0.5, 0.25);
+    expect(lat).toBeCloseTo(52.00075, 9);
+    expect(lon).toBeCloseTo(4.001, 9);
+  });
+
+  it("lies on the plan where two clicks have put the plan", () => {
+    const one = { place: { north_m: 10, east_m: 5 }, lat_deg: 52.0004, lon_deg: 4.0006 };
+    const other = { place: { north_m: 40, east_m: 65 }, lat_deg: 52.0, lon_deg: 4.0006 + 0.0007 };
+    const { anchor } = anchorThrough(one, other, 0);
+    const back = siteOf(anchor, one.lat_deg, one.lon_deg);
+    const apart = siteOf(anchor, other.lat_deg, other.lon_deg);
+    const turn = Math.atan2(apart.east_m - back.east_m, apart.north_m - back.north_m);
+    expect(turn).toBeCloseTo(Math.atan2(60, 30), 4);
+    const [upperLeft, upperRight, lowerLeft] = cornersOf(MAP, { ...anchor, plan_rotation_rad: 0 });
+    expect(upperRight.east_m - upperLeft.east_m).toBeCloseTo(0.002 * 68_680, -1);
+    expect(upperLeft.north_m - lowerLeft.north_m).toBeCloseTo(0.001 * 111_267, 0);
+  });
+});

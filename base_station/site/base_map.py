@@ -1,0 +1,74 @@
+"""Where on the Earth a picture of the ground lies, by the world file that came with it.
+
+A world file is six numbers: how far one column goes in x and in y, how far one row does (in that
+order a, d, b, e), and x and y of the middle of the upper left pixel (c, f).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+import msgspec
+
+from shared.errors import ConfigError
+
+Crs = Literal["EPSG:4326", "EPSG:3857"]
+EARTH_M = 6_378_137.0  # of the sphere of EPSG:3857
+SMALLEST_M, LARGEST_M = 20.0, 5000.0  # beyond it a straight picture of a round Earth is off
+FURTHEST_LAT_DEG = 85.0
+
+LatLon = tuple[float, float]
+
+
+class Corners(msgspec.Struct, frozen=True):
+    """Of a picture, degrees (WGS-84); what lies between goes in proportion."""
+
+    upper_left: LatLon
+    upper_right: LatLon
+    lower_left: LatLon
+
+
+def corners_of(world: Sequence[float], crs: Crs, width_px: int, height_px: int) -> Corners:
+    """Raises ConfigError, which says what a world file must be."""
+    if len(world) != 6 or not all(math.isfinite(value) for value in world):
+        raise ConfigError("a world file has six numbers, one a line")
+    a, d, b, e, c, f = world
+
+    def at(column: float, row: float) -> LatLon:
+        column, row = column - 0.5, row - 0.5
+        return _lat_lon(a * column + b * row + c, d * column + e * row + f, crs)
+
+    corners = Corners(at(0, 0), at(width_px, 0), at(0, height_px))
+    lats = [corner[0] for corner in (corners.upper_left, corners.upper_right, corners.lower_left)]
+    lons = [corner[1] for corner in (corners.upper_left, corners.upper_right, corners.lower_left)]
+    if max(map(abs, lats)) > FURTHEST_LAT_DEG or max(map(abs, lons)) > 180.0:
+        raise ConfigError(
+            "the world file's numbers lie nowhere on the Earth; they must be degrees of longitude "
+            "and latitude (EPSG:4326) or metres of the web's maps (EPSG:3857)"
+        )
+    sides_m = [
+        _apart_m(corners.upper_left, other) for other in (corners.upper_right, corners.lower_left)
+    ]
+    if not all(SMALLEST_M <= side_m <= LARGEST_M for side_m in sides_m):
+        raise ConfigError(
+            f"the picture would be {sides_m[0]:.0f} by {sides_m[1]:.0f} m large; from "
+            f"{SMALLEST_M:.0f} to {LARGEST_M:.0f} m make sense"
+        )
+    if abs(a * e - b * d) < 1e-6 * math.hypot(a, d) * math.hypot(b, e):
+        raise ConfigError("the world file makes a line of the picture")
+    return corners
+
+
+def _lat_lon(x: float, y: float, crs: Crs) -> LatLon:
+    if crs == "EPSG:4326":
+        return y, x
+    lat_rad = math.atan(math.sinh(min(max(y / EARTH_M, -10.0), 10.0)))
+    return math.degrees(lat_rad), math.degrees(x / EARTH_M)
+
+
+def _apart_m(one: LatLon, other: LatLon) -> float:
+    north = math.radians(other[0] - one[0])
+    east = math.radians(other[1] - one[1]) * math.cos(math.radians(one[0]))
+    return EARTH_M * math.hypot(north, east)
