@@ -158,6 +158,7 @@ class Positioning:
         self._pinned.forget(unit)
         state.paths.pop(unit.unit_id, None)
         state.learnt_floors.forget(unit.unit_id)
+        state.learnt_building = state.learnt_building.without(unit.unit_id)
         state.late.pop(unit.unit_id, None)
         unit.fused, unit.position = None, None
         unit.trail.clear()

@@ -18,6 +18,7 @@ from base_station.fusion.same_stairs import Stairs
 from base_station.fusion.told import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
+MOST_STAIRS = 40
 ODDS = 10.0  # so much likelier the same stairs than others: believed
 SHARED_M = 0.7  # by which everybody errs alike: where the engine stands, and the sky
 LEAST_M2 = 0.05  # of what is left, each way
@@ -73,6 +74,8 @@ class LearntBuilding(msgspec.Struct, frozen=True):
     def with_stairs(self, row: int, unit_id: str, seen: Stairs) -> LearntBuilding:
         """``row`` as ``which`` gives it; only the first word of each unit counts."""
         if row < 0:
+            if len(self.stairs) >= MOST_STAIRS:
+                return self
             known = (*self.stairs, KnownStairs(((unit_id, seen),)))
             return msgspec.structs.replace(self, stairs=known)
         words = self.stairs[row].words
@@ -82,6 +85,12 @@ class LearntBuilding(msgspec.Struct, frozen=True):
         return msgspec.structs.replace(
             self, stairs=(*self.stairs[:row], one, *self.stairs[row + 1 :])
         )
+
+    def without(self, unit_id: str) -> LearntBuilding:
+        """What the others said."""
+        left = (tuple(word for word in known.words if word[0] != unit_id) for known in self.stairs)
+        axes = tuple(word for word in self.axes if word[0] != unit_id)
+        return LearntBuilding(tuple(KnownStairs(words) for words in left if words), axes)
 
     def reframed(self, turn_rad: float, north_m: float, east_m: float) -> LearntBuilding:
         """The incident frame was moved: turned clockwise, then shifted."""

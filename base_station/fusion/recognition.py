@@ -38,14 +38,16 @@ class Recognition(msgspec.Struct):
     def go_by(
         self, unit_id: str, learnt: LearntBuilding, horizontal: WalledFilter, *, inside: bool
     ) -> LearntBuilding:
-        """Correct the filter; gives what is learnt then."""
+        """Correct the filter; gives what is learnt then.  Outside fixes tell more, and slopes and
+        ways are no stairs and walls.
+        """
         climb, leg = self.climb, self.leg
         self.climb = self.leg = None
-        if not horizontal.is_plain:
+        if not (inside and horizontal.is_plain):
             return learnt
         if climb is not None:
             learnt = self._climbed(unit_id, climb, learnt, horizontal)
-        if leg is not None and inside:
+        if leg is not None:
             learnt = self._walked(unit_id, leg, learnt, horizontal)
         return learnt
 

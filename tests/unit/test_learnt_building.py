@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from base_station.fusion.building_axes import Axis, AxisFilter, Leg, LegWatch, quarter
-from base_station.fusion.learnt_building import KnownStairs, LearntBuilding
+from base_station.fusion.learnt_building import MOST_STAIRS, KnownStairs, LearntBuilding
 from base_station.fusion.same_stairs import Climb, ClimbWatch, Stairs
 from base_station.fusion.told import taken_over, told
 
@@ -116,7 +116,7 @@ def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
     turn_rad, variance = 0.0, 0.05**2
     for number in range(60):
         drifted_rad = 0.005 * number
-        along = axis_rad + rng.integers(4) * math.pi / 2.0 + rng.normal(0.0, 0.03)
+        along = axis_rad + int(rng.integers(4)) * math.pi / 2.0 + float(rng.normal(0.0, 0.03))
         if number % 4 == 3:
             along = rng.uniform(-math.pi, math.pi)
         variance += 0.015**2
@@ -155,6 +155,28 @@ def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
     turn_rad, variance = axis.hear(Axis(0.1, 0.02**2), turn_rad, variance)
     assert turn_rad == pytest.approx(0.3, abs=0.02)
     assert 0.02 < math.sqrt(variance) < 0.06
+
+
+def test_a_unit_that_is_forgotten_has_said_nothing() -> None:
+    learnt = (
+        LearntBuilding((FOUND,)).with_stairs(0, "FF-02", STAIRS).with_axis("FF-01", Axis(0.1, 1.0))
+    )
+    assert learnt.without("FF-01") == LearntBuilding((KnownStairs((("FF-02", STAIRS),)),))
+    assert learnt.without("FF-01").without("FF-02") == LearntBuilding()
+
+
+def test_it_is_saved_and_restored_to_the_last_bit() -> None:
+    learnt = LearntBuilding((FOUND,)).with_axis("FF-01", Axis(0.1, 1e-3))
+    saved = msgspec.msgpack.encode(learnt)
+    assert msgspec.msgpack.decode(saved, type=LearntBuilding) == learnt
+
+
+def test_slopes_without_end_do_not_fill_the_memory() -> None:
+    learnt = LearntBuilding()
+    for number in range(100):
+        far = msgspec.structs.replace(STAIRS, north_m=100.0 * number)
+        learnt = learnt.with_stairs(-1, "FF-01", far)
+    assert len(learnt.stairs) == MOST_STAIRS
 
 
 def test_reframed_it_is_the_same_building() -> None:
