@@ -26,6 +26,7 @@ from base_station.live.hearing import Heard, judge
 from base_station.live.keeping import Keeping
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
+from base_station.live.saving import Saving
 from base_station.live.self_watch import SelfWatch
 from base_station.live.sinks import ActionDone
 from base_station.live.surroundings import Record, Surroundings
@@ -73,6 +74,7 @@ class StationDrive:
         self._keeping = Keeping(
             pipeline, surroundings.log, self._picture, self._projector, self._watch
         )
+        self._saving = Saving(surroundings.log, surroundings.checkpoints, self._watch)
         self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
         self._asked: deque[Callable[[Snapshot], None]] = deque()
         self._stopping = threading.Event()
@@ -167,7 +169,7 @@ class StationDrive:
             if not follows:  # else time passes by the other station's ticks
                 self._tick()
             self._look_around()
-        if now_ns >= due.checkpoint_ns:
+        if now_ns >= due.checkpoint_ns and not self._saving.is_under_way:
             self._save_checkpoint()
             spent_ns = clock.monotonic_ns() - now_ns
             due.checkpoint_ns = now_ns + max(CHECKPOINT_NS, spent_ns * CHECKPOINTS_SHARE)
@@ -195,6 +197,8 @@ class StationDrive:
             self._keeping.keep(event, key, payload, urgent=heard is Heard.URGENT)
 
     def _take_actions(self) -> None:
+        if self._inbox:
+            self._saving.finish()  # else it could bring back what is to be forgotten now
         while self._inbox:
             by, action, future = self._inbox.popleft()
             done = self._do(by, action)
@@ -251,19 +255,12 @@ class StationDrive:
         self._picture.flush(health)
 
     def _save_checkpoint(self) -> None:
-        if not self._around.log.flush():
-            return  # it must not know what a crash would take from the log
-        try:
-            self._around.checkpoints.save(*self._keeping.place, self._pipeline.checkpoint())
-        except OSError as error:
-            self._watch.note(
-                "checkpoint", f"The live state cannot be saved ({error}): free the disk"
-            )
-        except Exception as error:  # noqa: BLE001  # the log has everything that matters
-            self._watch.failed("checkpoint", error)
+        with self._watch.guarding("checkpoint"):
+            self._saving.begin(self._keeping.place, self._pipeline.checkpoint())
 
     def _report_problems(self) -> None:
         """A part that fails, or is well again, is an event like any other."""
+        self._saving.look()
         seen = {"log": self._around.log.problem, "store": self._around.projection.problem()}
         for report in list(self._watch.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
@@ -288,6 +285,7 @@ class StationDrive:
                 pass
         self._project()
         self._save_checkpoint()
+        self._saving.finish()
         self._refuse_waiting()
 
     def _refuse_waiting(self) -> None:
