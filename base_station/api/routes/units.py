@@ -89,7 +89,10 @@ def set_start(unit_id: UnitId, start: Start, station: Station, who: Commander) -
 
 @router.put("/reference-barometer", status_code=204)
 def set_reference(reference: Reference, station: Station, who: Commander) -> None:
-    """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's."""
+    """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's.
+    Where a start says where that unit stands, its satellite receiver tells what all receivers of
+    the site err by.
+    """
     if reference.unit_id and station.roster.unit(reference.unit_id) is None:
         raise Problem(404, f"There is no unit {reference.unit_id}.")
     station.act(who.username, SetReference(reference.unit_id, reference.down_m))
