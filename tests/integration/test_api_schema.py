@@ -24,7 +24,11 @@ from tests.station import DeskStation
 
 EXAMPLES = 15  # of each operation
 # What makes a plan or a photo cannot be said in a schema.
-MORE_THAN_TYPES = ("PUT /api/v1/site/plan", "PUT /api/v1/people/{person_id}/photo")
+MORE_THAN_TYPES = (
+    "PUT /api/v1/site/plan",
+    "PUT /api/v1/site/base-map",
+    "PUT /api/v1/people/{person_id}/photo",
+)
 
 
 @pytest.fixture(scope="module")
