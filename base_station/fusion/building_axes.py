@@ -73,6 +73,10 @@ class Axis(msgspec.Struct, frozen=True):
     direction_rad: float
     variance: float
 
+    def is_other(self, held: Axis) -> bool:
+        off_rad = quarter(self.direction_rad - held.direction_rad)
+        return off_rad**2 > OFF**2 * (self.variance + held.variance)
+
 
 class AxisFilter(msgspec.Struct):
     """One unit's heading correction and the building's axis, as one normal distribution: what is
@@ -97,19 +101,22 @@ class AxisFilter(msgspec.Struct):
             return turn_rad, variance
         self._catch_up(variance)
         apart = variance - 2.0 * self.crossed + self.axis.variance
-        own_rad = self.axis.direction_rad - turn_rad
-        if shown is not None:
-            off_rad = quarter(shown.direction_rad - own_rad)
-            if off_rad**2 > OFF**2 * (apart + shown.variance):
-                self.legs.clear()  # they agree with each other, and not with what is held
-                return turn_rad, variance + LOST_RAD**2
-        if evidence(self.legs, Axis(own_rad, apart)) < 0.0:
+        held = Axis(self.axis.direction_rad - turn_rad, apart)
+        if shown is not None and shown.is_other(held):
+            self.legs.clear()  # they agree with each other, and not with what is held
+            return turn_rad, variance + LOST_RAD**2
+        if evidence(self.legs, held) < 0.0:
             return turn_rad, variance  # nobody walks along walls here
-        axis = self.axis
-        off_rad = quarter(turn_rad + leg.direction_rad - axis.direction_rad)
-        spread = apart + leg.variance
-        fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
-        along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
+        return self._follow(leg, held, turn_rad, variance)
+
+    def _follow(
+        self, leg: Leg, held: Axis, turn_rad: float, variance: float
+    ) -> tuple[float, float]:
+        """``held``: the axis in the own frame."""
+        assert self.axis is not None
+        axis, spread = self.axis, held.variance + leg.variance
+        off_rad = quarter(leg.direction_rad - held.direction_rad)
+        along = along_wall(off_rad, spread)
         learnt = along * spread - along * (1.0 - along) * off_rad**2  # less where it may be none
         turn_gain = (variance - self.crossed) / spread
         axis_gain = (self.crossed - axis.variance) / spread
@@ -172,6 +179,12 @@ def evidence(legs: Sequence[Leg], axis: Axis) -> float:
         fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
         odds += math.log(ALONG_WALLS * fits * QUARTER_RAD + 1.0 - ALONG_WALLS)
     return odds
+
+
+def along_wall(off_rad: float, spread: float) -> float:
+    """Probability that a leg so far off an axis follows it."""
+    fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
+    return ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
 
 
 def shown_by(legs: Sequence[Leg]) -> Axis | None:
