@@ -8,6 +8,9 @@ it: the height is known no better than either would have it, until a storey, a f
 
 from __future__ import annotations
 
+from itertools import pairwise
+from statistics import median
+
 import msgspec
 
 from base_station.fusion.port import AirHeight
@@ -16,6 +19,7 @@ from shared.clock import NS_PER_S
 CLIMBED_M = 0.5  # by the own path while it rests: the unit felt the ride
 STOREY_M = 2.2  # less is no ride
 WITHIN_NS = 40 * NS_PER_S  # a ride of ten storeys, slow as they are
+BEGIN_NS = NS_PER_S  # of standing, whose median is the height before: doors slam
 OVER_NS, OVER_M = 2 * NS_PER_S, 0.6  # so long without more than this: the ride is over
 JUMP = 0.6  # of the change at once: a door or a fan
 
@@ -43,14 +47,13 @@ class Rides(msgspec.Struct):
         """
         self.felt = [one for one in self.felt if air.t_mono_ns - one[0] <= WITHIN_NS]
         self.felt.append((air.t_mono_ns, air.down_m))
-        lifted_m = air.down_m - self.felt[0][1]
-        of_late = [one[1] for one in self.felt if air.t_mono_ns - one[0] <= OVER_NS]
-        goes_on = max(of_late) - min(of_late) > OVER_M
+        begin_ns = self.felt[0][0]
+        first = [down_m for t_ns, down_m in self.felt if t_ns - begin_ns <= BEGIN_NS]
+        last = [down_m for t_ns, down_m in self.felt if air.t_mono_ns - t_ns <= OVER_NS]
+        goes_on = max(last) - min(last) > OVER_M or air.t_mono_ns - begin_ns < BEGIN_NS + OVER_NS
+        lifted_m = median(last) - median(first)
         if goes_on or abs(lifted_m) < STOREY_M or abs(self.climbed_m) > CLIMBED_M:
             return 0.0
-        jump_m = max(
-            abs(after[1] - before[1])
-            for before, after in zip(self.felt, self.felt[1:], strict=False)
-        )
+        jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(self.felt))
         self.felt = [(air.t_mono_ns, air.down_m)]
         return 0.0 if jump_m > JUMP * abs(lifted_m) else lifted_m

@@ -124,6 +124,19 @@ def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None
     assert math.sqrt(height.variance_m2) > 3.2
 
 
+def test_doors_that_slam_are_no_ride() -> None:
+    """Waves of some metres, 1.5 a second, gone in a second or two (``edge.simulation``)."""
+    for phase in range(10):
+        height = HeightFilter(Parameters())
+        height.begin(0.0, 0.2)
+        for tick in range(600):
+            age_s = (tick % 97) / 5.0 + 0.02 * phase
+            wave_m = 4.0 * math.exp(-age_s / 0.4) * math.sin(3.0 * math.pi * age_s)
+            height.climb(0.0, 0.0, 0.1, moves=False)
+            height.feel(AirHeight(tick * NS_PER_S // 5, 5.0 + wave_m, referenced=True))
+        assert math.sqrt(height.variance_m2) < 0.5
+
+
 def test_a_door_that_opens_and_weather_that_turns_are_no_ride() -> None:
     for airs_m in ([5.0] * 10 + [8.0] * 30, [5.0 + 0.008 * k for k in range(600)]):
         height = HeightFilter(Parameters())
