@@ -1,0 +1,50 @@
+"""Afterwards, legs along walls hold a heading that drifted; where there are none, nothing does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from base_station.bench.said import position
+from base_station.fusion.path_history import PathHistory
+from base_station.fusion.port import Start
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.fusion.smoother.port import SmoothedPath, Smoother, UnitEvidence
+from shared.clock import NS_PER_S
+from shared.messages import Header
+
+DRIFT_RADPS, LASTS_S = 8e-4, 600
+
+
+@pytest.fixture(params=SMOOTHERS, ids=lambda smoother: smoother.name)
+def smoother(request: pytest.FixtureRequest) -> Smoother:
+    found: Smoother = request.param
+    return found
+
+
+def smoothed(smoother: Smoother, directions_rad: list[float]) -> SmoothedPath:
+    """Legs of 8 m in such directions, one after the other, by a unit whose heading drifts."""
+    history, place = PathHistory(), 0j
+    history.begin_with(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.03))
+    for second in range(LASTS_S):
+        direction_rad = directions_rad[second // 8 % len(directions_rad)]
+        place += np.exp(1j * (direction_rad - DRIFT_RADPS * second))
+        t_ns = second * NS_PER_S
+        header = Header("FF-01", 1, second + 1, t_ns)
+        history.note(position(header, north_m=place.real, east_m=place.imag), t_ns, jumped=False)
+    evidence = UnitEvidence(history.arrays(), history.start, history.start_ns)
+    return smoother.smooth({"FF-01": evidence}).paths["FF-01"]
+
+
+def test_right_angles_hold_the_heading(smoother: Smoother) -> None:
+    quarter = math.pi / 2.0
+    path = smoothed(smoother, [0.3 + turns * quarter for turns in (0, 1, 2, 1, 0, 3, 2, 3)])
+    assert path.turn_rad[-1] == pytest.approx(DRIFT_RADPS * LASTS_S, abs=0.12)
+
+
+def test_any_directions_leave_it_as_it_is(smoother: Smoother) -> None:
+    rng = np.random.default_rng(4)
+    path = smoothed(smoother, rng.uniform(-math.pi, math.pi, 75).tolist())
+    assert abs(path.turn_rad[-1]) < 0.1
