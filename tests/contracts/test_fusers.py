@@ -11,6 +11,7 @@ import pytest
 
 from base_station.bench.fusion_walks import Receiver, Walk
 from base_station.fusion import FUSERS
+from base_station.fusion.learnt_building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
 from shared.geo import rotate
 from shared.quality import Quality
@@ -58,6 +59,16 @@ def test_it_knows_nothing_before_anything_came(kind: FuserKind) -> None:
 def test_the_same_calls_give_the_same_answers(kind: FuserKind, walk: Walk) -> None:
     one = go(kind.new(), walk, receiver(), 0, len(walk))
     assert go(kind.new(), walk, receiver(), 0, len(walk)) == one
+
+
+def test_a_building_that_nobody_knows_moves_nobody(kind: FuserKind, walk: Walk) -> None:
+    """Outside, with fixes, nothing is learnt of one either."""
+    listening, source, plain = kind.new(), receiver(), go(kind.new(), walk, receiver(), 0, 300)
+    assert listening.recognise(LearntBuilding()) == LearntBuilding()
+    for index in range(300):
+        estimates = go(listening, walk, source, index, index + 1)
+        assert listening.recognise(LearntBuilding()) == LearntBuilding()
+        assert estimates == [plain[index]]
 
 
 def test_saved_and_restored_it_goes_on_with_the_very_same_numbers(
