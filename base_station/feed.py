@@ -84,6 +84,11 @@ class LiveFeed:
         return self._overflowed
 
     @property
+    def late_waits(self) -> bool:
+        """Whether anything that was delivered has not been taken yet."""
+        return bool(self._late)
+
+    @property
     def follows(self) -> bool:
         """What comes is from the bus."""
         return False

@@ -109,7 +109,11 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
         clock_server = ClockServer(steady, lambda: side.leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
-        backfill = Backfill(bus, feed.deliver, clock, side.may_forget)
+
+        def may_forget() -> bool:
+            return side.may_forget() and not feed.late_waits
+
+        backfill = Backfill(bus, feed.deliver, clock, may_forget)
         downlink = Downlink(bus, Stamper(STATION_ID, secrets.randbits(63), steady), steady)
 
         def report(held: Report) -> None:

@@ -113,6 +113,7 @@ def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None
         feed.deliver(KEY, payload)
     feed.offer(KEY, b"live 1")
     first = payloads_of(feed.take(60.0))
+    assert feed.late_waits  # no unit may forget it yet
     feed.offer(KEY, b"live 2")
     second = payloads_of(feed.take(60.0))
     assert [first[0], second[0]] == [b"live 1", b"live 2"]
@@ -149,6 +150,13 @@ def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() ->
     bringing.join()
     assert feed.overflowed == 0
     assert taken.count(b"late") == count
+
+
+def test_what_was_taken_waits_no_more() -> None:
+    feed = LiveFeed(ManualClock())
+    feed.deliver(KEY, b"late")
+    feed.take(60.0)
+    assert not feed.late_waits
 
 
 def test_an_alert_that_was_fetched_waits_behind_nothing_that_can_wait() -> None:
