@@ -132,3 +132,4 @@ class SensorDescription:
     barometer_present: bool = False
     gain_std: float | None = None  # of scale and axes, left by a calibration; None: it has none
     mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none
+    mag_earth_ut: float | None = None  # as what it showed the earth's field in that calibration

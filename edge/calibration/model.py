@@ -104,9 +104,11 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         )
 
     def described(self, sensor: SensorDescription) -> SensorDescription:
-        """``sensor`` with what is left of iron once its readings are corrected."""
+        """``sensor`` as it is once its readings are corrected."""
         part = self.magnetometer
-        return sensor if part is None else replace(sensor, mag_iron_std_ut=part.left_ut)
+        if part is None:
+            return sensor
+        return replace(sensor, mag_iron_std_ut=part.left_ut, mag_earth_ut=part.field_ut)
 
     def faults(self) -> tuple[str, ...]:
         """What is poor about it, in words; empty where all residuals are as they should be."""

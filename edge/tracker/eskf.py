@@ -8,6 +8,7 @@ do not depend on how the samples were batched.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -63,11 +64,17 @@ class EskfTracker:
         return join_rows(released)
 
     def learn_field(self, field: EarthField, t_ns: int) -> None:
-        """Strength and dip tell how far the field around here is to be trusted."""
+        """Strength and dip tell how far the field around here is to be trusted.
+
+        A calibrated magnetometer knows directions; its scale is that of its calibration.
+        """
+        earth_ut = math.hypot(field.horizontal_ut, field.down_ut)
+        shown_ut = self.description.mag_earth_ut
+        scale = 1.0 if shown_ut is None else shown_ut / earth_ut
         compass = self._state["compass"]
         compass["earth_known"], compass["earth_from_ns"] = True, t_ns
-        compass["earth_horizontal_ut"] = field.horizontal_ut
-        compass["earth_down_ut"] = field.down_ut
+        compass["earth_horizontal_ut"] = scale * field.horizontal_ut
+        compass["earth_down_ut"] = scale * field.down_ut
 
     def finish(self) -> TrackBatch:
         """Return the rows still held back; the tracker is used up."""

@@ -25,6 +25,7 @@ from edge.tracker.state import COMPASS_SIZE, Aid
 
 FIELD, IRON, NEAR, WIDE = 1, 4, 7, 10  # three states each, after the error of heading
 ALONG, VERTICAL, ACROSS = 0, 1, 2
+ANYWHERE_RAD2 = math.pi**2 / 3.0  # variance of a heading of which nothing is known
 
 
 @njit()
@@ -176,7 +177,7 @@ def north_of(belief: Aid) -> float:
 
 @njit()
 def north_variance(compass: Aid, belief: Aid, earth_known: bool, config: EskfConfig) -> float:
-    """Return the variance (rad^2) of ``north_of``, infinite where that is not known.
+    """Return the variance (rad^2) of ``north_of``, infinite among heavy steel.
 
     The frame is the walk's, turned by the error of heading, and both are known together.  To
     what the model knows is added what it cannot: a field that is bent alike all over, which
@@ -184,7 +185,7 @@ def north_variance(compass: Aid, belief: Aid, earth_known: bool, config: EskfCon
     to take their mean for all there is of the third, so it is doubted by their sum.
     """
     limit_ut = config.field_bend_limit * belief.strength_ut
-    if belief.bend_var_ut2 > limit_ut * limit_ut or not is_known(belief, config):
+    if belief.bend_var_ut2 > limit_ut * limit_ut:
         return math.inf
     p = belief.covariance
     ahead, right, strength = belief.aim_n[0], belief.aim_n[1], belief.strength_ut
@@ -193,9 +194,31 @@ def north_variance(compass: Aid, belief: Aid, earth_known: bool, config: EskfCon
     with_heading = ahead * p[FIELD + 1, 0] - right * p[FIELD, 0]
     everywhere_var = config.field_everywhere_ut**2
     if earth_known:
-        off_along_ut = strength - compass.earth_horizontal_ut
-        off_down_ut = belief.estimate[FIELD + 2] - compass.earth_down_ut
-        everywhere_var = config.field_agreeing_ut**2
-        everywhere_var += off_along_ut * off_along_ut + off_down_ut * off_down_ut
-    variance = (across_var + everywhere_var) / (strength * strength)
-    return float(variance + p[0, 0] - 2.0 * with_heading / strength)
+        along_ut, down_ut = _off_earth_ut(compass, belief)
+        everywhere_var = config.field_agreeing_ut**2 + along_ut * along_ut + down_ut * down_ut
+    variance = (across_var + everywhere_var) / max(strength * strength, 1.0)
+    variance += p[0, 0] - 2.0 * with_heading / max(strength, 1.0)
+    return float(min(variance, ANYWHERE_RAD2))
+
+
+@njit()
+def earth_log_likelihood(compass: Aid, belief: Aid, config: EskfConfig) -> float:
+    """Return how likely it is by the belief that strength and dip are as near to the earth's.
+
+    Bent by as much as it believes, they would be off by as much.
+    """
+    p = belief.covariance
+    ahead, right = belief.aim_n[0], belief.aim_n[1]
+    along_ut, down_ut = _off_earth_ut(compass, belief)
+    along_var = ahead * ahead * p[FIELD, FIELD] + right * right * p[FIELD + 1, FIELD + 1]
+    along_var += 2.0 * ahead * right * p[FIELD, FIELD + 1] + config.field_agreeing_ut**2
+    down_var = p[FIELD + 2, FIELD + 2] + config.field_agreeing_ut**2
+    surprise = along_ut * along_ut / along_var + down_ut * down_ut / down_var
+    return float(-0.5 * (surprise + math.log(along_var * down_var)))
+
+
+@njit()
+def _off_earth_ut(compass: Aid, belief: Aid) -> tuple[float, float]:
+    """Return how far the field of the walk is off the earth's, along it and down."""
+    along_ut = belief.strength_ut - compass.earth_horizontal_ut
+    return along_ut, belief.estimate[FIELD + 2] - compass.earth_down_ut

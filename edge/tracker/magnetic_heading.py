@@ -18,6 +18,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import heading_variance
 from edge.tracker.magnetic_field import (
     aim,
+    earth_log_likelihood,
     expect,
     learn,
     leave,
@@ -151,21 +152,30 @@ def _heading_of(compass: Aid) -> tuple[float, float]:
 @njit()
 def _find_north(compass: Aid, earth_known: bool, config: EskfConfig) -> None:
     """Say where magnetic north lies in the frame, by all beliefs that count."""
-    north, east = 0.0, 0.0
-    for j in range(len(compass.beliefs)):
-        belief = compass.beliefs[j]
-        aim(belief)
-        north += belief.weight * math.cos(north_of(belief))
-        east += belief.weight * math.sin(north_of(belief))
+    beliefs = compass.beliefs
+    most = -math.inf
+    for j in range(len(beliefs)):
+        aim(beliefs[j])
+        beliefs[j].north_weight = beliefs[j].log_weight
+        if earth_known:
+            beliefs[j].north_weight += earth_log_likelihood(compass, beliefs[j], config)
+        most = max(most, beliefs[j].north_weight)
+    total, north, east = 0.0, 0.0, 0.0
+    for j in range(len(beliefs)):
+        weight = math.exp(beliefs[j].north_weight - most)
+        beliefs[j].north_weight = weight
+        total += weight
+        north += weight * math.cos(north_of(beliefs[j]))
+        east += weight * math.sin(north_of(beliefs[j]))
     compass.north_rad = math.atan2(east, north)
     variance = 0.0
-    for j in range(len(compass.beliefs)):
-        belief = compass.beliefs[j]
-        if belief.weight > config.field_counts:
-            off = north_of(belief) - compass.north_rad
+    for j in range(len(beliefs)):
+        weight = beliefs[j].north_weight / total
+        if weight > config.field_counts:
+            off = north_of(beliefs[j]) - compass.north_rad
             off = math.atan2(math.sin(off), math.cos(off))
-            own = north_variance(compass, belief, earth_known, config)
-            variance += belief.weight * (own + off * off)
+            own = north_variance(compass, beliefs[j], earth_known, config)
+            variance += weight * (own + off * off)
     compass.north_var_rad2 = variance
 
 

@@ -37,6 +37,7 @@ RING = np.dtype(
         ("gyro_radps", np.float64, 3),
         ("mag_ut", np.float64, 3),  # NaN where there is none
         ("clipped", np.uint8, 3),  # 1 where the rate of an axis has
+        ("force_clipped", np.uint8, 3),  # the same of the force, until it is bridged
         ("hidden_noise", np.float64, 3),  # rad^2/s in doubt about each axis after clipping
         ("pressure_pa", np.float64),
         ("temperature_degc", np.float64),  # inside the sensor
@@ -81,6 +82,7 @@ BELIEF = np.dtype(
         ("covariance", np.float64, (COMPASS_SIZE, COMPASS_SIZE)),
         ("log_weight", np.float64),  # beside the likeliest
         ("weight", np.float64),
+        ("north_weight", np.float64),  # by strength and dip as well
         ("wide_var_ut2", np.float64),  # of what steel does to the field in a part of a building
         ("bend_var_ut2", np.float64),  # and just around here
         # Scratch.

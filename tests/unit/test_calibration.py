@@ -329,3 +329,15 @@ def test_a_whole_calibration_from_a_source_and_from_recordings(tmp_path, capsys)
     with pytest.raises(UserError, match="simulated:straight: the poses step cannot be used"):
         calibrate_recorded({"poses": "simulated:straight"}, tmp_path / "x.toml", "u1", None)
     assert not (tmp_path / "x.toml").exists()
+
+
+def test_a_calibrated_magnetometer_says_what_is_left_and_what_it_showed_of_the_earth():
+    unit = HandledUnit(0)
+    step = gathered(TurningStep(), unit.turning(45))
+    calibration = solved(step)
+    described = calibration.described(SENSOR)
+    found = known(calibration.magnetometer)
+    assert described.mag_earth_ut == found.field_ut
+    assert 0.0 < known(described.mag_iron_std_ut) < 2.0
+    assert described.mag_iron_std_ut >= found.residual_ut
+    assert solved(gathered(StillStep(), [unit.rest(20.0)])).described(SENSOR) == SENSOR
