@@ -27,6 +27,7 @@ from shared.messages.station import DoneApart, ReportProblem
 
 logger = logging.getLogger(__name__)
 
+_SETTLE_S = 0.05
 _BATCH = 1000  # events
 
 
@@ -77,12 +78,16 @@ class Merging:
         bus: Bus,
         gate: OperatorGate,
         deliver: Callable[[str, bytes], None],
+        settled: Callable[[], bool],
         other: Callable[[], str | None],
     ) -> None:
-        """``other``: the standby to be asked; None: this station does not lead, or is alone."""
+        """``settled``: whether all that was delivered is on the disk.  ``other``: the standby to be
+        asked; None: this station does not lead, or is alone.
+        """
         self._bus = bus
         self._gate = gate
         self._deliver = deliver
+        self._settled = settled
         self._other = other
 
     def look(self, stop: Event) -> None:
@@ -109,6 +114,9 @@ class Merging:
             for record in records:
                 actions += self._take(station, record)
             taken += len(records)
+        while not self._settled():
+            if stop.wait(_SETTLE_S):
+                return
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
         if actions:

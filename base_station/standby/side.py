@@ -196,6 +196,7 @@ class OneOfTwo:
             parts.bus,
             gate,
             parts.live.deliver,
+            lambda: not parts.live.late_waits and self.log.flush(),
             lambda: pair.other_there() if pair.leads else None,
         )
         threads = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from pathlib import Path
-from threading import Event
+from threading import Event, Thread
 
 import pytest
 
@@ -20,6 +20,7 @@ from shared.clock import SystemClock
 from shared.codec import encode
 from shared.messages import STATION_ID, Header, OperatorAction
 from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem
+from tests.waiting import until
 
 T0 = 1_700_000_000_000_000_000
 UNITS = 1_500  # messages: more than one answer holds
@@ -34,8 +35,13 @@ class Leading:
         self.stop = Event()
         self.stop_after = 10**9  # messages
         self.there = True
+        self.settled = True
         self._merging = Merging(
-            router.attach_station(), self, self._bring, lambda: "b" if self.there else None
+            router.attach_station(),
+            self,
+            self._bring,
+            lambda: self.settled,
+            lambda: "b" if self.there else None,
         )
 
     def look(self) -> None:
@@ -100,6 +106,20 @@ def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
     leading.stop_after = 10**9
     leading.look()
     assert leading.brought[-UNITS:] == ALL
+    assert parts(tmp_path) == []
+
+
+def test_a_part_is_not_told_of_before_what_it_brought_is_on_the_disk(
+    leading: Leading, tmp_path: Path
+) -> None:
+    leading.settled = False
+    looking = Thread(target=leading.look)
+    looking.start()
+    until(lambda: leading.brought == ALL)
+    looking.join(0.2)
+    assert len(parts(tmp_path)) == 1
+    leading.settled = True
+    looking.join()
     assert parts(tmp_path) == []
 
 
