@@ -144,7 +144,10 @@ class Hindsight:
         with self._working:
             until_ns = incident.closed_ns or self._clock.utc_ns()
             state = self._state_at(until_ns, on_progress)
-            solution = self._smoother.smooth(evidence_of_all(state), ties_of(state))
+            evidence = evidence_of_all(state)
+            solution = Solution({}, {})  # nobody has been heard of yet
+            if evidence:
+                solution = self._smoother.smooth(evidence, ties_of(state))
             on_progress(1.0)
             return Known(state, solution)
 

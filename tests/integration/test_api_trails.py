@@ -121,6 +121,25 @@ async def test_an_assessment_and_an_export_of_the_smoothed_trail(
         assert files[0].content != files[1].content
 
 
+async def test_an_incident_in_which_nobody_was_heard_yet_has_no_trails(
+    station: DeskStation,
+) -> None:
+    """And pins that wait: the smoother is not asked about nobody."""
+    async with station.client(Role.COMMANDER) as commander:
+        await commander.post("/units", json={"unit_id": "FF-01"})
+        opened = await commander.post("/incidents", json={"name": "Mill Lane"})
+        incident_id = opened.json()["incident_id"]
+        pin = {"unit_id": "FF-01", "north_m": 58.0, "east_m": 2.0, "std_m": 0.5}
+        assert (await commander.post("/pins", json=pin)).status_code == 201
+        for kind in ("raw", "fused", "smoothed"):
+            answer = await commander.get(f"/incidents/{incident_id}/trails", params={"kind": kind})
+            assert answer.status_code == 200, answer.text
+            assert answer.json()["trails"] == []
+        report = await commander.get(f"/incidents/{incident_id}/assessment")
+        assert report.status_code == 200, report.text
+        assert report.json()["units"] == []
+
+
 async def test_what_cannot_be_is_said(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         for path in ("trails", "assessment"):

@@ -53,6 +53,12 @@ describe("words", () => {
     expect(words.activityOf(unit("a", { status: null }))).toBe("No status");
   });
 
+  it("says no floor where another is as probable", () => {
+    expect(words.floorOf(position({ floor: 1, floor_probability: 0.25 }))).toBe(
+      "floor unknown, perhaps floor 1",
+    );
+  });
+
   it("says how sure a floor is only where there is a doubt", () => {
     expect(words.floorOf(position({ floor: 1, floor_probability: 0.97 }))).toBe("floor 1");
     expect(words.floorOf(position({ floor: 1, floor_probability: 0.8 }))).toBe(
