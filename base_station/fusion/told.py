@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+LEAST = 1e-12  # variance: what is known without any doubt hangs on nothing
+
 
 def told(
     mean: Floats, covariance: Floats, observe: Floats, to: Floats, to_covariance: Floats
@@ -15,7 +17,7 @@ def told(
     ``to`` with ``to_covariance``; the rest follows as it hangs on that (Jeffrey's rule).
     """
     crossed = covariance @ observe.T
-    was = observe @ crossed
+    was = observe @ crossed + LEAST * np.eye(len(observe))
     regression = np.linalg.solve(was, crossed.T).T
     moved = mean + regression @ (to - observe @ mean)
     left = covariance - regression @ (was - to_covariance) @ regression.T

@@ -101,6 +101,13 @@ def test_what_is_told_carries_what_hangs_on_it() -> None:
     assert left[1, 1] == pytest.approx(4.0 - 0.5**2 * 3.0)
 
 
+def test_what_is_known_without_doubt_stays_as_it_is() -> None:
+    mean, covariance = np.array([1.0, 2.0]), np.zeros((2, 2))
+    moved, left = told(mean, covariance, np.eye(2), np.array([9.0, 9.0]), covariance)
+    assert moved.tolist() == mean.tolist()
+    assert not left.any()
+
+
 def test_straight_legs_are_cut_at_corners() -> None:
     watch = LegWatch()
     ways = [(0.5, 0.0)] * 10 + [(0.0, 0.5)] * 10 + [(-0.5, 0.0)] * 2
