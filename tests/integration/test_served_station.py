@@ -1,104 +1,32 @@
-"""``muster base`` as it runs: real process, bus, folder and signals."""
+"""``muster base serve`` as it runs: real process, bus, folder and signals."""
 
 from __future__ import annotations
 
-import json
-import shutil
 import socket
 import ssl
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
 
 import httpx
 import pytest
-from websockets.sync.client import ClientConnection, connect
 
 from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder
 from shared.mcap_log import SegmentReader, segment_paths
-from shared.messages import EventKind, Position, Status, UnitEvent
+from shared.messages import EventKind, Status, UnitEvent
 from shared.messages.status import Activity
+from tests.served_station import (
+    MakePosition,
+    greet,
+    prepare,
+    snapshot,
+    walk,
+    watch,
+)
 from tests.station_command import Browser, Command, Unit, free_port
 from tests.waiting import until
-
-MakePosition = Callable[..., Position]
-
-
-@pytest.fixture
-def data(tmp_path: Path) -> Path:
-    return tmp_path / "station"
-
-
-@pytest.fixture
-def port() -> int:
-    return free_port()
-
-
-@pytest.fixture
-def serve(tmp_path: Path, data: Path, port: int) -> Iterator[Callable[..., Command]]:
-    started: list[Command] = []
-
-    def start(*flags: str) -> Command:
-        started.append(
-            Command(
-                tmp_path / f"output-{len(started)}.txt",
-                *("serve", "--data", str(data), "--listen", f"tcp/127.0.0.1:{port}"),
-                *("--http", "127.0.0.1:0", *flags),
-            )
-        )
-        return started[-1]
-
-    yield start
-    for command in started:
-        command.kill()
-
-
-@pytest.fixture
-def unit(port: int) -> Iterator[Unit]:
-    unit = Unit(port, "FF-01")
-    yield unit
-    unit.close()
-
-
-def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
-    """Until the unit is linked, what it says is lost."""
-
-    def is_heard() -> bool:
-        unit.say(make_position(header=unit.stamper.header()))
-        return bool(browser.call("GET", "/health")["messages"])
-
-    until(is_heard, "the unit is heard")
-
-
-def walk(unit: Unit, make_position: MakePosition, from_m: int, to_m: int) -> None:
-    for north_m in range(from_m, to_m):
-        unit.say(make_position(header=unit.stamper.header(), north_m=float(north_m)))
-        time.sleep(0.1)
-
-
-def prepare(browser: Browser) -> str:
-    """Ada wears FF-01 in an open incident; its id."""
-    browser.call("POST", "/units", json={"unit_id": "FF-01", "label": "one"})
-    person = browser.call("POST", "/people", json={"name": "Ada", "crew": "A"})
-    worn = {"unit_id": "FF-01", "person_id": person["person_id"]}
-    browser.call("POST", "/assignments", json=worn)
-    return str(browser.call("POST", "/incidents", json={"name": "Kitchen"})["incident_id"])
-
-
-def watch(browser: Browser, path: str = "/live") -> ClientConnection:
-    address = browser.address.replace("http", "ws", 1)
-    return connect(f"{address}/api/v1{path}", additional_headers={"Cookie": browser.cookie()})
-
-
-def snapshot(browser: Browser, path: str = "/live") -> dict[str, Any]:
-    with watch(browser, path) as socket_:
-        message: dict[str, Any] = json.loads(socket_.recv(10.0))
-        assert message["type"] == "snapshot"
-        return message
 
 
 def test_after_a_kill_the_live_state_comes_back_from_the_log(
@@ -209,129 +137,6 @@ def test_what_cannot_be_read_is_counted_and_kept(
         with SegmentReader(path) as reader:
             kept += [payload for _, _, payload in reader.records() if payload == b"\xff\xff\xff"]
     assert len(kept) == 3
-
-
-def play_incident(
-    browser: Browser, unit: Unit, make_position: MakePosition
-) -> tuple[str, list[dict[str, Any]]]:
-    """A short incident with a mayday, from beginning to end: its id and its alarms."""
-    incident_id = prepare(browser)
-    greet(browser, unit, make_position)
-    walk(unit, make_position, 0, 15)
-    unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
-    until(lambda: browser.call("GET", "/alarms"), "mayday is raised")
-    walk(unit, make_position, 15, 25)
-    browser.call("POST", f"/incidents/{incident_id}/close")
-    alarms: list[dict[str, Any]] = browser.call("GET", f"/incidents/{incident_id}/alarms")
-    return incident_id, alarms
-
-
-def test_a_past_incident_is_replayed_in_the_console(
-    serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
-) -> None:
-    station = serve()
-    with Browser(station.wait_ready(), data) as browser:
-        incident_id, alarms = play_incident(browser, unit, make_position)
-        replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
-        path = f"/replays/{replay['replay_id']}"
-        with watch(browser, f"{path}/live") as console:
-            first = json.loads(console.recv(10.0))
-            assert first["replay"]["incident_id"] == incident_id
-            browser.call("POST", path, json={"playing": False, "at_ms": replay["end_ms"]})
-            shown = _wait_for(console, lambda one: bool(one.get("alarms")))
-            assert [one["alarm_id"] for one in shown["alarms"]] == [
-                one["alarm_id"] for one in alarms
-            ]
-            assert not browser.call("GET", path)["playing"]
-            for _ in range(2):  # paused, and still speaking
-                console.recv(5.0)
-            browser.call("POST", path, json={"at_ms": replay["start_ms"], "speed": 10.0})
-            shown = _wait_for(console, lambda one: one["type"] == "snapshot")
-            assert shown["alarms"] == []
-        assert snapshot(browser)["replay"] is None
-        browser.call("DELETE", path)
-        assert browser.status("GET", path) == 404
-    assert station.stop() == 0
-
-
-def _wait_for(
-    console: ClientConnection, condition: Callable[[dict[str, Any]], bool]
-) -> dict[str, Any]:
-    end_s = time.monotonic() + 30.0
-    while time.monotonic() < end_s:
-        message: dict[str, Any] = json.loads(console.recv(10.0))
-        if condition(message):
-            return message
-    raise AssertionError("it was never shown")
-
-
-def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
-    serve: Callable[..., Command],
-    tmp_path: Path,
-    data: Path,
-    unit: Unit,
-    make_position: MakePosition,
-) -> None:
-    station = serve()
-    with Browser(station.wait_ready(), data) as browser:
-        incident_id, alarms = play_incident(browser, unit, make_position)
-        before = sorted(path.name for path in data.rglob("*"))
-        flags = ("--http", "127.0.0.1:0", "--speed", "20")
-        with Command(
-            tmp_path / "replay.txt", "replay", incident_id, "--data", str(data), *flags
-        ) as replaying:
-            with Browser(replaying.wait_ready(), data) as onlooker, watch(onlooker) as console:
-                shown = _wait_for(console, lambda one: bool(one.get("alarms")))
-                assert shown["replay"]["speed"] == 20.0
-                assert shown["alarms"][0]["alarm_id"] == alarms[0]["alarm_id"]
-                assert [one["incident_id"] for one in onlooker.call("GET", "/replays")]
-                refused = onlooker.status("POST", "/incidents", json={"name": "x"})
-                assert refused == 409
-            assert replaying.stop() == 0
-        assert sorted(path.name for path in data.rglob("*")) == before
-        browser.call("GET", "/health")
-    assert station.stop() == 0
-
-    copy = tmp_path / "copy"
-    shutil.copytree(data / "log", copy / "log")
-    with Command(
-        tmp_path / "copied.txt", "replay", incident_id, "--data", str(copy), *flags
-    ) as replaying:
-        replaying.wait_ready()
-        assert "first login" in replaying.said()
-        assert replaying.stop() == 0
-    assert [path.name for path in copy.iterdir()] == ["log"]
-    with Command(
-        tmp_path / "none.txt", "replay", "no-such", "--data", str(copy), *flags
-    ) as replaying:
-        assert replaying.wait() == 2
-        assert incident_id in replaying.said()
-
-
-def test_rebuilding_gives_the_same_tables(
-    serve: Callable[..., Command],
-    tmp_path: Path,
-    data: Path,
-    unit: Unit,
-    make_position: MakePosition,
-) -> None:
-    station = serve()
-    with Browser(station.wait_ready(), data) as browser:
-        incident_id, _ = play_incident(browser, unit, make_position)
-        paths = (
-            *("/incidents", "/alarms", "/units", "/assignments", "/people"),
-            f"/incidents/{incident_id}/tracks",
-        )
-        before = [browser.call("GET", path) for path in paths]
-    assert station.stop() == 0
-    with Command(tmp_path / "rebuild.txt", "rebuild", "--data", str(data)) as rebuilding:
-        assert rebuilding.wait() == 0
-        assert "log records projected" in rebuilding.said()
-    again = serve()
-    with Browser(again.wait_ready(), data) as browser:
-        after = [browser.call("GET", path) for path in paths]
-    assert after == before
-    assert again.stop() == 0
 
 
 def test_users_are_added_while_the_station_runs(

@@ -1,0 +1,154 @@
+"""A past incident: replayed in the console, by a station of its own, and projected again."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from websockets.sync.client import ClientConnection
+
+from shared.messages import EventKind, UnitEvent
+from tests.served_station import (
+    MakePosition,
+    greet,
+    prepare,
+    snapshot,
+    walk,
+    watch,
+)
+from tests.station_command import Browser, Command, Unit
+from tests.waiting import until
+
+
+def play_incident(
+    browser: Browser, unit: Unit, make_position: MakePosition
+) -> tuple[str, list[dict[str, Any]]]:
+    """A short incident with a mayday, from beginning to end: its id and its alarms."""
+    incident_id = prepare(browser)
+    greet(browser, unit, make_position)
+    walk(unit, make_position, 0, 15)
+    unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+    until(lambda: browser.call("GET", "/alarms"), "mayday is raised")
+    walk(unit, make_position, 15, 25)
+    browser.call("POST", f"/incidents/{incident_id}/close")
+    alarms: list[dict[str, Any]] = browser.call("GET", f"/incidents/{incident_id}/alarms")
+    return incident_id, alarms
+
+
+def test_a_past_incident_is_replayed_in_the_console(
+    serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
+) -> None:
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        incident_id, alarms = play_incident(browser, unit, make_position)
+        replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
+        path = f"/replays/{replay['replay_id']}"
+        with watch(browser, f"{path}/live") as console:
+            first = json.loads(console.recv(10.0))
+            assert first["replay"]["incident_id"] == incident_id
+            browser.call("POST", path, json={"playing": False, "at_ms": replay["end_ms"]})
+            shown = _wait_for(console, lambda one: bool(one.get("alarms")))
+            assert [one["alarm_id"] for one in shown["alarms"]] == [
+                one["alarm_id"] for one in alarms
+            ]
+            assert not browser.call("GET", path)["playing"]
+            for _ in range(2):  # paused, and still speaking
+                console.recv(5.0)
+            browser.call("POST", path, json={"at_ms": replay["start_ms"], "speed": 10.0})
+            shown = _wait_for(console, lambda one: one["type"] == "snapshot")
+            assert shown["alarms"] == []
+        assert snapshot(browser)["replay"] is None
+        browser.call("DELETE", path)
+        assert browser.status("GET", path) == 404
+    assert station.stop() == 0
+
+
+def _wait_for(
+    console: ClientConnection, condition: Callable[[dict[str, Any]], bool]
+) -> dict[str, Any]:
+    end_s = time.monotonic() + 30.0
+    while time.monotonic() < end_s:
+        message: dict[str, Any] = json.loads(console.recv(10.0))
+        if condition(message):
+            return message
+    raise AssertionError("it was never shown")
+
+
+def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
+    serve: Callable[..., Command],
+    tmp_path: Path,
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+) -> None:
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        incident_id, alarms = play_incident(browser, unit, make_position)
+        before = set(data.rglob("*"))
+        flags = ("--http", "127.0.0.1:0", "--speed", "20")
+        with Command(
+            tmp_path / "replay.txt", "replay", incident_id, "--data", str(data), *flags
+        ) as replaying:
+            with Browser(replaying.wait_ready(), data) as onlooker, watch(onlooker) as console:
+                shown = _wait_for(console, lambda one: bool(one.get("alarms")))
+                assert shown["replay"]["speed"] == 20.0
+                assert shown["alarms"][0]["alarm_id"] == alarms[0]["alarm_id"]
+                assert [one["incident_id"] for one in onlooker.call("GET", "/replays")]
+                refused = onlooker.status("POST", "/incidents", json={"name": "x"})
+                assert refused == 409
+            assert replaying.stop() == 0
+        made = {path.suffix for path in set(data.rglob("*")) - before}
+        assert made <= {".checkpoint", ".mcap", ".sqlite-wal", ".sqlite-shm"}  # by the live one
+        browser.call("GET", "/health")
+    assert station.stop() == 0
+
+    copy = tmp_path / "copy"
+    shutil.copytree(data / "log", copy / "log")
+    with Command(
+        tmp_path / "copied.txt", "replay", incident_id, "--data", str(copy), *flags
+    ) as replaying:
+        replaying.wait_ready()
+        assert "first login" in replaying.said()
+        assert replaying.stop() == 0
+    assert [path.name for path in copy.iterdir()] == ["log"]
+    with Command(
+        tmp_path / "none.txt", "replay", "no-such", "--data", str(copy), *flags
+    ) as replaying:
+        assert replaying.wait() == 2
+        assert incident_id in replaying.said()
+
+
+def test_rebuilding_gives_the_same_tables(
+    serve: Callable[..., Command],
+    tmp_path: Path,
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+) -> None:
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        incident_id, _ = play_incident(browser, unit, make_position)
+        paths = (
+            *("/incidents", "/alarms", "/units", "/assignments", "/people"),
+            f"/incidents/{incident_id}/tracks",
+        )
+        before = [told(browser, path) for path in paths]
+    assert station.stop() == 0
+    with Command(tmp_path / "rebuild.txt", "rebuild", "--data", str(data)) as rebuilding:
+        assert rebuilding.wait() == 0
+        assert "log records projected" in rebuilding.said()
+    again = serve()
+    with Browser(again.wait_ready(), data) as browser:
+        after = [told(browser, path) for path in paths]
+    assert after == before
+    assert again.stop() == 0
+
+
+def told(browser: Browser, path: str) -> Any:
+    """But for alarms that only say that the unit has been silent since."""
+    answer = browser.call("GET", path)
+    return [one for one in answer if one["rule"] != "link-lost"] if path == "/alarms" else answer
