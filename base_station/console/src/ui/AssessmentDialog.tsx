@@ -134,9 +134,12 @@ function Lights({ report }: { report: Assessment }) {
             </td>
             <td>{lightWords(unit.trust)}</td>
             <td class="detail">
-              {unit.trust.causes
-                .map(([cause, seconds]) => `${cause} ${duration(1000 * seconds)}`)
-                .join("; ") || NOTHING}
+              {unit.trust.causes.length === 0 && NOTHING}
+              {unit.trust.causes.map(([cause, seconds]) => (
+                <div key={cause}>
+                  {cause} {unbroken(seconds)}
+                </div>
+              ))}
             </td>
           </tr>
         ))}
@@ -164,7 +167,12 @@ function lightWords(trust: TrustSeconds): string {
     [trust.red_s, "red"],
   ] as const;
   const words = said.filter(([seconds]) => seconds > 0);
-  return words.map(([seconds, level]) => `${duration(1000 * seconds)} ${level}`).join(", ") || NOTHING;
+  return words.map(([seconds, level]) => `${unbroken(seconds)} ${level}`).join(", ") || NOTHING;
+}
+
+/** So long, on one line. */
+function unbroken(seconds: number): string {
+  return duration(1000 * seconds).replaceAll(" ", "\u00a0");
 }
 
 function Cells({ of }: { of: Figures | null }) {
