@@ -89,14 +89,18 @@ def _all(endings: list[Ending], name: str) -> Floats:
 
 
 def ending(walk: str, seed: int, *, calibrated: bool) -> Ending:
-    """Walk, track and compare."""
+    """Walk one of ``WALKS``, track and compare."""
     _, name, duration_s = next(entry for entry in WALKS if entry[0] == walk)
     scenario = next(entry for entry in SCENARIOS if entry.name == name)
     if duration_s:
         scenario = msgspec.structs.replace(scenario, building=False, duration_s=duration_s)
     sensors = CONSUMER_SENSORS if calibrated else UNCALIBRATED_SENSORS
-    simulation = Simulation(scenario, seed, sensors)
-    imu = _inertial(simulation)
+    return ending_of(Simulation(scenario, seed, sensors))
+
+
+def ending_of(simulation: Simulation) -> Ending:
+    """Track a walk by its inertial sensors and compare."""
+    imu = inertial(simulation)
     rows = track(simulation.description, imu, "eskf")
     at = np.arange(0, len(rows), round(_EVERY_S * simulation.description.rate_hz))
     truth = simulation.truth(np.asarray(rows.t_ns[at] * 1e-9, np.float64))
@@ -112,7 +116,8 @@ def ending(walk: str, seed: int, *, calibrated: bool) -> Ending:
     )
 
 
-def _inertial(simulation: Simulation) -> ImuBatch:
+def inertial(simulation: Simulation) -> ImuBatch:
+    """Return what accelerometer and gyroscope say on the whole walk."""
     parts = [batch.imu for batch in simulation.batches(_BLOCK_S)]
     return ImuBatch(
         np.concatenate([part.t_ns for part in parts]),

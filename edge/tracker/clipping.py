@@ -1,9 +1,10 @@
-"""What a clipped gyroscope hid: a guess from the slopes at both ends, and its doubt.
+"""What a clipped sensor hid: a guess from the slopes at both ends, and its doubt.
 
 A swinging foot turns past the full scale of many gyroscopes for some tens of
 milliseconds.  The hidden part is taken as the parabola that joins the slopes
 before and after; how wrong that may be enters the covariance about the clipped
-axis only.
+axis only.  A clipped force is bridged likewise: what is cut off a sprinter's swing would make the
+way too short by a sixth.
 """
 
 from __future__ import annotations
@@ -57,6 +58,47 @@ def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: 
         u = (ring[k & mask].t_s - begin_s + 0.5 * ring[first & mask].period_s) / duration_s
         ring[k & mask].gyro_radps[axis] += side * 4.0 * u * (1.0 - u) * peak_radps
         ring[k & mask].hidden_noise[axis] = doubt_radps**2 * duration_s
+
+
+@njit()
+def bridge_force(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
+    """At the first sample ``k`` of a run of clipped force put the whole run right, in the ring.
+
+    Looks at samples before ``stop`` and within the look-ahead.
+    """
+    mask = len(ring) - 1
+    for axis in range(3):
+        end = k
+        while end < stop and ring[end & mask].force_clipped[axis]:
+            if ring[end & mask].t_s - ring[k & mask].t_s > config.lookahead_s:
+                break
+            ring[end & mask].force_clipped[axis] = 0
+            end += 1
+        if end > k:
+            _bridge_force_run(ring, k, end, stop, axis, config)
+
+
+@njit()
+def _bridge_force_run(
+    ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig
+) -> None:
+    mask = len(ring) - 1
+    period_s = ring[first & mask].period_s
+    begin_s = ring[first & mask].t_s
+    duration_s = ring[(end - 1) & mask].t_s - begin_s + period_s
+    side = 1.0 if ring[first & mask].accel_mps2[axis] > 0.0 else -1.0
+    rise = 0.0
+    fall = 0.0
+    if first >= 2:
+        rise = ring[(first - 1) & mask].accel_mps2[axis] - ring[(first - 2) & mask].accel_mps2[axis]
+    if end + 1 < stop:
+        fall = ring[end & mask].accel_mps2[axis] - ring[(end + 1) & mask].accel_mps2[axis]
+    slope_mps3 = 0.5 * (max(side * rise, 0.0) + max(side * fall, 0.0)) / max(period_s, 1e-4)
+    peak_mps2 = config.hidden_force_share * 0.25 * slope_mps3 * duration_s
+    peak_mps2 = min(peak_mps2, config.hidden_force_limit_mps2)
+    for k in range(first, end):
+        u = (ring[k & mask].t_s - begin_s + 0.5 * period_s) / duration_s
+        ring[k & mask].accel_mps2[axis] += side * 4.0 * u * (1.0 - u) * peak_mps2
 
 
 @njit()

@@ -149,6 +149,7 @@ def admit(
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
         for j in range(3):
+            ring[slot].force_clipped[j] = abs(gate[0].accel_mps2[j]) >= limits.accel_clip_mps2
             ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
             ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
             ring[slot].hidden_noise[j] = 0.0

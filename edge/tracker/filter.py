@@ -8,7 +8,7 @@ from numba import njit
 
 from edge.tracker.alignment import level
 from edge.tracker.barometric_height import heed_pressure
-from edge.tracker.clipping import bridge_clipping
+from edge.tracker.clipping import bridge_clipping, bridge_force
 from edge.tracker.conditioning import ACCEL_SATURATED, BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
@@ -48,6 +48,8 @@ def filter_sample(
     if ring[slot].flags & GYRO_SATURATED:
         stop = min(progress.measured, reach(ring, k))
         bridge_clipping(ring, k, stop, config)
+    if ring[slot].flags & ACCEL_SATURATED:
+        bridge_force(ring, k, min(progress.measured, reach(ring, k)), config)
     good = ring[slot].flags & BAD_SAMPLES == 0
     if k == 0:
         _start(ring, progress, state, config)

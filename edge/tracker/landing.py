@@ -18,7 +18,7 @@ from edge.tracker.error_model import GYRO_BIAS, POSITION
 from edge.tracker.stance import lever_velocity_row
 from edge.tracker.state import FilterState, Ring
 
-SWING_RAD = 1.0  # that a foot turns at least in a stride
+SWING_RAD = 0.3  # that a foot turns at least in a stride; a crawling one hardly more
 
 
 @njit()

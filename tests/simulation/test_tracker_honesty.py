@@ -7,8 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import Honesty, ending, honesty_table
+from edge.bench.honesty import Honesty, ending, ending_of, honesty_table, inertial
 from edge.bench.walk_errors import rms, track
+from edge.simulation import Simulation
+from edge.simulation.imu import GRAVITY_MPS2
+from edge.simulation.legs import Crawl, Stand, Walk
+from edge.simulation.scenario import Scenario
+from edge.simulation.simulation import CONSUMER_SENSORS
+from edge.tracker.port import Reason
 from tests.walking import walk
 
 SEEDS = range(12)
@@ -64,3 +70,24 @@ def test_the_table_says_which_sensors():
     assert [next(iter(column.cells)) for column in table.columns] == [
         "straight", "data sheet", "1.0", "2.0", "0.50", "1.90", "95",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("rate_hz", [60.0, 200.0])
+def test_crawling_is_not_stated_too_sure(rate_hz):
+    """The toes drag and the foot hardly turns; no stride of a crawl is an ordinary one."""
+    way = Crawl(((8.0, 0.0), (8.0, 4.0), (0.0, 4.0), (0.0, 0.0)))
+    scenario = Scenario("crawl", "crawls", (Stand(4.0), way, Stand(3.0)), rate_hz=rate_hz)
+    endings = [ending_of(Simulation(scenario, seed)) for seed in range(6)]
+    assert np.mean([one.inside for one in endings]) > 0.9
+    assert max(one.error_m for one in endings) < 1.0
+
+
+def test_a_clipped_force_is_bridged():
+    """An accelerometer of 8 g on a sprinter: without the bridge the way is short by a sixth."""
+    accel = replace(CONSUMER_SENSORS.imu.accel, full_scale=8.0 * GRAVITY_MPS2)
+    sensors = replace(CONSUMER_SENSORS, imu=replace(CONSUMER_SENSORS.imu, accel=accel))
+    legs = (Stand(4.0), Walk(((60.0, 0.0),), pace="sprint"), Stand(3.0))
+    simulation = Simulation(Scenario("sprint", "sprints", legs), 1, sensors)
+    rows = track(simulation.description, inertial(simulation), "eskf")
+    assert np.linalg.norm(rows.position_n_m[-1, :2]) == pytest.approx(60.0, rel=0.1)
+    assert np.mean(rows.reasons & Reason.ACCEL_SATURATED != 0) > 0.2
