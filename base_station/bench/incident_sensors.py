@@ -134,7 +134,14 @@ def engine_fixes_of(
     slow_m = ROOF_SLOW_M * _wandering(rng, len(t_s), ROOF_SLOW_S)
     places_m = np.array(engine_m) + sky_m + slow_m + ROOF_WHITE_M * rng.normal(size=sky_m.shape)
     return {
-        row: PlaceFix(mono_ns(float(t_s[row])), *places_m[row].tolist(), 0.0, STD_FLOOR_M, None)
+        row: PlaceFix(
+            t_mono_ns=mono_ns(float(t_s[row])),
+            north_m=float(places_m[row, 0]),
+            east_m=float(places_m[row, 1]),
+            down_m=0.0,
+            horizontal_std_m=STD_FLOOR_M,
+            vertical_std_m=None,
+        )
         for row in range(0, len(t_s), RATE_HZ)
     }
 

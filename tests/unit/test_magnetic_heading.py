@@ -131,7 +131,12 @@ def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
 def bent(imu, truth, seed, wave_m, bend_ut):
     """The field bent by that much (root mean square, each axis) in waves of such lengths."""
     noise = np.random.default_rng(seed)
-    waves = 2.0 * np.pi / noise.uniform(*wave_m, (12, 1)) * random_directions(noise, 12)
+    waves = (
+        2.0
+        * np.pi
+        / noise.uniform(wave_m[0], wave_m[1], size=(12, 1))
+        * random_directions(noise, 12)
+    )
     phases = noise.uniform(0.0, 2.0 * np.pi, 12)
     amplitudes_ut = noise.normal(0.0, bend_ut / np.sqrt(6.0), (12, 3))
     bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ amplitudes_ut
