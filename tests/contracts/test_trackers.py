@@ -11,6 +11,7 @@ from edge.samples import ImuBatch, SensorDescription
 from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality
 from edge.tracker.rows import join_rows
+from shared.earth_field import EarthField
 from shared.errors import ConfigError
 from tests.walking import part, walk
 
@@ -40,6 +41,19 @@ def test_batching_does_not_change_a_bit(name):
     live = run(name, WALK.imu, rows=1)
     for field in fields(whole):
         assert np.array_equal(getattr(whole, field.name), getattr(live, field.name)), field.name
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5])
+def test_the_earths_field_may_be_learned_at_any_time_and_changes_nothing_before(name, share):
+    tracker, without = make_tracker(name, WALK.description), run(name, WALK.imu)
+    at = round(share * len(WALK.imu))
+    field = EarthField(0.3, 0.01, 18.0, 45.0, 0.1, 0.1)
+    before = tracker.push(part(WALK.imu, slice(0, at)))
+    tracker.learn_field(field, int(WALK.imu.t_ns[at]))
+    rows = join_rows([before, tracker.push(part(WALK.imu, slice(at, None))), tracker.finish()])
+    assert np.array_equal(rows.t_ns, without.t_ns)
+    assert np.array_equal(rows.position_n_m[: len(before)], without.position_n_m[: len(before)])
+    assert not np.isnan(rows.magnetic_north_std_rad).any()
 
 
 def test_rows_are_final_within_a_second(name):
