@@ -14,8 +14,8 @@ from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import PinsTouched
+from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Start
-from base_station.fusion.sky import Sky
 from base_station.live_state import Alarm, Person, StationState, UnitState
 from base_station.pins import book as pin_book
 from base_station.pins.book import PinAction, change_pins

@@ -14,10 +14,10 @@ import msgspec
 from base_station.assessment.tally import TrustTally
 from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
-from base_station.fusion.learnt_building import LearntBuilding
-from base_station.fusion.path_history import PathHistory
-from base_station.fusion.sky import Sky
-from base_station.fusion.weather import Barometers
+from base_station.fusion.fixes.sky import Sky
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.vertical.weather import Barometers
 from base_station.pins.late import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.site.learnt_floors import LearntFloors

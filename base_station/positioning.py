@@ -10,9 +10,11 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from base_station.fusion.compass import bearing_of
-from base_station.fusion.learnt_building import LearntBuilding
-from base_station.fusion.path_history import PathHistory
+from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
+from base_station.fusion.fixes.sky import Sky
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.plane.compass import bearing_of
 from base_station.fusion.port import (
     Bearing,
     Estimate,
@@ -22,8 +24,6 @@ from base_station.fusion.port import (
     PlaceFix,
     Start,
 )
-from base_station.fusion.screening import in_incident_frame, may_anchor, screen
-from base_station.fusion.sky import Sky
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, TrailStep, UnitState
 from base_station.pins.book import has_pins, reframe_pins

@@ -25,10 +25,10 @@ from base_station.bench.incident_sensors import (
     reference_pa,
     walk_it,
 )
-from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.fixes.sky import Sky
+from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import AirHeight, Estimate, FuserKind, PlaceFix, Start
-from base_station.fusion.sky import Sky
-from base_station.fusion.weather import Weather
+from base_station.fusion.vertical.weather import Weather
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
 from shared.geo import pressure_altitude_m

@@ -32,8 +32,8 @@ from scipy.signal import lfilter
 from base_station.bench import said
 from base_station.bench.incident_building import SteelBuilding
 from base_station.bench.incident_people import RATE_HZ, Truth
+from base_station.fusion.fixes.screening import STD_FLOOR_M
 from base_station.fusion.port import PlaceFix
-from base_station.fusion.screening import STD_FLOOR_M
 from shared.clock import NS_PER_S
 from shared.geo import pressure_pa_at
 from shared.messages import Header, Position

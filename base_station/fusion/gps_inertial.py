@@ -1,7 +1,7 @@
 """GPS and inertial path in one filter, whatever the initial heading, with and without GPS.
 
-Plane and height are ``walled`` and ``height``, the path's errors ``own_path``, and what a fix has
-to stand up to ``fix_trust``; here they are put together, and what is said of the result.
+The place on the plane is in ``plane``, the height in ``vertical``, the path's errors in ``path``,
+and what a fix has to stand up to in ``fixes``; here they are put together, and what is said of it.
 """
 
 from __future__ import annotations
@@ -13,16 +13,18 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
-from base_station.fusion.compassed import CompassedFilter
-from base_station.fusion.fix_trust import FixTrust
-from base_station.fusion.heading_bank import Sighting
-from base_station.fusion.height import HeightFilter, SavedHeight, climb_var_m2
+from base_station.fusion.fixes.trust import FixTrust
 from base_station.fusion.kernels import Placed
 from base_station.fusion.knowledge import Knowledge, estimate_of
-from base_station.fusion.learnt_building import LearntBuilding
-from base_station.fusion.own_path import OwnPath, Stretch
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path_memory import OwnPlace, PathMemory
+from base_station.fusion.path.memory import OwnPlace, PathMemory
+from base_station.fusion.path.own_path import OwnPath, Stretch
+from base_station.fusion.path.since import since_then, unguided_m2, walls_std_m
+from base_station.fusion.plane.compassed import CompassedFilter
+from base_station.fusion.plane.heading_bank import Sighting
+from base_station.fusion.plane.walled import SavedWalled, WalledFilter
 from base_station.fusion.port import (
     AirHeight,
     Bearing,
@@ -32,9 +34,7 @@ from base_station.fusion.port import (
     Present,
     Start,
 )
-from base_station.fusion.recognition import Recognition
-from base_station.fusion.since import since_then, unguided_m2, walls_std_m
-from base_station.fusion.walled import SavedWalled, WalledFilter
+from base_station.fusion.vertical.height import HeightFilter, SavedHeight, climb_var_m2
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import msgspec
 
-from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.learnt.building import LearntBuilding
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import Storey
 from shared.messages import Position
@@ -60,8 +60,8 @@ class Present(msgspec.Struct, frozen=True):
     """Where a unit is now, as everything that is known of its past tells it.
 
     ``mean`` (5) and ``covariance`` (5, 5) of ``[north, east, c, s, w]``: ``c + i s`` is scale and
-    turn of the own frame (see ``horizontal``), ``w`` the rate in rad/s at which its heading drifts
-    while the wearer moves.
+    turn of the own frame (see ``plane.horizontal``), ``w`` the rate in rad/s at which its heading
+    drifts while the wearer moves.
     """
 
     mean: list[float]

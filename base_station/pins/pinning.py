@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base_station.fusion.path_history import NO_FLOOR, PathArrays, PathHistory
+from base_station.fusion.path.history import NO_FLOOR, PathArrays, PathHistory
 from base_station.fusion.smoother.port import (
     PlaceSeen,
     SmoothedPath,

@@ -11,7 +11,7 @@ import pytest
 
 from base_station.bench.fusion_walks import Receiver, Walk
 from base_station.fusion import FUSERS
-from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
 from shared.geo import rotate
 from shared.quality import Quality

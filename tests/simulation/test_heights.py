@@ -9,10 +9,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.height import HeightFilter
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
-from base_station.fusion.weather import Barometers, Weather
+from base_station.fusion.vertical.height import HeightFilter
+from base_station.fusion.vertical.weather import Barometers, Weather
 from shared.clock import NS_PER_S
 from shared.geo import pressure_pa_at
 from shared.messages import Position

@@ -11,7 +11,7 @@ from base_station.bench.fusion_walks import Floats, Receiver, Scores, Walk
 from base_station.bench.incident_run import Known, Run, Timing, draw_incident, fuse, fuse_all
 from base_station.bench.incident_scores import CHI2_95_2DOF
 from base_station.fusion import FUSERS
-from base_station.fusion.learnt_building import LearntBuilding
+from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Fuser, FuserKind
 
 SEEDS = range(12)

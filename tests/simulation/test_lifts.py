@@ -9,9 +9,9 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from base_station.fusion.height import HeightFilter
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
+from base_station.fusion.vertical.height import HeightFilter
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import Floats
 from edge.simulation import open_simulation

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.wall_cloud import GUESSES, WallCloud
+from base_station.fusion.plane.wall_cloud import GUESSES, WallCloud
 
 MEAN = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
 SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, 1e-6, 1e-6, 1e-10])

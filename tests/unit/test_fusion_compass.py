@@ -10,7 +10,7 @@ import pytest
 
 from base_station.bench.fusion_walks import Receiver, Walk
 from base_station.fusion import FUSERS
-from base_station.fusion.compass import bearing_of, turn_by
+from base_station.fusion.plane.compass import bearing_of, turn_by
 from base_station.fusion.port import Bearing, Fuser, Start
 from shared.clock import NS_PER_S
 from shared.earth_field import EarthField, earth_field

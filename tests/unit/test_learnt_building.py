@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.building_axes import Axis, AxisFilter, Leg, LegWatch, quarter
-from base_station.fusion.learnt_building import MOST_STAIRS, KnownStairs, LearntBuilding
-from base_station.fusion.same_stairs import Climb, ClimbWatch, Stairs
+from base_station.fusion.learnt.axes import Axis, AxisFilter, Leg, LegWatch, quarter
+from base_station.fusion.learnt.building import MOST_STAIRS, KnownStairs, LearntBuilding
+from base_station.fusion.learnt.stairs import Climb, ClimbWatch, Stairs
 from base_station.fusion.told import taken_over, told
 
 STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.path_history import (
+from base_station.fusion.path.history import (
     BREAK,
     CHUNK,
     DOUBTFUL,

@@ -8,8 +8,8 @@ import msgspec
 import pytest
 
 from base_station.bench import said
+from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.port import FixVerdict, PlaceFix
-from base_station.fusion.screening import in_incident_frame, may_anchor, screen
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix, Header
 from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from base_station.fusion.fixes.sky import COMMON_PART, Sky
 from base_station.fusion.port import PlaceFix
-from base_station.fusion.sky import COMMON_PART, Sky
 from shared.clock import NS_PER_S
 from shared.messages.station import SetAnchor, SetReference, SetStart
 from tests.station_script import Script

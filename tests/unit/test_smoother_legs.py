@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from base_station.bench.said import position
-from base_station.fusion.path_history import PathHistory
+from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, UnitEvidence

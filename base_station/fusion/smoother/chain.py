@@ -1,8 +1,8 @@
 """One unit's path as a chain of knots, and the linear equations between them.
 
 The unknowns of a knot are ``[north, east, c, s, w]``: with ``c + i s`` the own path is turned and
-scaled onto the plan (linear: see ``base_station.fusion.horizontal``), and ``w`` is the rate at
-which the own heading drifts while the wearer moves.  Only the drift is not linear; the equations
+scaled onto the plan (linear: see ``base_station.fusion.plane.horizontal``), and ``w`` is the rate
+at which the own heading drifts while the wearer moves.  Only the drift is not linear; the equations
 are about what was last believed of turn and drift.
 """
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path_history import BREAK, DOUBTFUL, RESTART, PathArrays
+from base_station.fusion.path.history import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.port import Start
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence

@@ -1,4 +1,4 @@
-"""Straight legs along the walls of one building, two ways at right angles (``building_axes``).
+"""Straight legs along the walls of one building, two ways at right angles (``learnt.axes``).
 
 The axis is what all legs of all units show together; each leg then tells its unit's heading, as far
 as it may be one along a wall.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.building_axes import (
+from base_station.fusion.learnt.axes import (
     ALONG_WALLS,
     QUARTER_RAD,
     SHOWN,
@@ -24,7 +24,7 @@ from base_station.fusion.building_axes import (
     evidence,
     remember,
 )
-from base_station.fusion.path_history import BREAK, RESTART, PathArrays
+from base_station.fusion.path.history import BREAK, RESTART, PathArrays
 from base_station.fusion.smoother.chain import STATES, Belief, Chain
 from base_station.fusion.smoother.equations import Equations
 

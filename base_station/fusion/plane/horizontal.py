@@ -24,8 +24,8 @@ from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
-from base_station.fusion.heading_bank import HeadingBank, SavedBank, Sighting
 from base_station.fusion.kernels import Placed
+from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting
 from base_station.fusion.told import told
 from shared.geo import wrap_pi
 

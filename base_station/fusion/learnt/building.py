@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from base_station.fusion.building_axes import Axis, quarter
-from base_station.fusion.same_stairs import Stairs
+from base_station.fusion.learnt.axes import Axis, quarter
+from base_station.fusion.learnt.stairs import Stairs
 from base_station.fusion.told import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs

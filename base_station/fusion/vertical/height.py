@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
-from base_station.fusion.rides import Rides
+from base_station.fusion.vertical.rides import Rides
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 

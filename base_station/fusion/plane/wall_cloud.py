@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.heading_bank import Sighting
+from base_station.fusion.plane.heading_bank import Sighting
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]

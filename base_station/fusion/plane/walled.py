@@ -14,13 +14,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.compassed import CompassedFilter, SavedCompassed
-from base_station.fusion.heading_bank import Sighting
-from base_station.fusion.horizontal import turn_of
 from base_station.fusion.kernels import Placed, placed_before
+from base_station.fusion.plane.compassed import CompassedFilter, SavedCompassed
+from base_station.fusion.plane.heading_bank import Sighting
+from base_station.fusion.plane.horizontal import turn_of
+from base_station.fusion.plane.wall_cloud import SavedCloud, WallCloud
 from base_station.fusion.port import Bearing
 from base_station.fusion.told import told
-from base_station.fusion.wall_cloud import SavedCloud, WallCloud
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ import math
 
 import msgspec
 
-from base_station.fusion.outliers import Outliers, Shape
+from base_station.fusion.fixes.outliers import Outliers, Shape
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import PlaceFix
 

@@ -6,12 +6,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.building_axes import AxisFilter, Leg, LegWatch
-from base_station.fusion.learnt_building import LearntBuilding
-from base_station.fusion.own_path import Stretch
-from base_station.fusion.same_stairs import STD_M, Climb, ClimbWatch, Stairs
+from base_station.fusion.learnt.axes import AxisFilter, Leg, LegWatch
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.learnt.stairs import STD_M, Climb, ClimbWatch, Stairs
+from base_station.fusion.path.own_path import Stretch
+from base_station.fusion.plane.walled import WalledFilter
 from base_station.fusion.told import taken_over
-from base_station.fusion.walled import WalledFilter
 
 Floats = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.compass import CONTRADICTS2, CompassUse, turn_by, worth_of
-from base_station.fusion.heading_bank import Sighting
-from base_station.fusion.horizontal import HorizontalFilter, SavedHorizontal, turn_of
+from base_station.fusion.plane.compass import CONTRADICTS2, CompassUse, turn_by, worth_of
+from base_station.fusion.plane.heading_bank import Sighting
+from base_station.fusion.plane.horizontal import HorizontalFilter, SavedHorizontal, turn_of
 from base_station.fusion.port import Bearing
 
 Floats = NDArray[np.float64]

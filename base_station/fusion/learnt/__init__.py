@@ -1,0 +1,1 @@
+"""What people's paths show of a building that nobody has a plan of."""
