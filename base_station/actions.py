@@ -19,7 +19,7 @@ from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
 from base_station.pins import book as pin_book
 from base_station.pins.book import PinAction, change_pins
-from base_station.positioning import Positioning
+from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
 from shared.errors import UserError
 from shared.geo import Anchor

@@ -35,7 +35,7 @@ from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, Fault, StationState, UnitState
 from base_station.pins.late import take_due
 from base_station.pins.sightings import note_sighting
-from base_station.positioning import Positioning
+from base_station.positioning.positioning import Positioning
 from base_station.thermal import dose_of
 from shared.channels import Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S

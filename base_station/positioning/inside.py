@@ -1,0 +1,40 @@
+"""Who is in the building, and whose barometer feels the weather only."""
+
+from __future__ import annotations
+
+from base_station.live_state import StationState, UnitState
+
+OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
+OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
+WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
+
+
+def is_outside(state: StationState, unit: UnitState) -> bool:
+    """Whether its barometer feels the weather, and no doors and fans of the building; no pin may
+    matter for that, or what is without pins would not be what it would be.
+    """
+    fused, history = unit.fused, state.paths.get(unit.unit_id)
+    shown_m = None if history is None else history.shown_m
+    if fused is None or shown_m is None:
+        return False
+    if state.plan is not None and state.plan.outlines:
+        return state.plan.depth_m(*shown_m) < -OUTSIDE_M
+    return fused.since_gps_s is not None and fused.since_gps_s < OUTSIDE_FIX_S
+
+
+def note_inside(state: StationState, unit: UnitState) -> None:
+    """Since when the wearer is in the building; without an outline, since work began."""
+    fused = unit.fused
+    if fused is None:
+        return
+    if state.plan is not None and state.plan.outlines:
+        was_inside = unit.inside_since_ns is not None
+        is_inside = state.plan.is_inside(fused.north_m, fused.east_m, was_inside)
+    else:
+        at_work = state.incident is not None and state.incident.closed_ns is None
+        walked_m = unit.position.distance_m if unit.position else 0.0
+        is_inside = at_work and (unit.inside_since_ns is not None or walked_m > WORK_BEGINS_M)
+    if not is_inside:
+        unit.inside_since_ns = None
+    elif unit.inside_since_ns is None:
+        unit.inside_since_ns = state.t_ns

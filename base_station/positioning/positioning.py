@@ -1,0 +1,278 @@
+"""Brings every unit's own path and satellite fixes into the incident frame, with its floors.
+
+Holds one fuser a unit, all of one kind; the anchor, the plan and what became of a fix are in
+the live state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from base_station.fusion.fixes.sky import Sky
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.plane.compass import bearing_of
+from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, PlaceFix, Start
+from base_station.fusion.smoother.port import Smoother
+from base_station.live_state import StationState, UnitState
+from base_station.pins.book import has_pins
+from base_station.pins.late import note_late
+from base_station.pins.pinned import PinnedUnits
+from base_station.pins.pinning import floors_said
+from base_station.positioning.clocks import station_ns
+from base_station.positioning.fixes import place_fix
+from base_station.positioning.frame import reframe
+from base_station.positioning.inside import is_outside, note_inside
+from base_station.positioning.said import said
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.learnt_floors import BEGAN_M, Landing
+from base_station.site.plan import Plan, Ring
+from base_station.site.roaming import RADII_95, roamed_m
+from shared.clock import NS_PER_S
+from shared.geo import Anchor
+from shared.messages import FusedPosition, GpsFix, Header, Position
+from shared.quality import Quality
+
+LATE_NS = 5 * NS_PER_S  # a fix of so long ago came out of a journal
+
+
+class Positioning:
+    """The fusers of all units."""
+
+    def __init__(
+        self,
+        kind: FuserKind,
+        smoother: Smoother,
+        saved: Mapping[str, bytes],
+        saved_pinned: Mapping[str, bytes],
+    ) -> None:
+        self._kind = kind
+        self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
+        self._grid: FloorGrid | None = None
+        self._pinned = PinnedUnits(kind, smoother, saved_pinned)
+
+    def consider(self, plan: Plan | None) -> None:
+        """What stands in everybody's way, from now on."""
+        self._grid = FloorGrid.of(plan)
+        self._pinned.grid = self._grid
+        for fuser in (*self._fusers.values(), *self._pinned.all()):
+            fuser.consider(self._grid)
+
+    def reach(self, state: StationState, unit: UnitState) -> Ring:
+        """The border of what somebody who is not heard can have walked to since, on the floor
+        where that was; empty where no plan tells, or somebody is heard.
+        """
+        fused = unit.fused
+        if self._grid is None or fused is None or fused.floor is None or unit.link == "live":
+            return ()
+        known_m = RADII_95 * max(fused.std_north_m, fused.std_east_m)
+        way_m = known_m + roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
+        return self._grid.reach(fused.floor, fused.north_m, fused.east_m, way_m)
+
+    def save(self) -> dict[str, bytes]:
+        return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
+
+    def save_pinned(self) -> dict[str, bytes]:
+        return self._pinned.save()
+
+    def follow(self, state: StationState, unit: UnitState, position: Position) -> list[str]:
+        """Gives the units whose past was solved again because this one has gone on."""
+        told = self._told(unit)
+        fuser, *pinned = told
+        reason = fuser.advance(position)
+        if reason:
+            _count(unit, reason)
+        for one in pinned:
+            one.advance(position)
+        t_ns = station_ns(state, unit, position.header.t_mono_ns)
+        outside = is_outside(state, unit)
+        air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=outside)
+        bearing = _bearing(state, position)
+        for one in told:
+            if air is not None:
+                one.feel(air)
+            if bearing is not None:
+                one.face(bearing)
+        state.learnt_building = fuser.recognise(state.learnt_building)
+        for one in pinned:
+            one.recognise(state.learnt_building)
+        history = _history(state, unit)
+        begins = history.end_ns is None
+        history.note(position, t_ns, bool(reason))
+        if state.learnt_floors.follow(position, unit.unit_id):
+            self._land(state, unit, t_ns, outside)
+        if history.is_awaited or (begins and has_pins(state, unit.unit_id)):
+            return self.solve_pins(state, [unit.unit_id])
+        return []
+
+    def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> list[str]:
+        """Pins of these units changed; gives those whose trail did."""
+        state.learnt_floors.say(floors_said(state))
+        return self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+
+    def begin_incident(self, state: StationState, before_ns: int) -> None:
+        """What was known of paths and pins before that time no longer matters."""
+        state.learnt_floors.trim(before_ns)
+        state.learnt_building = LearntBuilding()
+        for history in state.paths.values():
+            history.trim(before_ns)
+        old = [pin.pin_id for pin in state.pins.values() if pin.set_ns <= before_ns]
+        for pin_id in old:
+            del state.pins[pin_id]
+            state.pin_verdicts.pop(pin_id, None)
+        for unit in state.units.values():
+            if unit.plain_trail is not None:
+                unit.plain_trail.clear()
+        self.solve_pins(state, list(state.units))
+
+    def fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
+        """Whether the fix is used, and why not."""
+        place = place_fix(state, unit, fix, self._fuser(unit).estimate)
+        verdict = place if isinstance(place, FixVerdict) else self._correct(state, unit, place)
+        _count(unit, verdict.reason)
+        return verdict
+
+    def start(self, state: StationState, unit: UnitState, start: Start) -> None:
+        state.start_set = True
+        if unit.unit_id == state.barometers.reference_id:
+            state.sky = Sky()
+        self._fuser(unit).start(start)
+        _history(state, unit).begin_with(start)
+        self.solve_pins(state, [unit.unit_id])
+
+    def forget(self, state: StationState, unit: UnitState) -> None:
+        """Where its wearers were, and what was learnt of their walk."""
+        self._fusers.pop(unit.unit_id, None)
+        self._pinned.forget(unit)
+        state.paths.pop(unit.unit_id, None)
+        state.learnt_floors.forget(unit.unit_id)
+        state.learnt_building = state.learnt_building.without(unit.unit_id)
+        state.late.pop(unit.unit_id, None)
+        unit.fused, unit.position = None, None
+        unit.trail.clear()
+
+    def set_anchor(self, state: StationState, anchor: Anchor) -> None:
+        """Say where the incident frame lies.  What was placed by hand stays where it is on the
+        plan; what the first satellite fix had placed moves with the new anchor.
+        """
+        old = state.anchor
+        if old is not None and state.anchor_by_gps:
+            shift = anchor.to_incident_m(old.lat_deg, old.lon_deg, old.height_m)
+            turn_rad = old.rotation_rad - anchor.rotation_rad
+            for fuser in (*self._fusers.values(), *self._pinned.all()):
+                fuser.reframe(turn_rad, *shift)
+            reframe(state, turn_rad, shift)
+        state.anchor, state.anchor_by_gps, state.sky = anchor, False, Sky()
+
+    def fused(self, state: StationState, unit: UnitState, header: Header) -> FusedPosition | None:
+        """The unit's place as it is now; the live state, its trail included, follows it."""
+        estimate = self._fuser(unit).estimate()
+        if estimate is None:
+            return None
+        held = unit.fused.floor if unit.fused is not None else None
+        pinned = self._pinned.get(unit.unit_id)
+        if pinned is None:
+            unit.fused = plain = said(state, unit, estimate, self._kind.name, held, header)
+        else:
+            trail = unit.plain_trail or []
+            was = trail[-1].floor if trail else held
+            plain = said(state, unit, estimate, self._kind.name, was, header)
+            unit.extend_plain_trail(plain)
+            unit.fused = said(
+                state, unit, pinned.estimate() or estimate, self._kind.name, held, header
+            )
+        unit.reach = ()
+        unit.extend_trail(unit.fused)
+        history = state.paths.get(unit.unit_id)
+        if history is not None:
+            history.show(estimate, plain.floor)
+        if unit.fused.quality is not Quality.LOST:
+            unit.unplaced_since_ns = None
+        elif unit.unplaced_since_ns is None:
+            unit.unplaced_since_ns = state.t_ns
+        note_inside(state, unit)
+        return unit.fused
+
+    def recalled(
+        self, state: StationState, unit: UnitState, position: Position, header: Header
+    ) -> FusedPosition | None:
+        """Where the wearer was at a position that came late; the trail is filled in there."""
+        estimate = self._fuser(unit).recall(position)
+        boot = unit.path_boot
+        if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
+            return None
+        self._fuser(unit).remember(position)
+        fused = said(state, unit, estimate, self._kind.name, None, header)
+        unit.fill_plain_trail(fused)
+        pinned = self._pinned.get(unit.unit_id)
+        known = None if pinned is None else pinned.recall(position)
+        if pinned is not None and known is not None:
+            pinned.remember(position)
+            fused = said(state, unit, known, self._kind.name, None, header)
+        unit.fill_trail(fused)
+        if unit.unit_id in state.paths:
+            state.paths[unit.unit_id].fill(position, fused.t_meas_ns)
+        _note_late(state, unit)
+        return fused
+
+    def _land(self, state: StationState, unit: UnitState, t_ns: int, outside: bool) -> None:
+        """The wearer walks on the level: a storey is learnt of it, or its height of a storey."""
+        estimate = self._fuser(unit).estimate()
+        if estimate is None:
+            return
+        place = estimate.north_m, estimate.east_m
+        start = state.paths[unit.unit_id].start
+        state.learnt_floors.land(
+            Landing(t_ns, unit.unit_id, *place, estimate.down_m, estimate.std_down_m),
+            is_outside=outside,
+            began_on_ground=start is None or abs(start.down_m) < BEGAN_M,
+        )
+        if self._grid is None:  # else the fuser knows the plan's storeys, and when it is inside
+            storeys = [one for one in state.storeys_at(*place) if one.seen]
+            for fuser in self._told(unit):
+                fuser.rest_on(storeys)
+
+    def _correct(self, state: StationState, unit: UnitState, place: PlaceFix) -> FixVerdict:
+        verdict, *_ = [fuser.correct(place) for fuser in self._told(unit)]
+        if verdict.accepted:
+            t_ns = station_ns(state, unit, place.t_mono_ns)
+            _history(state, unit).fix(place, t_ns)
+            if t_ns < state.t_ns - LATE_NS:
+                _note_late(state, unit)
+        return verdict
+
+    def _told(self, unit: UnitState) -> tuple[Fuser, ...]:
+        """Who hears of a unit: the fuser that knows no pins, and the one that does, if any."""
+        pinned = self._pinned.get(unit.unit_id)
+        return (self._fuser(unit),) if pinned is None else (self._fuser(unit), pinned)
+
+    def _fuser(self, unit: UnitState) -> Fuser:
+        fuser = self._fusers.get(unit.unit_id)
+        if fuser is None:
+            fuser = self._fusers[unit.unit_id] = self._kind.new()
+            fuser.consider(self._grid)
+        return fuser
+
+
+def _history(state: StationState, unit: UnitState) -> PathHistory:
+    history = state.paths.get(unit.unit_id)
+    if history is None:
+        history = state.paths[unit.unit_id] = PathHistory()
+    return history
+
+
+def _bearing(state: StationState, position: Position) -> Bearing | None:
+    """What the unit's compass tells, where it is known which way the plan lies on the Earth."""
+    if position.magnetic_north is None or state.anchor is None:
+        return None
+    return bearing_of(position.magnetic_north, state.anchor, state.t_ns)
+
+
+def _note_late(state: StationState, unit: UnitState) -> None:
+    if has_pins(state, unit.unit_id):
+        note_late(state.late, unit.unit_id, state.t_ns)
+
+
+def _count(unit: UnitState, reason: str) -> None:
+    if reason:
+        unit.not_used[reason] = unit.not_used.get(reason, 0) + 1

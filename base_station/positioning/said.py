@@ -1,0 +1,44 @@
+"""An estimate as the message that everybody gets, with its floor."""
+
+from __future__ import annotations
+
+from base_station.fusion.port import Estimate
+from base_station.live_state import StationState, UnitState
+from base_station.site.storeys import floor_at, sureness
+from shared.messages import FusedPosition, Header
+
+
+def said(
+    state: StationState,
+    unit: UnitState,
+    estimate: Estimate,
+    fuser: str,
+    held: int | None,
+    header: Header,
+) -> FusedPosition:
+    """``held``: the floor it was on, where that is known."""
+    storeys = state.storeys_at(estimate.north_m, estimate.east_m)
+    floor = floor_at(storeys, estimate.down_m, held)
+    sure = None
+    if floor is not None:
+        sure = sureness(storeys, floor, estimate.down_m, estimate.std_down_m)
+    return FusedPosition(
+        header=header,
+        unit_id=unit.unit_id,
+        t_meas_ns=min(unit.path_boot.station_ns(estimate.t_mono_ns), header.t_utc_ns),
+        north_m=estimate.north_m,
+        east_m=estimate.east_m,
+        down_m=estimate.down_m,
+        std_north_m=estimate.std_north_m,
+        std_east_m=estimate.std_east_m,
+        std_down_m=estimate.std_down_m,
+        correlation_ne=estimate.correlation_ne,
+        heading_rad=estimate.heading_rad,
+        heading_std_rad=estimate.heading_std_rad,
+        floor=floor,
+        quality=estimate.quality,
+        quality_reason=estimate.quality_reason,
+        fuser=fuser,
+        since_gps_s=estimate.since_gps_s,
+        floor_probability=sure,
+    )
