@@ -82,6 +82,9 @@ class Agent:
         if not self.journal.exists():
             return set()
         with closing(sqlite3.connect(f"file:{self.journal}?mode=ro", uri=True)) as journal:
+            laid_out = journal.execute("SELECT 1 FROM sqlite_master WHERE name = 'message'")
+            if laid_out.fetchone() is None:  # the agent has only just made the file
+                return set()
             rows = journal.execute(
                 "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
             ).fetchall()
