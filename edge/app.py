@@ -7,6 +7,7 @@ import logging
 import secrets
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime
 from queue import SimpleQueue
 from threading import Event, Timer
@@ -150,7 +151,7 @@ def compose_agent(
         write_calibration(calibration, folder.calibrations / f"{identity(calibration)}.toml")
     description = raw.description(
         clock.monotonic_ns(),
-        source.description,
+        _as_set(source.description, config),
         source=config.source,
         tracker=config.tracker,
         calibration="" if calibration is None else identity(calibration),
@@ -227,6 +228,11 @@ class ZenohStation:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load
 
         return why_no_link(self._member.connect, self._member.identity, datetime.now(UTC))
+
+
+def _as_set(sensor: SensorDescription, config: EdgeConfig) -> SensorDescription:
+    """What the settings say of a sensor goes before what its source does."""
+    return sensor if config.gain_std is None else replace(sensor, gain_std=config.gain_std)
 
 
 def _calibration(

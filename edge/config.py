@@ -32,6 +32,7 @@ class EdgeConfig:
     data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
     tracker: str = "eskf"  # none: an agent elsewhere tracks, from the raw samples (bus:UNIT)
     calibration: Path | None = None  # from `muster edge calibrate`; none: sensors as they are
+    gain_std: Annotated[float, Meta(ge=0.0, le=0.2)] | None = None  # none: as the source says
     place: Place | None = None  # roughly where it is used, for the magnetic field; none: by GPS
     position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0
     speed: Annotated[float, Meta(ge=0.01, le=1000.0)] = 1.0  # at which recordings are played

@@ -232,6 +232,7 @@ class TrackerPipeline:
             has_gps=self._has_gps,
             calibrated_s=None if calibration is None else round(calibration.made.timestamp()),
             calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
+            gain_std=sensor.gain_std,
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:

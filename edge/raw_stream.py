@@ -105,6 +105,7 @@ class RawStream:
             has_magnetometer=sensor.mag_present,
             has_barometer=sensor.barometer_present,
             has_gps=False,
+            gain_std=sensor.gain_std,
         )
 
     def _header(self, t_ns: int) -> Header:
@@ -135,6 +136,7 @@ def sensor_of(description: UnitDescription) -> SensorDescription:
         gyro_full_scale_radps=through.gyro_full_scale_radps,
         mag_present=through.has_magnetometer,
         barometer_present=through.has_barometer,
+        gain_std=through.gain_std,
     )
 
 

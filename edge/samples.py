@@ -130,6 +130,6 @@ class SensorDescription:
     gyro_full_scale_radps: float | None = None
     mag_present: bool = False
     barometer_present: bool = False
-    gain_std: float | None = None  # of scale and axes, left by a calibration; None: it has none
+    gain_std: float | None = None  # how far scale and axes may be off; None: nobody says
     mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none
     mag_earth_ut: float | None = None  # as what it showed the earth's field in that calibration

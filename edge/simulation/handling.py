@@ -53,6 +53,7 @@ class HandledUnit:
             accel_full_scale_mps2=_or_none(sensors.imu.accel.full_scale),
             gyro_full_scale_radps=_or_none(sensors.imu.gyro.full_scale),
             mag_present=True,
+            gain_std=sensors.imu.gain_std,
         )
 
     def calibrated_by_the_book(self) -> Iterator[ImuBatch]:

@@ -24,6 +24,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
     has_gps: bool
     calibrated_s: int | None = None  # UTC seconds at which it was made; None: no calibration
     calibration_faults: str = ""  # what is poor about it, in words; empty: nothing
+    gain_std: float | None = None  # how far scale and axes may be off; None: unknown
 
     def to_wire(self) -> unit_description_pb2.UnitDescription:
         return unit_description_pb2.UnitDescription(
@@ -41,6 +42,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_gps=self.has_gps,
             calibrated_s=self.calibrated_s or 0,
             calibration_faults=self.calibration_faults,
+            gain_std_ppm=_gain_std_ppm(self.gain_std),
         )
 
     @staticmethod
@@ -60,4 +62,10 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_gps=wire.has_gps,
             calibrated_s=wire.calibrated_s or None,
             calibration_faults=wire.calibration_faults,
+            gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
         )
+
+
+def _gain_std_ppm(gain_std: float | None) -> int:
+    """0 says that nothing is known: perfect gains are 1."""
+    return 0 if gain_std is None else max(unsigned32(gain_std, 1e6), 1)

@@ -18,6 +18,7 @@ EXAMPLES = PROJECT_ROOT / "deploy" / "examples"
 LEFT_OUT = {
     "calibration",
     "enrolment",
+    "gain_std",
     "http.certificate",
     "http.private_key",
     "place",

@@ -100,10 +100,14 @@ def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
     st.floats(1.0, 4000.0),
     st.one_of(st.none(), st.floats(1.0, 1000.0)),
     st.booleans(),
+    st.one_of(st.none(), st.floats(0.0, 0.2)),
 )
-def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag):
+def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag, gain_std):
     def passed(sensor: SensorDescription) -> SensorDescription:
         return sensor_of(RawStream("u1", 1).description(0, sensor, source="", tracker=""))
 
-    once = passed(SensorDescription("s", rate_hz, full_scale, full_scale, mag))
+    sensor = SensorDescription("s", rate_hz, full_scale, full_scale, mag, gain_std=gain_std)
+    once = passed(sensor)
     assert passed(once) == once
+    assert (once.gain_std is None) == (gain_std is None)  # perfect is not unknown
+    assert gain_std is None or abs((once.gain_std or 0.0) - gain_std) <= 1e-6

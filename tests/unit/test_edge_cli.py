@@ -103,6 +103,16 @@ def test_a_wrong_key_is_named_with_the_right_one(line, said, tmp_path):
         load_config(file, EdgeConfig)
 
 
+@pytest.mark.parametrize("value", ["-0.001", "0.21", "nan", "inf", "'good'", "true"])
+def test_gains_that_cannot_be_are_one_sentence(value, tmp_path):
+    file = tmp_path / "unit.toml"
+    file.write_text(f'source = "x"\ngain_std = {value}\n')
+    with pytest.raises(ConfigError) as caught:
+        load_config(file, EdgeConfig)
+    assert "gain_std" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_settings_that_cannot_work_leave_nothing_behind(tmp_path):
     config = EdgeConfig(unit="u1", source="simulated:nowhere", data=tmp_path / "data")
     with pytest.raises(ConfigError):
