@@ -31,7 +31,7 @@ from base_station.bench.station import (
 from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
 from base_station.drive import DELTA_NS
 from shared.bench_figures import FiguresFile, write_figures
-from shared.clock import NS_PER_MS
+from shared.clock import NS_PER_S
 from shared.errors import BusError, StoreError
 
 _PATIENCE_S = 60.0
@@ -260,7 +260,7 @@ def latency_of(values_ms: list[float] | tuple[float, ...]) -> Latency:
 def _table(report: BusReport) -> Table:
     table = Table(
         title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores",
-        caption=f"A console is told every {DELTA_NS // NS_PER_MS} ms, of alarms sooner.",
+        caption=f"A console is told every {DELTA_NS / NS_PER_S:g} s, of alarms sooner.",
     )
     for title in ("", "measured", "to reach"):
         table.add_column(title, justify="left" if title == "" else "right")
