@@ -13,7 +13,7 @@ from edge.journal_server import JournalServer
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, batch_of
 from edge.raw_uplink import RawUplink
-from edge.samples import SensorBatch
+from edge.samples import SensorBatch, SensorDescription
 from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.spool import Journaled, Spool
@@ -30,6 +30,7 @@ from shared.quality import Reason
 
 U = "FF-01"
 WALK = "simulated:stairs?seed=3"
+SENSOR = open_source(WALK).description
 
 
 def batches(one_by_one: bool = False) -> Iterator[SensorBatch]:
@@ -52,8 +53,9 @@ def run(pipeline: TrackerPipeline, from_: Iterable[SensorBatch]) -> list[Message
     return [*messages, *pipeline.finish()]
 
 
-def pipeline(unit_id: str, tracker: str, boot_id: int = 7) -> TrackerPipeline:
-    sensor = open_source(WALK).description
+def pipeline(
+    unit_id: str, tracker: str, boot_id: int = 7, sensor: SensorDescription = SENSOR
+) -> TrackerPipeline:
     stamper = Stamper(unit_id, boot_id, ManualClock())
     weak = tracker == NO_TRACKER
     return TrackerPipeline(
@@ -92,7 +94,8 @@ class Air:
         """What the agent computes for one run of the unit that has ended."""
         self.source = source = BusSource(U)
         assert source.follow(self.listener, Event())
-        said = run(pipeline(tracker_id(U), "eskf", boot_id=9), source.batches())
+        agent = pipeline(tracker_id(U), "eskf", boot_id=9, sensor=source.description)
+        said = run(agent, source.batches())
         return positions(said)
 
 

@@ -77,6 +77,7 @@ def test_a_replay_says_the_same_to_the_last_bit(tmp_path):
     source = BlackBoxSource(boot)
     replayed = messages_of(source, RawStream("u1", 7), list(source.batches()))
     assert replayed == said
+    assert source.description.gain_std == open_source(SCENARIO).description.gain_std == 0.002
     kinds = {type(message) for message in said}
     assert {Position, Status, UnitEvent} <= kinds
     positions = [message for message in said if isinstance(message, Position)]

@@ -1,0 +1,104 @@
+"""How far a sensor's gains may be off goes from settings or source into what a unit states."""
+
+from __future__ import annotations
+
+import math
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from edge.app import run_agent
+from edge.config import EdgeConfig
+from edge.sources.black_box import BlackBoxSource
+from edge.spool import Spool
+from edge.tracker.config import EskfConfig
+from shared.channels import DESCRIPTION, POSITION, Channel
+from shared.codec import decode
+from shared.messages import Message, Position, UnitDescription
+
+UNKNOWN_STD = EskfConfig().data_sheet_gain_std
+SCENARIO = """\
+summary = "two sides of a square"
+start = [0, 0]
+
+[[legs]]
+type = "stand"
+duration_s = 3
+
+[[legs]]
+type = "walk"
+to = [[25, 0], [25, 25]]
+"""
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What an agent has left behind after its walk, with nobody there to listen."""
+
+    described: UnitDescription  # as it would have gone over the bus
+    last: Position
+    black_box: BlackBoxSource
+
+    @property
+    def stated_m(self) -> float:
+        return math.hypot(self.last.std_north_m, self.last.std_east_m)
+
+
+def ran(folder: Path, gain_std: float | None) -> Ran:
+    folder.mkdir()
+    scenario = folder / "square.toml"
+    scenario.write_text(SCENARIO)
+    config = EdgeConfig(
+        source=f"simulated:{scenario}",
+        unit="u1",
+        connect=("tcp/127.0.0.1:9",),
+        data=folder,
+        gain_std=gain_std,
+    )
+    run_agent(config, Event(), for_s=None, paced=False)
+    (boot,) = (folder / "u1" / "black_box").iterdir()
+    described, last = newest(folder / "u1" / "journal.sqlite", DESCRIPTION, POSITION)
+    assert isinstance(described, UnitDescription)
+    assert isinstance(last, Position)
+    return Ran(described, last, BlackBoxSource(boot))
+
+
+def newest(journal: Path, *channels: Channel) -> list[Message]:
+    """The last message of each channel in the journal that an agent left."""
+    spool = Spool(journal, lambda: secrets.randbits(63), 0, 10**9)
+    try:
+        (boot,) = spool.boots()
+        return [decode(each, next(spool.newest_first(boot.boot_id, each))) for each in channels]
+    finally:
+        spool.close()
+
+
+@pytest.fixture(scope="module")
+def by_itself(tmp_path_factory) -> Ran:
+    return ran(tmp_path_factory.mktemp("gains") / "itself", None)
+
+
+@pytest.fixture(scope="module")
+def set_wide(tmp_path_factory) -> Ran:
+    return ran(tmp_path_factory.mktemp("gains") / "wide", UNKNOWN_STD)
+
+
+def test_a_simulated_unit_knows_its_sensors(by_itself):
+    assert by_itself.described.gain_std == by_itself.black_box.description.gain_std == 0.002
+
+
+def test_the_settings_go_before_what_the_source_says(set_wide):
+    assert set_wide.described.gain_std == set_wide.black_box.description.gain_std == UNKNOWN_STD
+
+
+def test_a_unit_that_knows_its_gains_states_itself_surer_on_the_same_way(by_itself, set_wide):
+    assert by_itself.stated_m < 0.8 * set_wide.stated_m
+    assert by_itself.last.heading_std_rad < set_wide.last.heading_std_rad
+    apart_m = math.dist(
+        (by_itself.last.north_m, by_itself.last.east_m),
+        (set_wide.last.north_m, set_wide.last.east_m),
+    )
+    assert apart_m < 0.5  # a compass weighs in
