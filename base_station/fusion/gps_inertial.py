@@ -103,6 +103,7 @@ class GpsInertialFuser:
         memory.assumed = False
         memory.trust.outliers.clear()
         memory.recognition.forget()
+        memory.recognition.shared_m2 = start.std_m**2
         if memory.last is not None:
             self._walk(OwnPath().stretch(self._kind, None, memory.last), memory.last.std_down_m)
 
@@ -183,6 +184,7 @@ class GpsInertialFuser:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
             self._height.correct(fix.down_m, std_m)
         memory.fix_t_mono_ns = max(fix.t_mono_ns, memory.fix_t_mono_ns or 0)
+        memory.recognition.hear_fix(memory.trust.common_m2(fix))
         return FixVerdict(True)
 
     def _correct_past(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
@@ -278,7 +280,7 @@ class GpsInertialFuser:
         self._horizontal.spread(self._kind.restart_m**2)
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
-        self._memory.recognition = Recognition()
+        self._memory.recognition = Recognition(shared_m2=self._memory.recognition.shared_m2)
         self._horizontal.hear_anew()
 
     def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:

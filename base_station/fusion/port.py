@@ -28,6 +28,7 @@ class PlaceFix(msgspec.Struct, frozen=True):
     down_m: float
     horizontal_std_m: float
     vertical_std_m: float | None  # None: a fix without height
+    common_m2: float | None = None  # what all receivers err by, each axis, as far as it was learnt
 
 
 class AirHeight(msgspec.Struct, frozen=True):

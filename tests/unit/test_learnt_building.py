@@ -13,7 +13,7 @@ from base_station.fusion.learnt.building import MOST_STAIRS, KnownStairs, Learnt
 from base_station.fusion.learnt.stairs import Climb, ClimbWatch, Stairs
 from base_station.fusion.told import taken_over, told
 
-STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
+STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True, shared_m2=0.5)
 
 FOUND = KnownStairs((("FF-01", STAIRS),))
 
@@ -65,10 +65,18 @@ def test_each_unit_s_first_word_for_stairs_counts_once() -> None:
     assert learnt.with_stairs(0, "FF-01", again) is learnt
     two = learnt.with_stairs(0, "FF-02", msgspec.structs.replace(STAIRS, north_m=12.0))
     assert two.stairs[0].mean.north_m == pytest.approx(11.0)
-    assert (
-        0.6 < two.stairs[0].mean.variance_m2 / STAIRS.variance_m2 < 0.75
-    )  # some errors are shared
+    assert two.stairs[0].mean.variance_m2 == pytest.approx(2.0 * (0.5 + 0.5 / 2.0))
     assert len(two.with_stairs(-1, "FF-02", again).stairs) == 2
+
+
+def test_what_everybody_errs_by_does_not_average_away() -> None:
+    def of_six(shared_m2: float) -> float:
+        word = msgspec.structs.replace(STAIRS, shared_m2=shared_m2)
+        return KnownStairs(tuple((f"FF-0{n}", word) for n in range(6))).mean.variance_m2 / 2.0
+
+    assert of_six(0.0) == pytest.approx(1.0 / 6.0)
+    assert of_six(0.3) == pytest.approx(0.3 + 0.7 / 6.0)
+    assert of_six(0.8) == pytest.approx(0.8 + 0.2 / 6.0)
 
 
 def test_the_axis_is_what_most_say() -> None:
@@ -195,5 +203,5 @@ def test_reframed_it_is_the_same_building() -> None:
     assert moved.axis is not None
     assert quarter(moved.axis.direction_rad - 0.1) == pytest.approx(0.0)
     climb = Climb(0.0, 0.0, 0.0, -3.0, turns=True)
-    seen = Stairs.at(climb, np.array([-4.0, 12.0]), np.eye(2))
+    seen = Stairs.at(climb, np.array([-4.0, 12.0]), np.eye(2), 0.3)
     assert moved.which(seen) == 0

@@ -40,6 +40,7 @@ def test_what_the_station_s_receiver_errs_by_is_mostly_everybody_s() -> None:
 def test_it_does_what_it_says() -> None:
     """Against drawn errors: a fix is nearer, and as near as it says."""
     rng, left2, said2 = np.random.default_rng(2), [], []
+    common2, common_said2 = [], []
     for _ in range(200):
         common = rng.normal(0.0, math.sqrt(COMMON_PART) * STD_M, 2)
         own = rng.normal(0.0, math.sqrt(0.45) * STD_M, 2)
@@ -53,7 +54,12 @@ def test_it_does_what_it_says() -> None:
         fix = sky.corrected(fix_at(float(error[0]), float(error[1])), 60 * NS_PER_S)
         left2 += [fix.north_m**2, fix.east_m**2]
         said2.append(fix.horizontal_std_m**2)
+        taken_m = error - [fix.north_m, fix.east_m]
+        common2 += ((common - taken_m) ** 2).tolist()
+        assert fix.common_m2 is not None
+        common_said2.append(fix.common_m2)
     assert np.mean(left2) == pytest.approx(np.mean(said2), rel=0.15)
+    assert np.mean(common2) == pytest.approx(np.mean(common_said2), rel=0.15)
     assert np.mean(said2) < 0.85 * STD_M**2
 
 

@@ -70,6 +70,7 @@ class Sky(msgspec.Struct):
             north_m=fix.north_m - float(mean[_COMMON, 0]),
             east_m=fix.east_m - float(mean[_COMMON, 1]),
             horizontal_std_m=math.sqrt(left_m2),
+            common_m2=float(covariance[_COMMON, _COMMON]),
         )
 
     def _begin(self, std_m: float, place_std_m: float) -> None:

@@ -11,6 +11,7 @@ import math
 import msgspec
 
 from base_station.fusion.fixes.outliers import Outliers, Shape
+from base_station.fusion.fixes.sky import COMMON_PART
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import PlaceFix
 
@@ -50,6 +51,10 @@ class FixTrust(msgspec.Struct):
         """The receiver's accuracy where nothing disturbs it."""
         self.best_std_m = min(self.best_std_m, fix.horizontal_std_m)
         return self.best_std_m
+
+    def common_m2(self, fix: PlaceFix) -> float:
+        """Variance of what everybody's fixes err by alike."""
+        return COMMON_PART * self.best_m(fix) ** 2 if fix.common_m2 is None else fix.common_m2
 
     def doubt_m2(self, fix: PlaceFix, walls_std_m: float) -> float:
         """Variance beyond that."""

@@ -20,7 +20,6 @@ from base_station.fusion.told import at_least
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
 MOST_STAIRS = 40
 ODDS = 10.0  # so much likelier the same stairs than others: believed
-SHARED_M = 0.7  # by which everybody errs alike: where the engine stands, and the sky
 LEAST_M2 = 0.05  # of what is left, each way
 MOST_WORDS = 64  # about the walls' direction; more tell nothing that these do not
 OUTLIER2 = 9.0  # squared standard deviations apart: not about the same
@@ -35,7 +34,7 @@ class KnownStairs(msgspec.Struct, frozen=True):
     def mean(self) -> Stairs:
         if len(self.words) == 1:
             return self.words[0][1]
-        shared = SHARED_M**2 * np.eye(2)
+        shared = max(word.shared_m2 for _, word in self.words) * np.eye(2)
         weight, total = np.zeros((2, 2)), np.zeros(2)
         for _, word in self.words:
             place, covariance = word.place

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.learnt.axes import AxisFilter, Leg, LegWatch
 from base_station.fusion.learnt.building import LearntBuilding
-from base_station.fusion.learnt.stairs import STD_M, Climb, ClimbWatch, Stairs
+from base_station.fusion.learnt.stairs import SHARED_M2, STD_M, Climb, ClimbWatch, Stairs
 from base_station.fusion.path.own_path import Stretch
 from base_station.fusion.plane.walled import WalledFilter
 from base_station.fusion.told import taken_over
@@ -25,6 +25,7 @@ class Recognition(msgspec.Struct):
     climb: Climb | None = None  # just over
     leg: Leg | None = None
     heard: bool = False  # of stairs: the own place is not the own word any more
+    shared_m2: float = SHARED_M2  # of the own place's variance: by which everybody errs alike
 
     def follow(self, stretch: Stretch, down_m: float) -> None:
         self.climb = self.climbs.follow(stretch.north_m, stretch.east_m, down_m)
@@ -34,6 +35,10 @@ class Recognition(msgspec.Struct):
         """Place and heading are known anew; or another own frame begins."""
         self.axis, self.heard = AxisFilter(), False
         self.climb = self.leg = None
+
+    def hear_fix(self, common_m2: float) -> None:
+        """Whatever ties everybody to the frame best, a start or fixes, is what they share."""
+        self.shared_m2 = min(self.shared_m2, common_m2)
 
     def go_by(
         self, unit_id: str, learnt: LearntBuilding, horizontal: WalledFilter, *, inside: bool
@@ -56,7 +61,7 @@ class Recognition(msgspec.Struct):
     ) -> LearntBuilding:
         since = climb.since_north_m, climb.since_east_m
         place, covariance = horizontal.place_before(*since)
-        seen = Stairs.at(climb, place, covariance)
+        seen = Stairs.at(climb, place, covariance, self.shared_m2)
         row = learnt.which(seen)
         if row is None:
             return learnt

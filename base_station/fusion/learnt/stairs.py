@@ -23,7 +23,8 @@ LANDING_M = 2.5  # walked on the level: the climb is over
 STOREY_M = 2.0  # a climb of at least this
 TURNS_M = 0.5  # net way over way: less turns back on itself, and lies above the next one
 SAME_LEVEL_M = 1.2
-STD_M = 0.7  # each axis, of a climb's middle by the stairs'
+STD_M = 0.4  # each axis, of a climb's middle by the stairs': a flight is some 1.2 m wide
+SHARED_M2 = 1.0  # by which everybody errs alike, each axis, where nobody says how much
 OTHERS_PER_M2 = 0.15 / 600.0  # other stairs than those known, before anything is known of them
 
 
@@ -46,13 +47,15 @@ class Stairs(msgspec.Struct, frozen=True):
     low_m: float
     high_m: float
     turns: bool
+    shared_m2: float = SHARED_M2  # of the covariance, each axis: by which everybody errs alike
 
     @staticmethod
-    def at(climb: Climb, place: Floats, covariance: Floats) -> Stairs:
+    def at(climb: Climb, place: Floats, covariance: Floats, shared_m2: float) -> Stairs:
         """A climb whose middle is estimated there: (2,) and (2, 2)."""
         (north_m, east_m), ((north, cross), (_, east)) = place.tolist(), covariance.tolist()
         spread_m2 = north, cross, east
-        return Stairs(north_m, east_m, spread_m2, climb.low_m, climb.high_m, climb.turns)
+        levels_m = climb.low_m, climb.high_m
+        return Stairs(north_m, east_m, spread_m2, *levels_m, climb.turns, shared_m2)
 
     @property
     def variance_m2(self) -> float:
