@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from base_station.drive import REBUILT_NS
 from base_station.past.playback import compare
 from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
+from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.errors import StoreError
 from shared.messages import STATION_ID, EventKind, Header, OperatorAction, Position, UnitEvent
@@ -236,8 +238,16 @@ def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: 
     stepped = whole.drive.rebuild(script.records)
     whole.close()
 
+    read = script.records[: len(script.records) // 2]
+    killed_ns = read[-1][0]
+
+    def last_is_saved() -> bool:
+        saved_ns = first.checkpoints.latest_ns(killed_ns)
+        return saved_ns is not None and saved_ns > killed_ns - REBUILT_NS - 60 * NS_PER_S
+
     def until_killed() -> Iterator[tuple[int, str, bytes]]:
-        yield from script.records[: len(script.records) // 2]
+        yield from read
+        until(last_is_saved, "the state of some minutes ago is saved")
         raise Killed
 
     first = LiveStation(tmp_path / "killed")
