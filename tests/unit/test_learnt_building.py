@@ -178,6 +178,8 @@ def test_a_unit_that_is_forgotten_has_said_nothing() -> None:
     )
     assert learnt.without("FF-01") == LearntBuilding((KnownStairs((("FF-02", STAIRS),)),))
     assert learnt.without("FF-01").without("FF-02") == LearntBuilding()
+    other = LearntBuilding().with_axis("FF-02", Axis(0.3, 1.0))
+    assert other.with_axis("FF-01", Axis(0.1, 1.0)).without("FF-01") == other
 
 
 def test_it_is_saved_and_restored_to_the_last_bit() -> None:

@@ -89,7 +89,8 @@ class LearntBuilding(msgspec.Struct, frozen=True):
         """What the others said."""
         left = (tuple(word for word in known.words if word[0] != unit_id) for known in self.stairs)
         axes = tuple(word for word in self.axes if word[0] != unit_id)
-        return LearntBuilding(tuple(KnownStairs(words) for words in left if words), axes)
+        stairs = tuple(KnownStairs(words) for words in left if words)
+        return LearntBuilding(stairs, axes, _agreed(axes))
 
     def reframed(self, turn_rad: float, north_m: float, east_m: float) -> LearntBuilding:
         """The incident frame was moved: turned clockwise, then shifted."""
