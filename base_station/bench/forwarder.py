@@ -96,6 +96,7 @@ def forward(first: int, second: int, seed: int) -> None:
             conditions = msgspec.json.decode(line, type=Told)
             there.set(conditions.there)
             back.set(conditions.back)
+            print("set", flush=True)
         return bool(line)
 
     if not hear():  # nothing can be read from a device before it is up

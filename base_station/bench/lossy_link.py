@@ -86,11 +86,16 @@ class LossyLink:
         self.set(CLEAN)
 
     def set(self, down: Conditions, up: Conditions | None = None) -> None:
-        """``down`` from the station to the units, ``up`` the other way, the same if not given."""
+        """``down`` from the station to the units, ``up`` the other way, the same if not given.
+        Holds for all that is sent from now on.
+        """
         told = Told(there=down, back=down if up is None else up)
         assert self._forwarder.stdin is not None
+        assert self._forwarder.stdout is not None
         self._forwarder.stdin.write(msgspec.json.encode(told) + b"\n")
         self._forwarder.stdin.flush()
+        if self._forwarder.stdout.readline() != b"set\n":
+            raise BusError("the link between the namespaces has ended")
 
 
 def started(command: list[str], closing: ExitStack) -> subprocess.Popen[bytes]:
