@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import logging
+import os
 import secrets
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
@@ -45,6 +46,7 @@ from shared.clock import SystemClock
 from shared.envelope import Stamper
 from shared.errors import ConfigError
 from shared.messages import EventKind, UnitEvent
+from shared.service_manager import ServiceManager
 
 logger = logging.getLogger(__name__)
 
@@ -197,6 +199,7 @@ def compose_agent(
             outbox=outbox,
             link=link,
             commands=commands,
+            manager=ServiceManager(os.environ),
         )
     )
 

@@ -34,6 +34,7 @@ from shared.codec import decode
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
 from shared.messages import Command, EventKind, Heartbeat, UnitEvent
+from shared.service_manager import ServiceManager
 
 logger = logging.getLogger(__name__)
 
@@ -59,6 +60,7 @@ class Parts:
     outbox: Outbox
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
+    manager: ServiceManager
 
 
 class Agent:
@@ -85,6 +87,7 @@ class Agent:
         try:
             parts.outbox.put(parts.pipeline.start())
             parts.reader.start()
+            parts.manager.ready()
             while not stop.is_set() and not parts.reader.ended:
                 if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
                     reason = "the time that was set is over"
@@ -156,6 +159,7 @@ class Agent:
     def _beat(self) -> None:
         parts = self._parts
         self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
+        parts.manager.working()
         header, clock = parts.stamper.header(), parts.clock.estimate()
         heartbeat = Heartbeat(header, parts.spool.first_seq, parts.spool.last_seq)
         if clock is not None:

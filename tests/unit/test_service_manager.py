@@ -1,0 +1,51 @@
+"""What is said to whoever keeps the program running."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from shared.service_manager import ServiceManager
+
+
+@pytest.fixture
+def manager_socket(tmp_path: Path) -> Iterator[socket.socket]:
+    """Whoever started this program, listening as systemd does."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listening:
+        listening.bind(str(tmp_path / "notify"))
+        listening.settimeout(10.0)
+        yield listening
+
+
+def test_it_hears_that_the_program_is_ready_and_works(manager_socket):
+    manager = ServiceManager({"NOTIFY_SOCKET": manager_socket.getsockname()})
+    manager.ready()
+    manager.working()
+    assert [manager_socket.recv(100) for _ in range(2)] == [b"READY=1", b"WATCHDOG=1"]
+
+
+def test_an_address_without_a_file_is_understood():
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listening:
+        listening.bind("")  # the system chooses a name in the abstract namespace
+        listening.settimeout(10.0)
+        name = listening.getsockname()[1:].decode("ascii")
+        ServiceManager({"NOTIFY_SOCKET": f"@{name}"}).ready()
+        assert listening.recv(100) == b"READY=1"
+
+
+def test_without_one_nothing_is_said():
+    ServiceManager({}).ready()
+
+
+def test_one_that_is_gone_costs_nothing(tmp_path):
+    ServiceManager({"NOTIFY_SOCKET": str(tmp_path / "gone")}).working()
+
+
+def test_one_that_does_not_read_is_not_waited_for(manager_socket):
+    manager = ServiceManager({"NOTIFY_SOCKET": manager_socket.getsockname()})
+    for _ in range(10_000):
+        manager.working()
+    assert manager_socket.recv(100) == b"WATCHDOG=1"
