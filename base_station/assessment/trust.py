@@ -33,9 +33,17 @@ class Trust(msgspec.Struct, frozen=True):
 _SURE = Trust("green")
 
 
-def trust_of(state: StationState, unit: UnitState) -> Trust:
-    """The worst of what speaks against believing where the unit is shown."""
-    return _worst(unit, _conflicts(state).get(unit.unit_id, 0))
+def trust_of(unit: UnitState, conflicts: int) -> Trust:
+    """The worst of what speaks against believing where the unit is shown; so many pins contradict
+    its trail.
+    """
+    worst = _SURE
+    for doubt in _doubts(unit, conflicts):
+        if doubt.level == "red":
+            return doubt
+        if worst is _SURE:
+            worst = doubt
+    return worst
 
 
 def note_trust(state: StationState) -> None:
@@ -44,23 +52,14 @@ def note_trust(state: StationState) -> None:
     state.trust_ns = state.t_ns
     if state.incident is None or state.incident.closed_ns is not None or lasted_s > LONGEST_S:
         return
-    conflicts = _conflicts(state)
+    conflicts = conflicts_of(state)
     for unit in state.units.values():
         if unit.registered and (unit.fused is not None or unit.person is not None):
-            trust = _worst(unit, conflicts.get(unit.unit_id, 0))
+            trust = trust_of(unit, conflicts.get(unit.unit_id, 0))
             unit.trust.note(trust.level, trust.cause, lasted_s)
 
 
-def _worst(unit: UnitState, conflicts: int) -> Trust:
-    doubts = list(_doubts(unit, conflicts))
-    for level in ("red", "amber"):
-        worst = next((doubt for doubt in doubts if doubt.level == level), None)
-        if worst is not None:
-            return worst
-    return Trust("green")
-
-
-def _conflicts(state: StationState) -> Counter[str]:
+def conflicts_of(state: StationState) -> Counter[str]:
     """How many pins contradict each unit's trail."""
     return Counter(
         unit_id

@@ -10,8 +10,8 @@ from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
 from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
 from base_station.live.sinks import LiveSink, PhotoUrls
 from base_station.pipeline import StationPipeline
+from base_station.unit_views import NS_PER_MS, trail_view, unit_views
 from base_station.views import (
-    NS_PER_MS,
     StationFacts,
     alarm_view,
     beacon_views,
@@ -19,8 +19,6 @@ from base_station.views import (
     health_view,
     pin_views,
     snapshot,
-    trail_view,
-    unit_views,
 )
 from shared.messages import AlarmChange, FusedPosition
 

@@ -11,7 +11,7 @@ from base_station.assessment.figures import (
     floor_probability,
     stated_figures,
 )
-from base_station.assessment.trust import trust_of
+from base_station.assessment.trust import conflicts_of, trust_of
 from base_station.bench import said
 from base_station.db.records import TrackSample
 from base_station.live_state import StationState, UnitState
@@ -82,7 +82,7 @@ def known(**changes: object) -> UnitState:
     ],
 )
 def test_the_light_says_why(changes: dict[str, object], level: str, words: str) -> None:
-    trust = trust_of(StationState(), known(**changes))
+    trust = trust_of(known(**changes), 0)
     assert trust.level == level
     assert words in trust.reason
     assert (trust.reason == "") == (level == "green")
@@ -94,14 +94,14 @@ def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:
     stranger = known()
     stranger.registered = False
     for unit in (lost, stranger, UnitState("FF-01", registered=True)):
-        assert trust_of(StationState(), unit).level == "red"
+        assert trust_of(unit, 0).level == "red"
 
 
 def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
     state = StationState()
     state.pins["p"] = Pin("p", "place", "FF-01", 1, 1.0, 1, "chief")
     state.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
-    trust = trust_of(state, known())
+    trust = trust_of(known(), conflicts_of(state)["FF-01"])
     assert (trust.level, trust.reason) == ("amber", "a pin contradicts the trail")
     state.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
-    assert trust_of(state, known()).level == "green"
+    assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"

@@ -10,7 +10,8 @@ import pytest
 
 from base_station.api.wire import ClockView
 from base_station.live_state import TRAIL_POINTS, UnitState
-from base_station.views import StationFacts, health_view, snapshot, unit_views
+from base_station.unit_views import unit_views
+from base_station.views import StationFacts, health_view, snapshot
 from shared.messages import EventKind, Heartbeat
 from shared.messages.station import Assign, OpenIncident, RegisterUnit, SetPlan, Unassign
 from tests.station_script import Script
