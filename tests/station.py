@@ -136,7 +136,7 @@ class DeskStation:
             self.drive.submit,
         )
         self.forgettings = ForgettingDesk(
-            forgetter, folder / "forgetting.json", lambda: True, lambda _: None
+            forgetter, folder / "forgetting.json", lambda _: "", lambda _: None
         )
         self.forgettings.__enter__()
         self.services = Services(

@@ -63,7 +63,7 @@ class Disk:
         pulls: Pulls,
         act: Callable[[str, Action], object],
         save_soon: Callable[[], None],
-        may_work: Callable[[], bool],
+        leads: Callable[[], bool],
     ) -> ForgettingDesk:
         """``save_soon`` has the running station save its state, which forgetting has removed."""
 
@@ -72,8 +72,15 @@ class Disk:
                 self.roster.forget_photo(done.subject_id)
             save_soon()
 
+        def obstacle(wish: Forgetting) -> str:
+            if not wish.told:
+                return "" if leads() else "this station is the standby; ask the one that leads"
+            # Nobody has asked whether one is open here; of what it follows, the other one has.
+            is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
+            return "an incident is open; it is done when that is closed" if is_open else ""
+
         forgetter = self.forgetter(pulls, act)
-        return ForgettingDesk(forgetter, self.folder.forgettings, may_work, note_done)
+        return ForgettingDesk(forgetter, self.folder.forgettings, obstacle, note_done)
 
 
 def open_disk(
@@ -87,14 +94,15 @@ def open_disk(
         project_whole_log(store, folder.log, lambda _: None)
     projection = SqlProjection(store)
     closing.callback(projection.close)
+    steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
     return Disk(
         folder=folder,
         recorder=recorder,
         store=store,
-        accounts=Accounts(store, clock),
-        records=Records(store, clock),
-        roster=Roster(store, clock),
+        accounts=Accounts(store, steady),
+        records=Records(store, steady),
+        roster=Roster(store, steady),
         projection=projection,
         checkpoints=Checkpoints(folder.checkpoints),
-        clock=SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0)),
+        clock=steady,
     )

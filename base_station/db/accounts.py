@@ -1,7 +1,11 @@
 """Users, their login sessions and API tokens.
 
-Passwords are argon2 hashes.  Sessions and tokens are 256 random bits, of which only the
+Passwords are argon2 hashes.  Sessions, tokens and tickets are 256 random bits, of which only the
 SHA-256 is stored: who reads the database cannot log in with it.
+
+Of two stations each has sessions of its own, and one table of users.  So what ends a user's
+sessions begins a new *generation* of them in that table: it ends those at the other station too,
+which copies it.
 """
 
 from __future__ import annotations
@@ -14,15 +18,16 @@ from enum import IntEnum
 
 import msgspec
 from pwdlib import PasswordHash
-from sqlalchemy import delete, func, select
+from sqlalchemy import ColumnElement, and_, delete, func, select
 from sqlalchemy.orm import Session
 
-from base_station.db.models import ApiToken, LoginSession, User
+from base_station.db.models import ApiToken, HandOver, LoginSession, User
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 
 SESSION_S = 12 * 3600
+HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
 MIN_PASSWORD = 10
 _HASHES_AT_ONCE = 2  # each takes 64 MB
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
@@ -70,23 +75,25 @@ class Accounts:
     # ---- users
 
     def add_user(self, username: str, password: str, role: Role) -> None:
-        _check_password(password)
         if not username.strip():
             raise UserError("a user needs a name")
+        password_hash = self._hash(password)
         with self._store.write() as session:
             if session.get(User, username) is not None:
                 raise UserError(f"there is a user {username!r} already")
             session.add(
                 User(
                     username=username,
-                    password_hash=self._hasher.hash(password),
+                    password_hash=password_hash,
                     role=role.word,
                     created_ns=self._clock.utc_ns(),
+                    generation=0,
                 )
             )
 
     def change_user(self, username: str, password: str | None, role: Role | None) -> None:
         """A new password ends the user's sessions and tokens."""
+        password_hash = "" if password is None else self._hash(password)
         with self._store.write() as session:
             user = _user(session, username)
             if role is not None and role is not Role.ADMINISTRATOR:
@@ -94,9 +101,8 @@ class Accounts:
             if role is not None:
                 user.role = role.word
             if password is not None:
-                _check_password(password)
-                user.password_hash = self._hasher.hash(password)
-                session.execute(delete(LoginSession).where(LoginSession.username == username))
+                user.password_hash = password_hash
+                _end_sessions(session, user)
                 session.execute(delete(ApiToken).where(ApiToken.username == username))
 
     def remove_user(self, username: str) -> None:
@@ -116,7 +122,7 @@ class Accounts:
         with self._store.read() as session:
             rows = session.execute(
                 select(LoginSession.username, func.count())
-                .where(LoginSession.expires_ns > self._clock.utc_ns())
+                .join(User, self._is_open())
                 .group_by(LoginSession.username)
             )
             return {row[0]: row[1] for row in rows}
@@ -124,29 +130,51 @@ class Accounts:
     def end_sessions(self, username: str) -> None:
         """Everybody who is logged in as this user has to log in again."""
         with self._store.write() as session:
-            _user(session, username)
-            session.execute(delete(LoginSession).where(LoginSession.username == username))
+            _end_sessions(session, _user(session, username))
+
+    def is_right(self, username: str, password: str) -> bool:
+        """Takes as long for a name that does not exist."""
+        with self._store.read() as session:
+            user = session.get(User, username)
+        return self._verified(user, password)
 
     def log_in(self, username: str, password: str) -> str | None:
         """The secret of a new session; None where name or password is wrong."""
         with self._store.read() as session:
             user = session.get(User, username)
-            stored = self._nobody if user is None else user.password_hash
-        with self._hashing:
-            matches = self._hasher.verify(password, stored)
-        if not matches or user is None:
+        if not self._verified(user, password) or user is None:
             return None
-        secret, now_ns = secrets.token_urlsafe(32), self._clock.utc_ns()
+        now_ns = self._clock.utc_ns()
         with self._store.write() as session:
             session.execute(delete(LoginSession).where(LoginSession.expires_ns <= now_ns))
-            session.add(
-                LoginSession(
-                    token_hash=_sha256(secret),
-                    username=username,
-                    created_ns=now_ns,
-                    expires_ns=now_ns + SESSION_S * NS_PER_S,
-                )
+            # Of the generation whose password was right: it may have been changed since.
+            expires_ns = now_ns + SESSION_S * NS_PER_S
+            return self._begin_session(session, username, user.generation, expires_ns)
+
+    def _verified(self, user: User | None, password: str) -> bool:
+        stored = self._nobody if user is None else user.password_hash
+        with self._hashing:
+            return self._hasher.verify(password, stored) and user is not None
+
+    def _hash(self, password: str) -> str:
+        """UserError where it is too short to be one."""
+        _check_password(password)
+        with self._hashing:
+            return self._hasher.hash(password)
+
+    def _begin_session(
+        self, session: Session, username: str, generation: int, expires_ns: int
+    ) -> str:
+        secret = secrets.token_urlsafe(32)
+        session.add(
+            LoginSession(
+                token_hash=_sha256(secret),
+                username=username,
+                created_ns=self._clock.utc_ns(),
+                expires_ns=expires_ns,
+                generation=generation,
             )
+        )
         return secret
 
     def log_out(self, secret: str) -> None:
@@ -157,13 +185,60 @@ class Accounts:
         with self._store.read() as session:
             found = session.execute(
                 select(User.username, User.role)
-                .join(LoginSession, LoginSession.username == User.username)
-                .where(
-                    LoginSession.token_hash == _sha256(secret),
-                    LoginSession.expires_ns > self._clock.utc_ns(),
-                )
+                .join(LoginSession, self._is_open())
+                .where(LoginSession.token_hash == _sha256(secret))
             ).one_or_none()
         return None if found is None else Principal(found.username, Role.of(found.role))
+
+    def _is_open(self) -> ColumnElement[bool]:
+        """Whether a session is a user's, and not over."""
+        return and_(
+            LoginSession.username == User.username,
+            LoginSession.generation == User.generation,
+            LoginSession.expires_ns > self._clock.utc_ns(),
+        )
+
+    # ---- going on at the other station
+
+    def hand_over(self, secret: str) -> str | None:
+        """A ticket with which its holder goes on at the other station as whom this session is
+        for, within ``HAND_OVER_S``; None where there is no such session.
+        """
+        if self.of_session(secret) is None:
+            return None
+        ticket, now_ns = secrets.token_urlsafe(32), self._clock.utc_ns()
+        with self._store.write() as session:
+            session.execute(delete(HandOver).where(HandOver.expires_ns <= now_ns))
+            session.add(
+                HandOver(
+                    ticket_hash=_sha256(ticket),
+                    session_hash=_sha256(secret),
+                    expires_ns=now_ns + HAND_OVER_S * NS_PER_S,
+                )
+            )
+        return ticket
+
+    def take_over(self, ticket: str) -> str | None:
+        """The secret of a new session, which ends when the one before it would have; None where
+        the ticket is of no use (any more).
+        """
+        with self._store.write() as session:
+            found = session.execute(
+                select(HandOver, LoginSession)
+                .join(LoginSession, LoginSession.token_hash == HandOver.session_hash)
+                .join(User, self._is_open())
+                .where(
+                    HandOver.ticket_hash == _sha256(ticket),
+                    HandOver.expires_ns > self._clock.utc_ns(),
+                )
+            ).one_or_none()
+            if found is None:
+                return None
+            shown, before = found
+            session.delete(shown)
+            return self._begin_session(
+                session, before.username, before.generation, before.expires_ns
+            )
 
     # ---- API tokens
 
@@ -229,6 +304,12 @@ def _user(session: Session, username: str) -> User:
     if user is None:
         raise UserError(f"there is no user {username!r}")
     return user
+
+
+def _end_sessions(session: Session, user: User) -> None:
+    """Here, and at the other station when it has copied the user."""
+    user.generation += 1
+    session.execute(delete(LoginSession).where(LoginSession.username == user.username))
 
 
 def _keep_an_administrator(session: Session, user: User) -> None:

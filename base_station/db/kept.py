@@ -1,6 +1,6 @@
-"""What no log can make again, as it stands: users, sessions, tokens, people.
+"""What no log can make again, as it stands: users, sessions, tokens, people, the base map.
 
-A standby station copies it from the active one.  Photos travel by themselves, named by their
+A standby station copies it from the active one.  Pictures travel by themselves, named by their
 hashes; the audit is only ever added to.
 """
 
@@ -10,24 +10,36 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import msgspec
-from sqlalchemy import delete, select
+from sqlalchemy import delete, func, select
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from base_station.db.models import ApiToken, AuditEntry, Base, LoginSession, Person, User
+from base_station.db.models import (
+    ApiToken,
+    AuditEntry,
+    Base,
+    BaseMap,
+    HandOver,
+    LoginSession,
+    Person,
+    User,
+)
 from base_station.db.store import Store
 
 Row = dict[str, Any]
-_PHOTO = "photo"
+_PICTURES = frozenset({"photo", "image"})
+_NUMBER = "number"  # of an audit entry, at the station that is asked
 
 
 class Kept(msgspec.Struct, frozen=True):
-    """Rows by column; photos only as their hashes."""
+    """Rows by column; pictures only as their hashes."""
 
     users: tuple[Row, ...]
     tokens: tuple[Row, ...]
     sessions: tuple[Row, ...]
+    hand_overs: tuple[Row, ...]
     people: tuple[Row, ...]
+    base_map: tuple[Row, ...]  # one or none
 
 
 class KeptTables:
@@ -43,13 +55,16 @@ class KeptTables:
                 users=_rows(session, User),
                 tokens=_rows(session, ApiToken),
                 sessions=_rows(session, LoginSession),
+                hand_overs=_rows(session, HandOver),
                 people=_rows(session, Person),
+                base_map=_rows(session, BaseMap),
             )
 
     def copy(self, kept: Kept) -> tuple[str, ...]:
         """Make these tables like the active station's.  Gives who and what was only here.
 
-        Sessions that began here stay; photos are kept where their hash is the same.
+        Sessions that began here stay; photos are kept where their hash is the same, and a base map
+        stays until the other one has come.
         """
         with self._store.write() as session:
             dropped = (
@@ -61,6 +76,10 @@ class KeptTables:
             _replace(session, ApiToken, ApiToken.token_id, kept.tokens)
             _put_people(session, kept.people)
             self._copy_sessions(session, kept.sessions)
+            if kept.hand_overs:
+                session.execute(insert(HandOver).on_conflict_do_nothing(), list(kept.hand_overs))
+            if not kept.base_map:
+                session.execute(delete(BaseMap))
         return dropped
 
     def missing_photos(self) -> Sequence[str]:
@@ -82,27 +101,48 @@ class KeptTables:
             if person is not None:
                 person.photo = jpeg
 
-    def audit_from(self, t_ns: int, limit: int) -> list[Row]:
-        """Entries of that time and later, oldest first."""
+    def base_map(self, image_hash: str) -> bytes | None:
         with self._store.read() as session:
+            wanted = select(BaseMap.image).where(BaseMap.image_hash == image_hash)
+            return session.scalar(wanted)
+
+    def has_base_map(self, row: Row) -> bool:
+        with self._store.read() as session:
+            return row in _rows(session, BaseMap)
+
+    def put_base_map(self, row: Row, image: bytes) -> None:
+        with self._store.write() as session:
+            session.execute(delete(BaseMap))
+            session.add(BaseMap(**row, image=image))
+
+    def audit_behind(self, number: int, limit: int) -> list[Row]:
+        """Entries behind one, in the order in which this station got to know; from the first one
+        where it has none of that number.
+        """
+        with self._store.read() as session:
+            newest = session.scalar(select(func.max(AuditEntry.number))) or 0
             entries = session.scalars(
                 select(AuditEntry)
-                .where(AuditEntry.t_ns >= t_ns)
-                .order_by(AuditEntry.t_ns, AuditEntry.entry_id)
+                .where(AuditEntry.number > (number if number <= newest else 0))
+                .order_by(AuditEntry.number)
                 .limit(limit)
             )
             return [_row(entry) for entry in entries]
 
-    def add_audit(self, rows: Sequence[Row]) -> list[Row]:
-        """Add those that are not there yet, and give them."""
+    def unknown_audit(self, rows: Sequence[Row]) -> list[Row]:
+        """Those that are not there yet."""
         ids = [row["entry_id"] for row in rows]
-        with self._store.write() as session:
+        with self._store.read() as session:
             known = select(AuditEntry.entry_id).where(AuditEntry.entry_id.in_(ids))
             there = set(session.scalars(known))
-            new = [row for row in rows if row["entry_id"] not in there]
-            if new:
+        return [row for row in rows if row["entry_id"] not in there]
+
+    def add_audit(self, rows: Sequence[Row]) -> None:
+        """Those that are there already stay as they are."""
+        new = [{name: row[name] for name in row if name != _NUMBER} for row in rows]
+        if new:
+            with self._store.write() as session:
                 session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
-        return new
 
     def _copy_sessions(self, session: Session, rows: tuple[Row, ...]) -> None:
         there = {row["token_hash"] for row in rows}
@@ -118,7 +158,7 @@ def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
 
 
 def _row(entry: Base) -> Row:
-    names = (column.name for column in entry.__table__.columns if column.name != _PHOTO)
+    names = (column.name for column in entry.__table__.columns if column.name not in _PICTURES)
     return {name: getattr(entry, name) for name in names}
 
 

@@ -6,7 +6,7 @@ A table is either a *projection*, which ``muster base rebuild`` makes again from
 
 from __future__ import annotations
 
-from sqlalchemy import BigInteger, ForeignKey, Index, LargeBinary, MetaData
+from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 
@@ -54,6 +54,7 @@ class User(Base):
     password_hash: Mapped[str]
     role: Mapped[str]
     created_ns: Mapped[int]
+    generation: Mapped[int] = mapped_column(server_default="0")  # of logins; older ones are over
 
 
 class LoginSession(Base):
@@ -62,6 +63,17 @@ class LoginSession(Base):
     token_hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256 of the cookie
     username: Mapped[str] = mapped_column(ForeignKey("users.username", ondelete="CASCADE"))
     created_ns: Mapped[int]
+    expires_ns: Mapped[int]
+    generation: Mapped[int] = mapped_column(server_default="0")  # its user's when it began
+
+
+class HandOver(Base):
+    """Whoever shows it goes on at the other station as whom a session is for; once."""
+
+    __tablename__ = "hand_overs"
+
+    ticket_hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256
+    session_hash: Mapped[str] = mapped_column(ForeignKey("sessions.token_hash", ondelete="CASCADE"))
     expires_ns: Mapped[int]
 
 
@@ -82,8 +94,11 @@ class AuditEntry(Base):
     """Who did what; an entry of an operator's action carries the action's own id."""
 
     __tablename__ = "audit"
+    __table_args__ = {"sqlite_autoincrement": True}  # noqa: RUF012  # SQLAlchemy's way
 
-    entry_id: Mapped[str] = mapped_column(primary_key=True)
+    # In the order in which this station got to know; the other station's clock may be another.
+    number: Mapped[int] = mapped_column(Integer, primary_key=True)
+    entry_id: Mapped[str] = mapped_column(unique=True)
     t_ns: Mapped[int] = mapped_column(index=True)
     by: Mapped[str]
     action: Mapped[str]

@@ -2,7 +2,8 @@
 
 A long log takes minutes to be written anew, so nobody waits for it with an open request: what was
 asked for, and how far it is, is kept in a file beside the log until it is done.  Ended at any
-instant, the whole is done again and ends as it would have (``forgetter``).
+instant, the whole is done again and ends as it would have (``forgetter``).  What the other one of
+two stations has forgotten is a wish like any other, and done here too.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from shared.errors import ConfigError, MusterError, StoreError, UserError
 
 _log = logging.getLogger(__name__)
 _KEPT = 20  # of those that are over
-_AGAIN_S = 10.0  # after a failure of disk or store, or at a standby
+_AGAIN_S = 10.0  # after a failure of disk or store, or while there is an obstacle
 
 
 class ForgettingState(StrEnum):
@@ -49,6 +50,10 @@ class Forgetting(msgspec.Struct):
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
     began: bool = False  # once before, perhaps by an earlier run of the program
+    told: bool = False  # the other station has done it: this one does, too
+
+
+Obstacle = Callable[[Forgetting], str]  # why it has to wait, as a sentence; empty: it need not
 
 
 class _Ended(Exception):  # noqa: N818  # it is no error
@@ -62,15 +67,15 @@ class ForgettingDesk:
         self,
         forgetter: Forgetter,
         kept: Path,
-        may_work: Callable[[], bool],
+        obstacle: Obstacle,
         on_done: Callable[[Forgetting], None],
     ) -> None:
-        """``kept``: the file.  ``may_work``: whether this station leads.  ``on_done`` is called
-        in the desk's thread when something was forgotten.
+        """``kept``: the file.  ``on_done`` is called in the desk's thread when something was
+        forgotten.
         """
         self._forgetter = forgetter
         self._kept = kept
-        self._may_work = may_work
+        self._obstacle = obstacle
         self._on_done = on_done
         self._lock = Lock()
         self._all: list[Forgetting] = _read(kept)
@@ -87,7 +92,7 @@ class ForgettingDesk:
         self._changed.set()
         self._thread.join()
 
-    def add(self, by: str, kind: str, subject_id: str) -> Forgetting:
+    def add(self, by: str, kind: str, subject_id: str, *, told: bool = False) -> Forgetting:
         """It is on the disk when this returns, and will be done.  The same twice is once.
 
         Raises StoreError where the disk does not take it.
@@ -96,7 +101,7 @@ class ForgettingDesk:
             for one in self._all:
                 if not one.state.is_over and (one.kind, one.subject_id) == (kind, subject_id):
                     return msgspec.structs.replace(one)
-            wish = Forgetting(secrets.token_hex(4), by, kind, subject_id)
+            wish = Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told)
             under_way = [one for one in self._all if not one.state.is_over]
             over = [one for one in self._all if one.state.is_over]
             before, self._all = self._all, [*over[1 - _KEPT :], *under_way, wish]
@@ -128,14 +133,20 @@ class ForgettingDesk:
         while not self._closed.is_set():
             self._changed.clear()
             with self._lock:
-                wish = next((one for one in self._all if not one.state.is_over), None)
-            if wish is None:
+                wishes = [one for one in self._all if not one.state.is_over]
+            if not wishes:
                 self._changed.wait()
-            elif not self._may_work():
-                self._note(wish, problem="this station is the standby; ask the one that leads")
+            elif not self._work_on_one(wishes):
                 self._closed.wait(_AGAIN_S)
-            elif not self._work(wish):
-                self._closed.wait(_AGAIN_S)
+
+    def _work_on_one(self, wishes: list[Forgetting]) -> bool:
+        """The first that need not wait; False where it is to be tried again later."""
+        for wish in wishes:
+            problem = self._obstacle(wish)
+            if not problem:
+                return self._work(wish)
+            self._note(wish, problem=problem)
+        return False
 
     def _work(self, wish: Forgetting) -> bool:
         """False where it is to be tried again later."""
@@ -149,7 +160,7 @@ class ForgettingDesk:
             return False
         except UserError as error:
             self._note(wish, problem=str(error))
-            if not again:  # else nothing was left to be done
+            if not (again or wish.told):  # else nothing was left to be done
                 self._note(wish, state=ForgettingState.FAILED)
                 return True
         except (MusterError, OSError) as error:

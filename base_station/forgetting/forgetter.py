@@ -33,6 +33,7 @@ from shared.messages import STATION_ID
 from shared.messages.station import Action, ForgetWearers
 
 _log = logging.getLogger(__name__)
+BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
 _REMOVED_WITHIN_S = 20.0
 Progress = Callable[[float], None]  # hears the fraction done
 

@@ -1,7 +1,8 @@
-"""Keeps what is in no log the same at both stations: accounts, people, audit, who is enrolled.
+"""Keeps what is in no log the same at both stations: accounts, people, the base map, audit, who is
+enrolled.
 
 The standby asks in every round whether anything has changed; the answer is all of it, or nothing.
-The audit is added to, in both directions.
+The audit is added to, in both directions, in the order in which the other one got to know.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from threading import Event
 import msgspec
 
 from base_station.db.kept import Kept, KeptTables, Row
+from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.pki.folder import PkiFolder
 from base_station.pki.registry import Registry
 from base_station.standby.asking import Answers, ask
@@ -24,7 +26,7 @@ _FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting.fo
 
 
 class KeptServer(Answers):
-    """Serves ``kept/all``, ``kept/photo``, ``kept/audit`` and ``kept/enrolled``."""
+    """Serves ``kept/all``, ``kept/photo``, ``kept/base-map``, ``kept/audit``, ``kept/enrolled``."""
 
     def __init__(self, station: str, bus: Bus, tables: KeptTables, pki: PkiFolder) -> None:
         self._tables = tables
@@ -35,6 +37,7 @@ class KeptServer(Answers):
             {
                 "kept/all": self._all,
                 "kept/photo": self._photo,
+                "kept/base-map": self._base_map,
                 "kept/audit": self._audit,
                 "kept/enrolled": self._enrolled,
             },
@@ -57,8 +60,13 @@ class KeptServer(Answers):
         if photo is not None:
             yield photo
 
+    def _base_map(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+        image = self._tables.base_map(payload.decode())
+        if image is not None:
+            yield image
+
     def _audit(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
-        entries = self._tables.audit_from(int(payload), _AUDIT_ENTRIES)
+        entries = self._tables.audit_behind(int(payload), _AUDIT_ENTRIES)
         yield msgspec.msgpack.encode(entries)
 
 
@@ -81,8 +89,8 @@ class KeptCopy:
         when this station's log has ``caught_up``: what it tells to forget must be there.
 
         ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
-        or an incident ("person ID") that the active station has forgotten, ``on_dropped`` in a
-        sentence of what was only here.
+        or an incident ("person ID") that the other station has forgotten, and again if that cannot
+        be noted, ``on_dropped`` in a sentence of what was only here.
         """
         self._bus = bus
         self._tables = tables
@@ -94,7 +102,8 @@ class KeptCopy:
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
         self._known = self._known_enrolled = b""
-        self._audit_ns = 0
+        self._base_map: tuple[Row, ...] = ()  # of the leader
+        self._audit_number = 0  # up to which the other station's audit is here
 
     def look(self, stop: Event) -> None:
         """One round; ``stop`` ends it early.  Raises MusterError where the bus or a store fails."""
@@ -109,7 +118,9 @@ class KeptCopy:
     def _copy(self, leader: str, stop: Event) -> None:
         said = self._ask(leader, "all", self._known)
         if said is not None:
-            dropped = self._tables.copy(unpack(said, Kept))
+            kept = unpack(said, Kept)
+            dropped = self._tables.copy(kept)
+            self._base_map = kept.base_map
             if dropped and not self._known:  # else the active station has removed them
                 self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
             self._known = _hash(said)
@@ -120,21 +131,30 @@ class KeptCopy:
             photo = self._ask(leader, "photo", person_id.encode())
             if photo is not None:
                 self._tables.put_photo(person_id, photo)
+        self._copy_base_map(leader)
         if said is not None or missing:
             self._on_people()
 
+    def _copy_base_map(self, leader: str) -> None:
+        for row in self._base_map:
+            if self._tables.has_base_map(row):
+                continue
+            image = self._ask(leader, "base-map", str(row["image_hash"]).encode())
+            if image is not None:
+                self._tables.put_base_map(row, image)
+
     def _add_audit(self, other: str) -> None:
-        answer = self._ask(other, "audit", str(self._audit_ns).encode())
+        answer = self._ask(other, "audit", b"%d" % self._audit_number)
         entries = [] if answer is None else unpack(answer, list[Row])
-        new = self._tables.add_audit(entries)
-        for entry in new if self._leader() is not None else ():
-            if entry["action"] in _FORGOTTEN:
+        if not entries:
+            return
+        new = self._tables.unknown_audit(entries)
+        for entry in new:
+            told = entry["action"] in _FORGOTTEN and entry["by"] != BY_OTHER_STATION
+            if told:  # before the entry is here, which is how it is known the next time
                 self._on_forgotten(str(entry["detail"]).partition(":")[0])
-        if entries:
-            newest_ns = int(entries[-1]["t_ns"])
-            # Of entries of one time some may not have come.
-            crowded = len(entries) == _AUDIT_ENTRIES and newest_ns == self._audit_ns
-            self._audit_ns = newest_ns + crowded
+        self._tables.add_audit(new)
+        self._audit_number = int(entries[-1]["number"])
 
     def _take_enrolled(self, other: str) -> None:
         said = self._ask(other, "enrolled", self._known_enrolled)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from threading import Event
 
 import pytest
 
-from base_station.db.accounts import Accounts, Role
+from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts, Role
+from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
+from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.pki.folder import PkiFolder
+from base_station.site.base_map import Corners
 from base_station.standby.kept_copy import KeptCopy, KeptServer
 from shared.bus_memory import MemoryRouter
 from shared.clock import ManualClock
+from shared.errors import StoreError
 from tests.station import QUICK_HASH
 
 PASSWORD = "correct horse battery"
@@ -27,10 +31,11 @@ class Side:
     """One station's database, as its console uses it."""
 
     def __init__(self, folder: Path, store: Store) -> None:
-        clock = ManualClock()
+        self.clock = clock = ManualClock()
         self.tables = KeptTables(store)
         self.accounts = Accounts(store, clock, QUICK_HASH)
         self.roster, self.records = Roster(store, clock), Records(store, clock)
+        self.base_maps = BaseMaps(store)
         self.pki = PkiFolder(folder)
 
     def copy(self, other: Side) -> tuple[str, ...]:
@@ -75,6 +80,70 @@ def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[Side, Sid
     assert standby.accounts.of_session(here) is not None
 
 
+@pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
+def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
+    sides: tuple[Side, Side], how: str
+) -> None:
+    active, standby = sides
+    active.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    standby.copy(active)
+    here = standby.accounts.log_in("ada", PASSWORD)  # by whoever has found the password
+    assert here is not None
+    ticket = standby.accounts.hand_over(here)
+    assert ticket is not None
+    match how:
+        case "new password":
+            active.accounts.change_user("ada", "another battery", None)
+        case "ended by an administrator":
+            active.accounts.end_sessions("ada")
+        case _:
+            active.accounts.remove_user("ada")
+    standby.copy(active)
+    assert standby.accounts.of_session(here) is None
+    assert standby.accounts.take_over(ticket) is None
+    assert standby.accounts.open_sessions() == {}
+
+
+def test_a_login_goes_on_at_the_other_station_once(sides: tuple[Side, Side]) -> None:
+    active, standby = sides
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    there = active.accounts.log_in("ada", PASSWORD)
+    assert there is not None
+    ticket = active.accounts.hand_over(there)
+    assert ticket is not None
+    assert standby.accounts.take_over(ticket) is None  # it has not heard of it
+    standby.copy(active)
+    here = standby.accounts.take_over(ticket)
+    assert here is not None
+    assert here != there
+    assert standby.accounts.of_session(here) == active.accounts.of_session(there)
+    assert standby.accounts.take_over(ticket) is None
+    standby.copy(active)  # still has the ticket, which was never shown there
+    assert active.accounts.hand_over("no session") is None
+    last = active.accounts.hand_over(there)
+    assert last is not None
+    active.accounts.log_out(there)
+    assert active.accounts.take_over(last) is None
+
+
+def test_a_ticket_and_what_it_gave_end(sides: tuple[Side, Side]) -> None:
+    active, _ = sides
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    session = active.accounts.log_in("ada", PASSWORD)
+    assert session is not None
+    late, soon = active.accounts.hand_over(session), active.accounts.hand_over(session)
+    assert late is not None
+    assert soon is not None
+    active.clock.advance(HAND_OVER_S - 1.0)
+    went_on = active.accounts.take_over(soon)
+    assert went_on is not None
+    active.clock.advance(1.0)
+    assert active.accounts.take_over(late) is None
+    active.clock.advance(SESSION_S - HAND_OVER_S)  # since the login, however often it was handed on
+    assert active.accounts.of_session(went_on) is None
+
+
 def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
@@ -83,6 +152,82 @@ def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
     dropped = standby.copy(active)
     assert [one.partition(" ")[0] for one in dropped] == ["user", "token"]
     assert [user.username for user in standby.accounts.users()] == ["ada"]
+
+
+def copy_over_the_bus(
+    active: Side, standby: Side, on_forgotten: Callable[[str], None] = lambda _: None
+) -> KeptCopy:
+    router = MemoryRouter()
+    KeptServer("active", router.attach_station(), active.tables, active.pki)
+    return KeptCopy(
+        router.attach_station(),
+        standby.tables,
+        standby.pki,
+        leader=lambda: "active",
+        other=lambda: "active",
+        caught_up=lambda: True,
+        on_people=standby.roster.read_again,
+        on_forgotten=on_forgotten,
+        on_dropped=lambda _: None,
+    )
+
+
+def audit_of(side: Side) -> set[str]:
+    return {one.detail for one in side.records.audit_entries(2**62, 9000)}
+
+
+def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(sides: tuple[Side, Side]) -> None:
+    active, standby = sides
+    copying = copy_over_the_bus(active, standby)
+    standby.clock.advance(86_400.0)  # whoever acts here is a day ahead
+    standby.records.audit("bob", "LoggedIn", "here")
+    active.tables.add_audit(standby.tables.audit_behind(0, 9))
+    copying.look(Event())
+    for number in range(1200):  # more than come at once
+        active.records.audit("ada", "LoggedIn", f"login {number}")
+    active.clock.advance(-3600.0)
+    active.records.audit("ada", "LoggedIn", "after the clock was set back")
+    for _ in range(4):
+        copying.look(Event())
+    assert audit_of(standby) == audit_of(active)
+    assert len(audit_of(standby)) == 1202
+
+
+def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
+    sides: tuple[Side, Side],
+) -> None:
+    active, standby = sides
+    active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
+    active.records.audit(BY_OTHER_STATION, "ForgotPerson", "person p8: as this one had asked")
+    heard: list[str] = []
+
+    def full_disk(what: str) -> None:
+        heard.append(what)
+        raise StoreError("the disk is full")
+
+    with pytest.raises(StoreError):
+        copy_over_the_bus(active, standby, full_disk).look(Event())
+    copy_over_the_bus(active, standby, heard.append).look(Event())  # as after a kill
+    copy_over_the_bus(active, standby, heard.append).look(Event())
+    assert heard == ["person p9", "person p9"]
+
+
+def test_the_base_map_is_the_active_stations(sides: tuple[Side, Side]) -> None:
+    active, standby = sides
+    copying = copy_over_the_bus(active, standby)
+    corners = Corners((1.0, 2.0), (1.0, 3.0), (0.0, 2.0))
+    for hash_, image in (("a1", b"a map"), ("b2", b"another")):
+        active.base_maps.put(image, hash_, corners)
+        copying.look(Event())
+        assert standby.base_maps.corners() == (hash_, corners)
+        assert standby.base_maps.image(hash_) == image
+    moved = Corners((1.5, 2.0), (1.5, 3.0), (0.0, 2.0))
+    active.base_maps.put(b"another", "b2", moved)
+    copying.look(Event())
+    assert standby.base_maps.corners() == ("b2", moved)
+    active.base_maps.remove()
+    copying.look(Event())
+    assert standby.base_maps.corners() is None
 
 
 def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side, Side]) -> None:
@@ -96,19 +241,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side,
     standby.records.audit("bob", "LoggedIn", "here")
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
     forgotten: list[str] = []
-    router = MemoryRouter()
-    KeptServer("active", router.attach_station(), active.tables, active.pki)
-    copying = KeptCopy(
-        router.attach_station(),
-        standby.tables,
-        standby.pki,
-        leader=lambda: "active",
-        other=lambda: "active",
-        caught_up=lambda: True,
-        on_people=standby.roster.read_again,
-        on_forgotten=forgotten.append,
-        on_dropped=lambda _: None,
-    )
+    copying = copy_over_the_bus(active, standby, forgotten.append)
     look = partial(copying.look, Event())
     look()
     assert standby.roster.photo(person.person_id) == (b"jpeg", "hash")

@@ -40,10 +40,10 @@ class Worker:
 def desk(
     worker: Worker,
     folder: Path,
-    may_work: Callable[[], bool] = lambda: True,
+    obstacle: Callable[[Forgetting], str] = lambda _: "",
     on_done: Callable[[Forgetting], None] = lambda _: None,
 ) -> ForgettingDesk:
-    return ForgettingDesk(cast("Forgetter", worker), folder / "kept.json", may_work, on_done)
+    return ForgettingDesk(cast("Forgetter", worker), folder / "kept.json", obstacle, on_done)
 
 
 def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
@@ -118,10 +118,26 @@ def test_a_store_that_fails_is_tried_again(tmp_path: Path, monkeypatch: pytest.M
 
 def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
     worker = Worker()
-    with desk(worker, tmp_path, may_work=lambda: False) as one:
+    worker.go.set()
+
+    def obstacle(wish: Forgetting) -> str:
+        return "" if wish.told else "this is the standby"
+
+    with desk(worker, tmp_path, obstacle) as one:
         one.add("ada", "person", "p-1")
         until(lambda: "standby" in one.all()[0].problem)
-    assert worker.began == []
+        assert worker.began == []
+    with desk(worker, tmp_path, obstacle) as one:  # what the other one has done is done here too
+        one.add("the other station", "person", "p-2", told=True)
+        until(lambda: worker.done == ["p-2"])
+
+
+def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path) -> None:
+    worker = Worker()
+    worker.fails = [UserError("nobody knows that person")]
+    with desk(worker, tmp_path) as one:
+        one.add("the other station", "person", "p-1", told=True)
+        until(lambda: one.all()[0].state is ForgettingState.DONE)
 
 
 def test_a_wish_that_cannot_be_kept_is_refused(tmp_path: Path) -> None:
