@@ -18,6 +18,7 @@ from base_station.fusion.path.history import BREAK, DOUBTFUL, RESTART, PathArray
 from base_station.fusion.port import Start
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence
+from base_station.fusion.smoother.shared import Shared, Term
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -34,7 +35,7 @@ class WalkNoise:
     walk_m_per_sqrt_m: float = 0.06  # each axis
     turn_rad_per_sqrt_m: float = 0.004
     turn_part: float = 0.004
-    scale_std: float = 0.03
+    scale_std: float = 0.015
     drift_radps: float = 6e-4
     drift_wander_radps: float = 6e-5  # of that rate in a minute
     open_drift_s: float = 600.0  # while turn and drift are not known: the drift goes on so long
@@ -42,6 +43,7 @@ class WalkNoise:
     unguided_mps: float = 1.5
     wander_part: float = 0.7  # of a fix's variance that wanders slowly
     wander_s: float = 30.0
+    excess: float = 2.0  # what a receiver admits beyond its best is but half of it
     fix_tail: float = 2.4  # standard deviations from which a fix counts less (Cauchy)
 
 
@@ -127,9 +129,11 @@ class Belief:
         return Belief(np.zeros((count, STATES)), np.zeros(count, dtype=bool))
 
 
-def add_path(equations: Equations, base: int, chain: Chain, belief: Belief, n: WalkNoise) -> None:
+def add_path(
+    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
+) -> None:
     """The own path from knot to knot, and what is known of it from the beginning."""
-    _add_priors(equations, base, chain, belief, n)
+    _add_priors(equations, base, chain, belief, shared, n)
     if len(chain) < 2:
         return
     here = base + STATES * np.arange(len(chain) - 1)
@@ -152,21 +156,28 @@ def add_path(equations: Equations, base: int, chain: Chain, belief: Belief, n: W
     equations.add(wander, 0.0, (there + 4, 1.0), (here + 4, -1.0))
 
 
-def add_fixes(equations: Equations, base: int, chain: Chain, belief: Belief, n: WalkNoise) -> None:
+def add_fixes(
+    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
+) -> None:
     """Fixes near each other tell little more than one; what lies far off counts less and less."""
     path = chain.path
     inside = path.fix_t_ns <= path.t_ns[-1] + 1_000_000_000
-    t_ns, place, std = path.fix_t_ns[inside], path.fix_m[inside], path.fix_std_m[inside]
+    t_ns, place = path.fix_t_ns[inside], path.fix_m[inside]
     if not len(t_ns):
         return
     knot, since = chain.at(t_ns)
+    best = path.fix_std_m.min()
+    admitted = n.excess**2 * (path.fix_std_m[inside] ** 2 - best**2)
+    std = np.sqrt(best**2 - shared.sky_std_m**2 + admitted)
+    sky = shared.sky(t_ns)
     gap_s = np.diff(t_ns, prepend=t_ns[0] - 2 * int(n.wander_s * 1e9)) * NS_TO_S
     repeats = np.clip(2.0 * n.wander_s / np.maximum(gap_s, 1e-3), 1.0, None)
     spread = std * np.sqrt(n.wander_part * repeats + 1.0 - n.wander_part)
     if belief.aligned.any():
-        apart = np.linalg.norm(place_of(belief.x[knot], since) - place, axis=1)
+        off = place_of(belief.x[knot], since) + shared.sky_m(t_ns) - place
+        apart = np.linalg.norm(off, axis=1)
         spread = spread * np.sqrt(1.0 + (apart / (n.fix_tail * std)) ** 2)
-    add_places(equations, base + STATES * knot, since, place, spread)
+    add_places(equations, base + STATES * knot, since, place, spread, *sky)
 
 
 def add_seen(equations: Equations, base: int, chain: Chain, places: Sequence[PlaceSeen]) -> None:
@@ -185,13 +196,20 @@ def add_seen(equations: Equations, base: int, chain: Chain, places: Sequence[Pla
 
 
 def add_places(
-    equations: Equations, columns: Ints, since: Floats, place: Floats, std: Floats
+    equations: Equations, columns: Ints, since: Floats, place: Floats, std: Floats, *errors: Term
 ) -> None:
-    """A knot and the own path since it lead to a place."""
+    """A knot and the own path since it lead to a place, but for errors: terms of north, those of
+    east a column further.
+    """
     north, east = since[:, 0], since[:, 1]
-    equations.add(std, place[:, 0], (columns, 1.0), (columns + 2, north), (columns + 3, -east))
     equations.add(
-        std, place[:, 1], (columns + 1, 1.0), (columns + 2, east), (columns + 3, north)
+        std, place[:, 0],
+        (columns, 1.0), (columns + 2, north), (columns + 3, -east), *errors,
+    )  # fmt: skip
+    equations.add(
+        std, place[:, 1],
+        (columns + 1, 1.0), (columns + 2, east), (columns + 3, north),
+        *((column + 1, factor) for column, factor in errors),
     )  # fmt: skip
 
 
@@ -203,7 +221,7 @@ def place_of(x: Floats, since: Floats) -> Floats:
 
 
 def _add_priors(
-    equations: Equations, base: int, chain: Chain, belief: Belief, n: WalkNoise
+    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
 ) -> None:
     start, begin = chain.start, np.array([base])
     add_places(equations, begin, np.zeros((1, 2)), np.zeros((1, 2)), np.array([UNKNOWN_M]))
@@ -211,7 +229,8 @@ def _add_priors(
         knot = chain.start_knot
         column, own = np.array([base + STATES * knot]), chain.own_m[knot : knot + 1]
         place = np.array([(start.north_m, start.east_m)])
-        add_places(equations, column, -own, place, np.array([max(start.std_m, 0.01)]))
+        off, own_var_m2 = shared.start(start)
+        add_places(equations, column, -own, place, np.array([np.sqrt(own_var_m2)]), (off, 1.0))
     for segment in chain.segments():
         first = base + STATES * segment.start
         if belief.aligned[segment.start]:

@@ -6,11 +6,12 @@ Matrix Computations, section 4.5).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
 
 Floats = NDArray[np.float64]
 
@@ -43,6 +44,26 @@ def chain_covariances(
     lost = ~(np.isfinite(variances) & (variances > 0.0)).all(axis=1)
     covariances[lost] = UNKNOWN_VAR * np.eye(states)
     return covariances
+
+
+def shared_spreads(
+    information: csc_matrix, chains: Mapping[str, slice], first: int, states: int
+) -> dict[str, Floats]:
+    """What unknowns that all chains share, from column ``first`` on, add to the covariances of
+    each chain's knots: (k, states, states).
+    """
+    leans = {}  # of the chain's unknowns on the shared ones
+    whole = information[first:, first:].toarray()
+    for name, own in chains.items():
+        beside = information[own, first:].toarray()
+        leans[name] = splu(information[own, own].tocsc()).solve(beside)
+        whole -= beside.T @ leans[name]
+    root = np.linalg.cholesky(np.linalg.inv(0.5 * (whole + whole.T)))
+    spreads = {}
+    for name, lean in leans.items():
+        parts = (lean @ root).reshape(-1, states, len(root))
+        spreads[name] = parts @ parts.transpose(0, 2, 1)
+    return spreads
 
 
 def _inverse(matrix: Floats) -> Floats:

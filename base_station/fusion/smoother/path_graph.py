@@ -30,10 +30,10 @@ from base_station.fusion.smoother.chain import (
 )
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.heights import solve_heights
-from base_station.fusion.smoother.legs import Legs, add_legs, axis_of, inside
+from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
 from base_station.fusion.smoother.links import Link, Places, add_link, told_by_links
 from base_station.fusion.smoother.live_estimates import add_shown, choose_shown, shown_floor_m
-from base_station.fusion.smoother.marginals import chain_covariances
+from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
 from base_station.fusion.smoother.port import (
     PlaceSeen,
     SmoothedPath,
@@ -43,13 +43,12 @@ from base_station.fusion.smoother.port import (
     Verdict,
 )
 from base_station.fusion.smoother.revisits import find_crossings
+from base_station.fusion.smoother.shared import Shared
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-ALIKE_M = 0.9  # by which all err alike who are tied to each other inside
-AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
 TIE_TAIL = 3.0  # standard deviations from which a meeting counts less
 
 
@@ -92,7 +91,8 @@ class _Graph:
         for unit_id, chain in self._chains.items():
             self._bases[unit_id] = count
             count += STATES * len(chain)
-        self._unknowns = count + 1  # the last: what has to be added to the building's axis
+        self._shared = Shared(count, units)
+        self._unknowns = self._shared.end
         self._beliefs = {one: Belief.none(len(chain)) for one, chain in self._chains.items()}
         self._legs = {unit_id: Legs.of(chain) for unit_id, chain in self._chains.items()}
         self._axis_rad: float | None = None
@@ -129,18 +129,18 @@ class _Graph:
 
     def _equations(self, with_links: bool = True) -> NormalEquations:
         equations = Equations(self._unknowns)
-        equations.add(AXIS_STD_RAD, 0.0, (np.array([self._unknowns - 1]), 1.0))
+        self._shared.add_priors(equations)
         for unit_id in self._units:
             base, chain, belief = (
                 self._bases[unit_id],
                 self._chains[unit_id],
                 self._beliefs[unit_id],
             )
-            add_path(equations, base, chain, belief, self._kind.noise)
-            add_fixes(equations, base, chain, belief, self._kind.noise)
+            add_path(equations, base, chain, belief, self._shared, self._kind.noise)
+            add_fixes(equations, base, chain, belief, self._shared, self._kind.noise)
             add_seen(equations, base, chain, self._used[unit_id])
             if self._axis_rad is not None:
-                axis = self._axis_rad, self._unknowns - 1
+                axis = self._axis_rad, self._shared.axis
                 add_legs(equations, base, self._legs[unit_id], belief, axis)
             if unit_id in self._shown:
                 shown = self._shown[unit_id]
@@ -157,7 +157,8 @@ class _Graph:
         """Believe a solution; gives how far the furthest knot moved."""
         moved_m = 0.0
         if self._axis_rad is not None:
-            self._axis_rad += float(x[-1])
+            self._axis_rad += float(x[self._shared.axis])
+        self._shared.take(x)
         for unit_id, base in self._bases.items():
             belief = self._beliefs[unit_id]
             now = x[base : base + STATES * len(self._chains[unit_id])].reshape(-1, STATES)
@@ -271,15 +272,19 @@ class _Graph:
     def _spreads(self) -> dict[str, Floats]:
         """Covariances of all knots (k, 5, 5) by unit."""
         information = self._equations(with_links=False).information
-        blocks = {}
-        for unit_id, base in self._bases.items():
-            own = slice(base, base + STATES * len(self._chains[unit_id]))
-            blocks[unit_id] = information[own, own].tocsc()
+        chains = {
+            unit_id: slice(base, base + STATES * len(self._chains[unit_id]))
+            for unit_id, base in self._bases.items()
+        }
+        blocks = {unit_id: information[own, own].tocsc() for unit_id, own in chains.items()}
+        together = shared_spreads(information, chains, self._shared.axis, STATES)
         spreads = {one: chain_covariances(block, STATES) for one, block in blocks.items()}
-        if not self._links:
-            return spreads
-        told = told_by_links(self._links, self._places, spreads)
-        return {one: chain_covariances(block, STATES, told[one]) for one, block in blocks.items()}
+        if self._links:
+            told = told_by_links(self._links, self._places, spreads)
+            spreads = {
+                one: chain_covariances(block, STATES, told[one]) for one, block in blocks.items()
+            }
+        return {one: spreads[one] + together[one] for one in spreads}
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         for place, apart_m in zip(used, self._residuals_m(unit_id, used), strict=True):
@@ -295,8 +300,6 @@ class _Graph:
         std_east = np.sqrt(covariance[:, 1, 1])
         correlation = (covariance[:, 0, 1] / (std_north * std_east))[knot]
         floor_m = shown_floor_m(path, self._shown.get(unit_id))
-        if self._links:
-            floor_m = np.where((floor_m == 0.0) & inside(path), ALIKE_M, floor_m)
         down, down_std, shift = solve_heights(path, self._used[unit_id])
         return SmoothedPath(
             t_ns=path.t_ns,

@@ -1,0 +1,99 @@
+"""What all units err by together, as unknowns of the one problem.
+
+One commander says where the engine stands, for everybody who begins there; what satellites, clocks
+and the air do to a fix, they do to all receivers of a site.  Taken for errors of each unit's own,
+six that agree with each other look like proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.fixes.sky import COMMON_PART, COMMON_S
+from base_station.fusion.port import Start
+from base_station.fusion.smoother.equations import Equations
+from base_station.fusion.smoother.port import UnitEvidence
+from shared.clock import NS_PER_S
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Term = tuple[Ints, Floats | float]
+
+AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
+START_PART = 0.65  # of a start's variance: what was said is off by that for all who begin there
+SKY_S = 600.0  # from one knot of the common error to the next
+
+
+class Shared:
+    """Columns behind those of the chains: what has to be added to the building's axis, and pairs
+    of north and east: how far off each place is where units begin, and the receivers' common error
+    at knots of time.
+    """
+
+    def __init__(self, first: int, units: Mapping[str, UnitEvidence]) -> None:
+        self.axis = first
+        self._starts: dict[tuple[float, float, float], int] = {}
+        for unit in units.values():
+            if unit.start is not None:
+                self._starts.setdefault(_said(unit.start), first + 1 + 2 * len(self._starts))
+        fixes = [unit.path.fix_t_ns for unit in units.values() if len(unit.path.fix_t_ns)]
+        self._sky = first + 1 + 2 * len(self._starts)
+        self._sky_t_ns, self.sky_std_m = np.zeros(0, dtype=np.int64), 0.0
+        if fixes:
+            begin, end = min(t_ns[0] for t_ns in fixes), max(t_ns[-1] for t_ns in fixes)
+            step_ns = int(SKY_S * NS_PER_S)
+            self._sky_t_ns = np.arange(begin, end + step_ns, step_ns, dtype=np.int64)
+            best_m = min(u.path.fix_std_m.min() for u in units.values() if len(u.path.fix_t_ns))
+            self.sky_std_m = float(np.sqrt(COMMON_PART) * best_m)
+        self.end = self._sky + 2 * len(self._sky_t_ns)
+        self._x = np.zeros(self.end - first)  # as last believed
+
+    def add_priors(self, equations: Equations) -> None:
+        equations.add(AXIS_STD_RAD, 0.0, (np.array([self.axis]), 1.0))
+        for (_, _, std_m), column in self._starts.items():
+            equations.add(np.sqrt(START_PART) * std_m, 0.0, (np.array([column, column + 1]), 1.0))
+        knots = len(self._sky_t_ns)
+        if not knots:
+            return
+        first, keep = np.array([self._sky, self._sky + 1]), np.exp(-SKY_S / COMMON_S)
+        equations.add(self.sky_std_m, 0.0, (first, 1.0))
+        here = self._sky + np.arange(2 * (knots - 1))
+        fresh_m = self.sky_std_m * np.sqrt(1.0 - keep**2)
+        equations.add(fresh_m, 0.0, (here + 2, 1.0), (here, -keep))
+
+    def start(self, start: Start) -> tuple[Ints, float]:
+        """Columns (1,) of north by which what was said is off, and what is each one's own, as a
+        variance.
+        """
+        column = self._starts[_said(start)]
+        return np.array([column]), (1.0 - START_PART) * _said(start)[2] ** 2
+
+    def sky(self, t_ns: Ints) -> tuple[Term, Term]:
+        """The common error north at these times, as two knots' with their parts; that east is a
+        column further.
+        """
+        last = max(len(self._sky_t_ns) - 2, 0)
+        knot = np.clip(np.searchsorted(self._sky_t_ns, t_ns, side="right") - 1, 0, last)
+        part = (t_ns - self._sky_t_ns[knot]) / (SKY_S * NS_PER_S)
+        columns = self._sky + 2 * knot
+        behind = np.minimum(columns + 2, self.end - 2)
+        return (columns, 1.0 - part), (behind, part)
+
+    def take(self, x: Floats) -> None:
+        """Believe a solution."""
+        self._x = x[self.axis :]
+
+    def sky_m(self, t_ns: Ints) -> Floats:
+        """The common error (n, 2), as it is believed."""
+        off_m = np.zeros((len(t_ns), 2))
+        for columns, parts in self.sky(t_ns):
+            rows = columns - self.axis
+            off_m += np.asarray(parts)[:, None] * self._x[rows[:, None] + [0, 1]]
+        return off_m
+
+
+def _said(start: Start) -> tuple[float, float, float]:
+    return start.north_m, start.east_m, max(start.std_m, 0.01)
