@@ -2,13 +2,13 @@
 
 The shape follows the sagittal gait cycle (Perry, "Gait Analysis", 1992): the heel
 rises about the ball of the foot, the foot swings, strikes with the heel and
-rolls about it until it is flat.
+rolls about it until it is flat.  Backwards the toes come down first and the heel leaves last.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import radians
+from dataclasses import dataclass, replace
+from math import pi, radians
 
 from shared.messages.status import Activity
 
@@ -28,6 +28,10 @@ class Gait:
     sway_m: float = 0.02  # of the trunk to either side
     forward: tuple[float, float] = (0.22, 0.95)  # when the foot goes forward
     upward: tuple[float, float] = (0.25, 0.90)  # when it goes to another height
+    facing_rad: float = 0.0  # of the body, clockwise from where it goes
+    lands_on_heel: bool = True  # ... or on the ball
+    leaves_on_heel: bool = False
+    sink_rad: float = 0.0  # by which the heel sinks while the ball stands, off the tread's edge
 
 
 WALK = Gait(Activity.WALKING, 1.36, 1.06, 0.34, radians(-62), radians(20), 0.04)
@@ -36,6 +40,33 @@ HURRY = Gait(Activity.WALKING, 1.60, 0.96, 0.30, radians(-68), radians(24), 0.04
 RUN = Gait(Activity.RUNNING, 2.10, 0.74, 0.20, radians(-75), radians(12), 0.10, 0.035, 0.01)
 SPRINT = Gait(Activity.RUNNING, 3.10, 0.60, 0.15, radians(-85), radians(5), 0.16, 0.03, 0.01)
 TURN = Gait(Activity.WALKING, 0.40, 0.95, 0.40, radians(-25), radians(4), 0.05, 0.006)
+LADEN = Gait(Activity.WALKING, 0.80, 1.40, 0.48, radians(-30), radians(6), 0.02, 0.008)
+LIMP = replace(  # this leg hurts: it stands briefly, hardly rolls and is pulled along
+    LADEN, stride_m=0.90, stride_s=1.30, flat=0.22, toe_off_rad=radians(-18), strike_rad=radians(-4)
+)
+BACKWARDS = Gait(
+    activity=Activity.WALKING,
+    stride_m=0.90,
+    stride_s=1.15,
+    flat=0.36,
+    toe_off_rad=radians(18),
+    strike_rad=radians(-25),
+    clearance_m=0.04,
+    facing_rad=pi,
+    lands_on_heel=False,
+    leaves_on_heel=True,
+)
+SIDEWAYS = Gait(
+    activity=Activity.WALKING,
+    stride_m=0.55,
+    stride_s=1.10,
+    flat=0.40,
+    toe_off_rad=radians(-16),
+    strike_rad=radians(-6),
+    clearance_m=0.04,
+    facing_rad=-pi / 2.0,
+    lands_on_heel=False,
+)
 STAIRS_UP = Gait(
     activity=Activity.STAIRS_UP,
     stride_m=0.56,
@@ -59,10 +90,34 @@ STAIRS_DOWN = Gait(
     upward=(0.4, 0.96),
 )
 
+STAIRS_UP_RUN = replace(  # on the balls of the feet, the heels over the edge
+    STAIRS_UP,
+    stride_s=0.78,
+    flat=0.30,
+    toe_off_rad=radians(-48),
+    strike_rad=radians(-8),
+    lands_on_heel=False,
+    sink_rad=radians(5),
+)
+STAIRS_DOWN_RUN = replace(
+    STAIRS_DOWN,
+    stride_s=0.72,
+    flat=0.26,
+    toe_off_rad=radians(-36),
+    strike_rad=radians(-14),
+    lands_on_heel=False,
+    sink_rad=radians(4),
+)
+
+STAIRS_PACES = {"walk": (STAIRS_DOWN, STAIRS_UP), "run": (STAIRS_DOWN_RUN, STAIRS_UP_RUN)}
 PACES: dict[str, Gait] = {
     "search": SEARCH,
     "walk": WALK,
     "hurry": HURRY,
     "run": RUN,
     "sprint": SPRINT,
+    "laden": LADEN,
+    "limp": LIMP,
+    "backwards": BACKWARDS,
+    "sideways": SIDEWAYS,
 }

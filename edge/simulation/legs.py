@@ -14,7 +14,10 @@ from msgspec import Meta
 Point = tuple[float, float]
 Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(gt=0.0, le=1e6)]
-Pace = Literal["search", "walk", "hurry", "run", "sprint"]
+Pace = Literal["search", "walk", "hurry", "run", "sprint", "laden", "limp", "backwards", "sideways"]
+Risers = Annotated[int, Meta(ge=1, le=200)]
+AtOnce = Annotated[int, Meta(ge=1, le=3)]  # risers that one step takes
+StairsPace = Literal["walk", "run"]
 Segment = Literal["foot", "shank", "hip", "chest"]
 
 
@@ -30,7 +33,20 @@ class Stairs(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=Tr
 
     to: Point
     rise_m: float
-    risers: Annotated[int, Meta(ge=1, le=200)]
+    risers: Risers
+    at_once: AtOnce = 1
+    pace: StairsPace = "walk"
+
+
+class Spiral(msgspec.Struct, frozen=True, tag="spiral", forbid_unknown_fields=True):
+    """Climb or descend winding stairs that start here and turn about ``middle``."""
+
+    middle: Point
+    turn_deg: float  # clockwise seen from above
+    rise_m: float
+    risers: Risers
+    at_once: AtOnce = 1
+    pace: StairsPace = "walk"
 
 
 class Stand(msgspec.Struct, frozen=True, tag="stand", forbid_unknown_fields=True):
@@ -65,4 +81,4 @@ class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True
     to: Points
 
 
-Leg = Walk | Stairs | Stand | Ride | Turn | Lie | Crawl
+Leg = Walk | Stairs | Spiral | Stand | Ride | Turn | Lie | Crawl

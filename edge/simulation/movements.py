@@ -6,7 +6,7 @@ between one stride and the next are drawn from the generator.
 
 from __future__ import annotations
 
-from math import cos, pi, radians, remainder, sin
+from math import copysign, cos, pi, radians, remainder, sin
 
 import numpy as np
 
@@ -61,8 +61,8 @@ def stride(
     def window(start: float, end: float) -> tuple[float, float]:
         return off_s + start * (end_s - off_s), off_s + end * (end_s - off_s)
 
-    _stand_on_it(plan, rng, begin_s, off_s)
-    plan.pivot.move(*window(0.40, 0.85), 1.0)
+    _stand_on_it(plan, rng, gait, begin_s, off_s)
+    plan.pivot.move(*window(0.40, 0.85), float(gait.lands_on_heel))
     plan.north.move(*window(*gait.forward), foothold[0])
     plan.east.move(*window(*gait.forward), foothold[1])
     if down_m is not None:
@@ -87,15 +87,24 @@ def stride(
     plan.footfall_s.append(end_s)
 
 
-def _stand_on_it(plan: BodyPlan, rng: np.random.Generator, begin_s: float, off_s: float) -> None:
-    """The shoe settles, is flat for a moment, and begins to roll over the ball."""
+def _stand_on_it(
+    plan: BodyPlan, rng: np.random.Generator, gait: Gait, begin_s: float, off_s: float
+) -> None:
+    """The shoe settles, is flat for a moment, and begins to roll over the ball (or the heel).
+
+    On the ball alone the heel sinks instead, and no moment is still.
+    """
     flat_s = begin_s + 0.35 * (off_s - begin_s)
     rise_s = begin_s + 0.60 * (off_s - begin_s)
-    plan.pitch.move(begin_s, flat_s, 0.0)
+    roll_over_rad = float(abs(rng.normal(_ROLL_OVER_RAD, _SETTLE_RAD)))
     plan.roll.move(begin_s, flat_s, 0.0)
     # The pivot changes while the foot is flat, where it has no effect.
-    plan.pivot.move(flat_s, rise_s, 0.0)
-    plan.pitch.move(rise_s, off_s, -float(abs(rng.normal(_ROLL_OVER_RAD, _SETTLE_RAD))))
+    plan.pivot.move(flat_s, rise_s, float(gait.leaves_on_heel))
+    if gait.sink_rad:
+        plan.pitch.move(begin_s, rise_s, gait.sink_rad)
+    else:
+        plan.pitch.move(begin_s, flat_s, 0.0)
+    plan.pitch.move(rise_s, off_s, copysign(roll_over_rad, gait.toe_off_rad))
 
 
 def _swing_trunk(plan: BodyPlan, gait: Gait, begin_s: float, end_s: float) -> None:

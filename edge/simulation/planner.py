@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from math import ceil, cos, pi, radians, remainder, sin
+from math import atan2, ceil, cos, hypot, pi, radians, remainder, sin
 
 import numpy as np
 
 from edge.simulation.body_plan import BodyPlan
-from edge.simulation.gait import PACES, STAIRS_DOWN, STAIRS_UP, TURN, Gait
-from edge.simulation.legs import Leg, Lie, Point, Ride, Stairs, Stand, Turn, Walk
+from edge.simulation.gait import PACES, STAIRS_PACES, TURN, Gait
+from edge.simulation.legs import Leg, Lie, Point, Ride, Spiral, Stairs, Stand, Turn, Walk
 from edge.simulation.movements import kneel, lie, pull, ride, rise, stand, stride, unwrapped
-from edge.simulation.polyline import Polyline, split_at_sharp_turns
+from edge.simulation.polyline import Polyline, arc, split_at_sharp_turns
 
 HALF_TRACK_M = 0.09  # from the body's middle to the foot
 _SHARP_RAD = radians(100)  # from here on a person stops and turns
@@ -32,7 +32,7 @@ class Planner:
     def do(self, leg: Leg) -> None:
         if isinstance(leg, Walk):
             self._walk(leg.to, PACES[leg.pace])
-        elif isinstance(leg, Stairs):
+        elif isinstance(leg, Stairs | Spiral):
             self._climb(leg)
         elif isinstance(leg, Stand):
             stand(self.plan, leg.duration_s)
@@ -56,26 +56,36 @@ class Planner:
 
     def _walk(self, to: tuple[Point, ...], gait: Gait) -> None:
         for line in split_at_sharp_turns(self._middle, to, _SHARP_RAD):
-            self._face(line.heading_rad(0.0, 0.1), _AROUND_RAD)
+            self._face(line.heading_rad(0.0, 0.1) + gait.facing_rad, _AROUND_RAD)
             strides = max(1, round(line.length_m / gait.stride_m))
             reach_m = 0.35 * gait.stride_m
             for k in range(1, strides + 1):
                 along_m = line.length_m * k / strides
                 if k < strides:
                     along_m += self._rng.normal(0.0, 0.03) * gait.stride_m
-                self._stride(gait, line.point(along_m), line.heading_rad(along_m, reach_m))
+                heading_rad = line.heading_rad(along_m, reach_m) + gait.facing_rad
+                self._stride(gait, line.point(along_m), heading_rad)
 
-    def _climb(self, stairs: Stairs) -> None:
-        line = Polyline((self._middle, stairs.to))
-        heading_rad = line.heading_rad(0.0, 0.1)
-        self._face(heading_rad)
-        gait = STAIRS_UP if stairs.rise_m > 0.0 else STAIRS_DOWN
+    def _climb(self, stairs: Stairs | Spiral) -> None:
+        line = self._way_up(stairs)
+        self._face(line.heading_rad(0.0, 0.1))
+        gait = STAIRS_PACES[stairs.pace][stairs.rise_m > 0.0]
         floor_down_m = self.plan.down.last
-        for tread in [*range(2, stairs.risers, 2), stairs.risers]:
+        stride = 2 * stairs.at_once
+        for tread in [*range(stride, stairs.risers, stride), stairs.risers]:
             # A foot stands in the middle of a tread; the last riser leads to the landing.
-            on_tread = min((tread - 0.5) / (stairs.risers - 0.5), 1.0)
+            along_m = line.length_m * min((tread - 0.5) / (stairs.risers - 0.5), 1.0)
             down_m = floor_down_m - stairs.rise_m * tread / stairs.risers
-            self._stride(gait, line.point(line.length_m * on_tread), heading_rad, down_m)
+            self._stride(gait, line.point(along_m), line.heading_rad(along_m, 0.1), down_m)
+
+    def _way_up(self, stairs: Stairs | Spiral) -> Polyline:
+        if isinstance(stairs, Stairs):
+            return Polyline((self._middle, stairs.to))
+        north_m = self._middle[0] - stairs.middle[0]
+        east_m = self._middle[1] - stairs.middle[1]
+        from_rad, turn_rad = atan2(east_m, north_m), radians(stairs.turn_deg)
+        around = arc(stairs.middle, hypot(north_m, east_m), from_rad, from_rad + turn_rad)
+        return Polyline((self._middle, *around))
 
     def _stride(
         self, gait: Gait, middle: Point, heading_rad: float, down_m: float | None = None

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi, remainder
+from math import atan2, cos, hypot, pi, remainder, sin
 
 import numpy as np
 
 from edge.simulation.legs import Point
+
+
+def arc(middle: Point, radius_m: float, start_rad: float, end_rad: float) -> tuple[Point, ...]:
+    """Points about half a metre apart after the first one, angles clockwise from north."""
+    count = max(2, round(abs(end_rad - start_rad) * radius_m / 0.5))
+    angles = (start_rad + (end_rad - start_rad) * k / count for k in range(1, count + 1))
+    return tuple((middle[0] + radius_m * cos(a), middle[1] + radius_m * sin(a)) for a in angles)
 
 
 class Polyline:

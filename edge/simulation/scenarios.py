@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import pi
 
 from edge.simulation.beacons import BeaconPlace
 from edge.simulation.building import load_building
 from edge.simulation.legs import Crawl, Leg, Lie, Point, Ride, Stand, Turn, Walk
+from edge.simulation.polyline import arc
 from edge.simulation.scenario import Scenario
 
 _HOUSE = load_building()
@@ -23,17 +24,10 @@ def _enter() -> tuple[Leg, ...]:
     return Stand(3.0), Walk(((north - 1.5, east), (north + 1.0, east), (_CORRIDOR_N, east)))
 
 
-def _arc(middle: Point, radius_m: float, start_rad: float, end_rad: float) -> tuple[Point, ...]:
-    """Points about half a metre apart, angles clockwise from north."""
-    count = max(2, round(abs(end_rad - start_rad) * radius_m / 0.5))
-    angles = (start_rad + (end_rad - start_rad) * k / count for k in range(1, count + 1))
-    return tuple((middle[0] + radius_m * cos(a), middle[1] + radius_m * sin(a)) for a in angles)
-
-
 def _track(straight_m: float = 84.39, radius_m: float = 36.8) -> tuple[Point, ...]:
     """One round of a standard athletic track, anticlockwise, on its measuring line."""
-    first = _arc((straight_m, -radius_m), radius_m, pi / 2, -pi / 2)
-    second = _arc((0.0, -radius_m), radius_m, -pi / 2, -3 * pi / 2)
+    first = arc((straight_m, -radius_m), radius_m, pi / 2, -pi / 2)
+    second = arc((0.0, -radius_m), radius_m, -pi / 2, -3 * pi / 2)
     return ((straight_m, 0.0), *first, (0.0, -2.0 * radius_m), *second)
 
 
@@ -144,7 +138,7 @@ SCENARIOS: tuple[Scenario, ...] = (
     _path(
         "j-shape",
         "40 m north, 36 m back south, then an arc to the west and back to its east",
-        Walk(((40.0, 0.0), (4.0, 0.0), *_arc((4.0, -6.0), 6.0, pi / 2, 3 * pi / 2))),
+        Walk(((40.0, 0.0), (4.0, 0.0), *arc((4.0, -6.0), 6.0, pi / 2, 3 * pi / 2))),
         Walk(((8.0, -12.0), (8.0, -2.0))),
     ),
     _path("track-400m", "one round of an athletic track", Walk(_track())),

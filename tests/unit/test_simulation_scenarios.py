@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ import pytest
 from edge.samples import AmbientSample, BatterySample, Floats, GpsSample, OtherSample
 from edge.simulation import SCENARIOS, Scenario, Simulation, open_simulation
 from edge.simulation.building import load_building
-from edge.simulation.legs import Point, Stand, Turn, Walk
+from edge.simulation.kinematics import Motion
+from edge.simulation.legs import Leg, Pace, Point, Spiral, Stairs, Stand, Turn, Walk
 from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
 from shared.messages.status import Activity
@@ -175,6 +177,48 @@ def test_turning_on_the_spot_faces_the_heading_and_stays() -> None:
     turned_deg = np.degrees(np.arctan2(turned[1, 0], turned[0, 0])) % 360.0
     assert turned_deg == pytest.approx(200.0, abs=8.0)
     assert np.linalg.norm(ends.position_n_m[1] - ends.position_n_m[0]) < 0.25
+
+
+def ends_of(*legs: Leg) -> tuple[Simulation, Motion]:
+    simulation = Simulation(Scenario("test", "", legs))
+    return simulation, simulation.truth(np.array([0.0, simulation.duration_s]))
+
+
+def turned_deg(ends: Motion) -> float:
+    turned = ends.rotation_nb[1] @ ends.rotation_nb[0].T
+    return float(np.degrees(np.arctan2(turned[1, 0], turned[0, 0])))
+
+
+@pytest.mark.parametrize("rise_m", [3.0, -3.0])
+def test_winding_stairs_end_above_or_below_their_start_turned(rise_m: float) -> None:
+    # From the south of the middle one and a quarter turns clockwise to its west, going north.
+    _, ends = ends_of(Stand(1.0), Spiral((1.0, 0.0), 450.0, rise_m, 17), Stand(1.0))
+    moved_m = ends.position_n_m[1] - ends.position_n_m[0]
+    assert moved_m == pytest.approx([1.0, -1.0, -rise_m], abs=0.25)
+    assert turned_deg(ends) == pytest.approx(0.0, abs=12.0)
+
+
+def test_two_risers_at_once_take_half_the_strides() -> None:
+    strides = [
+        len(ends_of(Stairs((4.5, 0.0), 2.88, 16, at_once))[0].plan.footfall_s) for at_once in (1, 2)
+    ]
+    assert strides == [8, 4]
+
+
+@pytest.mark.parametrize(("pace", "facing_deg"), [("backwards", 180.0), ("sideways", -90.0)])
+def test_a_wearer_may_face_elsewhere_than_he_goes(pace: Pace, facing_deg: float) -> None:
+    _, ends = ends_of(Stand(1.0), Turn(facing_deg), Walk(((6.0, 0.0),), pace), Stand(1.0))
+    assert ends.position_n_m[1, 0] - ends.position_n_m[0, 0] == pytest.approx(6.0, abs=0.3)
+    off_deg = (turned_deg(ends) - facing_deg + 180.0) % 360.0 - 180.0
+    assert abs(off_deg) < 10.0
+
+
+@pytest.mark.parametrize("pace", get_args(Pace))
+def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
+    simulation = Simulation(Scenario("test", "", (Walk(((9.0, 0.0),), pace),)))
+    height_m = -simulation.truth(np.arange(0.0, simulation.duration_s, 0.005)).position_n_m[:, 2]
+    assert height_m.min() > 0.06
+    assert height_m.max() > 0.1
 
 
 TOML = """
