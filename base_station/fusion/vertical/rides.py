@@ -8,7 +8,7 @@ it: the height is known no better than either would have it, until a storey, a f
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from statistics import median
 
 import msgspec
@@ -45,15 +45,19 @@ class Rides(msgspec.Struct):
         """By how much the air says that somebody who stands was lifted, and the own path does
         not; 0 where it does not say so.
         """
-        self.felt = [one for one in self.felt if air.t_mono_ns - one[0] <= WITHIN_NS]
-        self.felt.append((air.t_mono_ns, air.down_m))
-        begin_ns = self.felt[0][0]
-        first = [down_m for t_ns, down_m in self.felt if t_ns - begin_ns <= BEGIN_NS]
-        last = [down_m for t_ns, down_m in self.felt if air.t_mono_ns - t_ns <= OVER_NS]
-        goes_on = max(last) - min(last) > OVER_M or air.t_mono_ns - begin_ns < BEGIN_NS + OVER_NS
+        felt, now_ns = self.felt, air.t_mono_ns
+        felt.append((now_ns, air.down_m))
+        if now_ns - felt[0][0] < BEGIN_NS + OVER_NS:
+            return 0.0
+        while now_ns - felt[0][0] > WITHIN_NS:
+            del felt[0]
+        begin_ns = felt[0][0]
+        first = [one[1] for one in takewhile(lambda one: one[0] - begin_ns <= BEGIN_NS, felt)]
+        last = [one[1] for one in takewhile(lambda one: now_ns - one[0] <= OVER_NS, reversed(felt))]
+        goes_on = max(last) - min(last) > OVER_M or now_ns - begin_ns < BEGIN_NS + OVER_NS
         lifted_m = median(last) - median(first)
         if goes_on or abs(lifted_m) < STOREY_M or abs(self.climbed_m) > CLIMBED_M:
             return 0.0
-        jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(self.felt))
-        self.felt = [(air.t_mono_ns, air.down_m)]
+        jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(felt))
+        self.felt = [felt[-1]]
         return 0.0 if jump_m > JUMP * abs(lifted_m) else lifted_m
