@@ -92,6 +92,28 @@ def rebuild(data: Path = Path("muster-data")) -> None:
 
 
 @app.command()
+def backup(
+    target: Annotated[Path, typer.Argument(help="A folder of its own for this station's copy.")],
+    data: Path = Path("muster-data"),
+) -> None:
+    """Copy log, database and certificates, also while the station runs; again: what is new."""
+    from rich.progress import Progress  # noqa: PLC0415
+
+    from base_station.backup import back_up  # noqa: PLC0415
+
+    os.umask(0o077)
+    with Progress(transient=True) as progress:
+        task = progress.add_task("copying", total=1.0)
+        done = back_up(data, target, lambda part: progress.update(task, completed=part))
+    typer.echo(
+        f"{target}: {done.copied} files ({done.copied_bytes / 1e6:.1f} MB) copied, "
+        f"{done.unchanged} were there already"
+    )
+    if done.gone:
+        typer.echo(f"{done.gone} segments of the log are there that the station has no more")
+
+
+@app.command()
 def forget(
     what: Annotated[str, typer.Argument(help="A person's id or full name, or an incident's id.")],
     data: Path = Path("muster-data"),

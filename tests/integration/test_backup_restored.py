@@ -1,0 +1,44 @@
+"""A backup of a running station, put where another station starts: people go on from there."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.served_station import MakePosition, greet, prepare, snapshot, walk
+from tests.station_command import Browser, Command, Unit
+from tests.waiting import until
+
+
+def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(
+    serve: Callable[..., Command],
+    tmp_path: Path,
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+) -> None:
+    target = tmp_path / "backup"
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        incident_id = prepare(browser)
+        greet(browser, unit, make_position)
+        walk(unit, make_position, 0, 10)
+        until(lambda: len(snapshot(browser)["trails"]) == 1, "the walk is shown")
+        with Command(
+            tmp_path / "said.txt", "backup", str(target), "--data", str(data)
+        ) as backing_up:
+            assert backing_up.wait() == 0, backing_up.said()
+    shutil.copy(data / "first-login.txt", tmp_path)  # whoever knows the password logs in again
+    station.kill()
+    shutil.rmtree(data)
+
+    shutil.copytree(target, data)
+    again = serve()
+    with Browser(again.wait_ready(), tmp_path) as browser:
+        picture = snapshot(browser)
+        assert picture["incident"]["incident_id"] == incident_id
+        (card,) = picture["units"]
+        assert card["person"]["name"] == "Ada"
+        assert card["position"]["north_m"] > 5.0
+    assert again.stop() == 0

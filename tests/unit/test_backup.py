@@ -1,0 +1,131 @@
+"""A backup holds what a station needs, and takes nothing for its own that is not."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from base_station.backup import Backup, back_up
+from base_station.db.store import Store
+from shared.errors import LogError, UserError
+
+FIRST, SECOND = "000001-20261121T100000Z.mcap", "000002-20261121T101500Z.mcap"
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """A station's folder; what a backup copies is not looked into."""
+    data = tmp_path / "station"
+    for name, text in {
+        f"log/{FIRST}": "closed",
+        f"log/{SECOND}": "gro",
+        "log/000001-20261121T100000Z.mcap.torn": "what a crash left",
+        "pki/station.key": "secret",
+        "apart/000002-20261121T101500Z.mcap": "cut off",
+        "checkpoints/1.checkpoint": "can be made again",
+        "recordings/FF-01/raw.mcap": "can be fetched again",
+        "forgetting.json": "[]",
+        "lock": "4711",
+    }.items():
+        (data / name).parent.mkdir(parents=True, exist_ok=True)
+        (data / name).write_text(text)
+    with Store(data / "station.sqlite"):
+        pass
+    return data
+
+
+def run(data: Path, target: Path) -> Backup:
+    return back_up(data, target, lambda _part: None)
+
+
+def files(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def test_it_holds_what_cannot_be_made_again(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    done = run(data, target)
+    assert files(target) == {
+        f"log/{FIRST}",
+        f"log/{SECOND}",
+        "pki/station.key",
+        f"apart/{SECOND}",
+        "forgetting.json",
+        "station.sqlite",
+    }
+    assert (target / "pki" / "station.key").read_text() == "secret"
+    assert target.stat().st_mode & 0o077 == 0
+    assert (done.copied, done.unchanged, done.gone) == (5, 0, 0)
+
+
+def test_a_second_run_copies_what_is_new(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    run(data, target)
+    (data / "log" / SECOND).write_text("grown")
+    done = run(data, target)
+    assert (done.copied, done.copied_bytes, done.unchanged) == (1, len("grown"), 4)
+    assert (target / "log" / SECOND).read_text() == "grown"
+
+
+def test_a_segment_that_was_written_anew_in_the_same_length_is_copied(
+    data: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "backup"
+    run(data, target)
+    first = data / "log" / FIRST
+    first.write_text("forgot")
+    then_ns = first.stat().st_mtime_ns + 60 * 10**9
+    os.utime(first, ns=(then_ns, then_ns))
+    run(data, target)
+    assert (target / "log" / FIRST).read_text() == "forgot"
+
+
+def test_what_the_station_lost_stays_in_the_backup(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    run(data, target)
+    (data / "log" / FIRST).unlink()
+    assert run(data, target).gone == 1
+    assert (target / "log" / FIRST).read_text() == "closed"
+
+
+def test_the_database_is_copied_with_what_is_only_in_its_journal(
+    data: Path, tmp_path: Path
+) -> None:
+    with Store(data / "station.sqlite") as store, store.write() as session:
+        session.connection().exec_driver_sql("CREATE TABLE noted (what TEXT)")
+        session.connection().exec_driver_sql("INSERT INTO noted VALUES ('a word')")
+        session.commit()
+        run(data, tmp_path / "backup")
+    with sqlite3.connect(tmp_path / "backup" / "station.sqlite") as copied:
+        assert copied.execute("SELECT what FROM noted").fetchall() == [("a word",)]
+    copied.close()
+
+
+def test_another_stations_backup_is_left_alone(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    (target / "log").mkdir(parents=True)
+    (target / "log" / "000001-20250101T000000Z.mcap").write_text("another's")
+    before = files(target)
+    with pytest.raises(UserError, match="something else than a backup of this station"):
+        run(data, target)
+    assert files(target) == before
+
+
+@pytest.mark.parametrize("where", [".", "log", ".."])
+def test_it_is_apart_from_the_stations_folder(data: Path, where: str) -> None:
+    with pytest.raises(UserError, match="not apart"):
+        run(data, data / where)
+
+
+def test_where_it_cannot_be_written_it_says_so(data: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(LogError, match="not complete"):
+        run(data, tmp_path / "file" / "backup")
+
+
+def test_a_folder_without_a_station_has_nothing_to_copy(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="no station's log"):
+        run(tmp_path / "nothing", tmp_path / "backup")
