@@ -57,19 +57,19 @@ BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not jo
 
 
 class Point(msgspec.Struct, array_like=True):
-    """One place of the own path; fields as in the packed rows."""
+    """One place of the own path; fields as in the packed rows, not rounded yet."""
 
     t_ns: int = 0
-    north_mm: int = 0
-    east_mm: int = 0
-    std_mm: int = 0
-    heading_e4: int = 0
+    north_m: float = 0.0
+    east_m: float = 0.0
+    std_m: float = 0.0
+    heading_rad: float = 0.0
     moving_ms: int = 0
-    shown_north_mm: int = 0
-    shown_east_mm: int = 0
-    shown_std_mm: int = 0
-    shown_down_mm: int = 0
-    shown_down_std_mm: int = 0
+    shown_north_m: float = 0.0
+    shown_east_m: float = 0.0
+    shown_std_m: float = 0.0
+    shown_down_m: float = 0.0
+    shown_down_std_m: float = 0.0
     floor: int = NO_FLOOR
     flags: int = 0
 
@@ -124,7 +124,7 @@ class PathHistory(msgspec.Struct):
         """North and east as last estimated without any pin."""
         if not self.points:
             return None
-        return self.points[-1].shown_north_mm * 1e-3, self.points[-1].shown_east_mm * 1e-3
+        return self.points[-1].shown_north_m, self.points[-1].shown_east_m
 
     @property
     def is_awaited(self) -> bool:
@@ -143,15 +143,15 @@ class PathHistory(msgspec.Struct):
             self.points.append(_point_of(position, t_ns, flags))
             return
         tip = self.points[-1]
-        before_ns, before_north_mm, before_east_mm = tip.t_ns, tip.north_mm, tip.east_mm
+        before_ns, before_north_m, before_east_m = tip.t_ns, tip.north_m, tip.east_m
         if self._is_settled(tip, flags):
             tip = self._begin_point(tip)
         tip.t_ns = max(t_ns, before_ns + 1)
         tip.flags |= flags
         _follow(tip, position)
         if not flags & (BREAK | RESTART):
-            stepped_mm = abs(tip.north_mm - before_north_mm) + abs(tip.east_mm - before_east_mm)
-            if stepped_mm > MOVING_M * 1e3:
+            stepped_m = abs(tip.north_m - before_north_m) + abs(tip.east_m - before_east_m)
+            if stepped_m > MOVING_M:
                 tip.moving_ms += (tip.t_ns - before_ns) // 1_000_000
 
     def fill(self, position: Position, t_ns: int) -> None:
@@ -175,10 +175,9 @@ class PathHistory(msgspec.Struct):
         """What is estimated at the newest point without any pin."""
         if self.points:
             tip = self.points[-1]
-            tip.shown_north_mm, tip.shown_east_mm = _mm(estimate.north_m), _mm(estimate.east_m)
-            tip.shown_std_mm = _mm(max(estimate.std_north_m, estimate.std_east_m))
-            tip.shown_down_mm = _mm(estimate.down_m)
-            tip.shown_down_std_mm = _mm(estimate.std_down_m)
+            tip.shown_north_m, tip.shown_east_m = estimate.north_m, estimate.east_m
+            tip.shown_std_m = max(estimate.std_north_m, estimate.std_east_m)
+            tip.shown_down_m, tip.shown_down_std_m = estimate.down_m, estimate.std_down_m
             tip.floor = NO_FLOOR if floor is None else floor
 
     def begin_with(self, start: Start) -> None:
@@ -198,8 +197,8 @@ class PathHistory(msgspec.Struct):
         last = np.frombuffer(self.packed_fixes[-_FIX.itemsize :], _FIX)
         if len(last) and abs(t_ns - int(last["t_ns"][0])) < FIX_NS:
             return
-        row = (t_ns, _mm(fix.north_m), _mm(fix.east_m), _mm(fix.horizontal_std_m))
-        self.packed_fixes += np.array([row], _FIX).tobytes()
+        seen_mm = _saturated(np.array([fix.north_m, fix.east_m, fix.horizontal_std_m]) * 1e3)
+        self.packed_fixes += np.array([(t_ns, *seen_mm)], _FIX).tobytes()
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         """The incident frame was moved: turned clockwise, then shifted."""
@@ -207,12 +206,14 @@ class PathHistory(msgspec.Struct):
         fixes = np.frombuffer(self.packed_fixes, _FIX).copy()
         _move(fixes, "north_mm", "east_mm", *shift)
         self.packed_fixes = fixes.tobytes()
-        rows = self._rows()
+        rows = np.frombuffer(self.packed, _POINT).copy()
         _move(rows, "shown_north_mm", "shown_east_mm", *shift)
         rows["shown_down_mm"] = _saturated(rows["shown_down_mm"] + down_m * 1e3)
-        packed = len(self.packed) // _POINT.itemsize
-        self.packed = rows[:packed].tobytes()
-        self.points = [Point(*row) for row in rows[packed:].tolist()]
+        self.packed = rows.tobytes()
+        for point in self.points:
+            moved = rotate(point.shown_north_m, point.shown_east_m, turn_rad)
+            point.shown_north_m, point.shown_east_m = moved[0] + north_m, moved[1] + east_m
+            point.shown_down_m += down_m
         if self.start is not None:
             moved = rotate(self.start.north_m, self.start.east_m, turn_rad)
             self.start = msgspec.structs.replace(
@@ -252,10 +253,10 @@ class PathHistory(msgspec.Struct):
         if len(self.points) == 1:
             return True
         before = self.points[-2]
-        north_mm, east_mm = tip.north_mm - before.north_mm, tip.east_mm - before.east_mm
+        north_m, east_m = tip.north_m - before.north_m, tip.east_m - before.east_m
         return (
-            north_mm * north_mm + east_mm * east_mm >= (STEP_M * 1e3) ** 2
-            or abs(tip.shown_down_mm - before.shown_down_mm) >= CLIMB_M * 1e3
+            north_m * north_m + east_m * east_m >= STEP_M**2
+            or abs(tip.shown_down_m - before.shown_down_m) >= CLIMB_M
             or tip.t_ns - before.t_ns >= STEP_NS
         )
 
@@ -282,32 +283,34 @@ def _point_of(position: Position, t_ns: int, flags: int) -> Point:
 
 def _follow(point: Point, position: Position) -> None:
     """The point is where the own path is now."""
-    point.north_mm, point.east_mm = _mm(position.north_m), _mm(position.east_m)
-    point.std_mm = _mm(max(position.std_north_m, position.std_east_m))
-    point.heading_e4 = round(position.heading_rad % _TURN_RAD * 1e4)  # whatever it says
+    point.north_m, point.east_m = position.north_m, position.east_m
+    point.std_m = max(position.std_north_m, position.std_east_m)
+    point.heading_rad = position.heading_rad
 
 
 def _shown_as(point: Point) -> Point:
     """A point about which nothing is known but where a neighbour was shown."""
     return Point(
-        shown_north_mm=point.shown_north_mm,
-        shown_east_mm=point.shown_east_mm,
-        shown_std_mm=point.shown_std_mm,
-        shown_down_mm=point.shown_down_mm,
-        shown_down_std_mm=point.shown_down_std_mm,
+        shown_north_m=point.shown_north_m,
+        shown_east_m=point.shown_east_m,
+        shown_std_m=point.shown_std_m,
+        shown_down_m=point.shown_down_m,
+        shown_down_std_m=point.shown_down_std_m,
         floor=point.floor,
     )
 
 
-def _mm(metres: float) -> int:
-    millimetres = round(metres * 1e3)
-    if -_MOST_MM <= millimetres <= _MOST_MM:
-        return millimetres
-    return _MOST_MM if millimetres > 0 else -_MOST_MM
-
-
 def _pack(points: list[Point]) -> Records:
-    return np.array([msgspec.structs.astuple(point) for point in points], _POINT)
+    rows = np.zeros(len(points), _POINT)
+    columns = zip(*map(msgspec.structs.astuple, points), strict=True)
+    for name, column in zip(_POINT.names or (), columns, strict=False):
+        values = np.array(column)
+        if name == "heading_e4":  # whatever it says
+            values = np.rint(values % _TURN_RAD * 1e4)
+        elif name.endswith("_mm"):
+            values = _saturated(values * 1e3)
+        rows[name] = values
+    return rows
 
 
 def _move(
