@@ -1,0 +1,31 @@
+"""What a station or a unit installs is what is tested, to the hash."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+from tests.conftest import PROJECT_ROOT
+
+PIN = re.compile(r"^(\S+==\S+).*((?:\n +--hash=\S+(?: \\)?)+)", re.MULTILINE)
+
+
+def pinned(name: str) -> dict[str, set[str]]:
+    """The hashes of each ``package==version`` of a lock file."""
+    text = (PROJECT_ROOT / name).read_text()
+    found = {pin: set(re.findall(r"--hash=(\S+)", hashes)) for pin, hashes in PIN.findall(text)}
+    assert len(found) == len(re.findall(r"^\S+==", text, re.MULTILINE))
+    return found
+
+
+def test_what_is_installed_for_real_is_what_is_tested():
+    tested = pinned("requirements.lock")
+    for pin, hashes in pinned("deploy/requirements.lock").items():
+        assert tested.get(pin) == hashes, pin
+
+
+def test_what_is_installed_for_real_is_all_that_the_package_needs():
+    project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
+    installed = pinned("deploy/requirements.lock")
+    for requirement in project["dependencies"]:
+        assert re.sub(r"\[.*\]", "", requirement) in installed
