@@ -200,6 +200,12 @@ class UnitState(msgspec.Struct):
         boot = self._known_boot(header.boot_id)
         return boot is not None and header.seq in boot.seen
 
+    def take_back(self, header: Header) -> None:
+        """The log did not take it: it is missing like what never came."""
+        boot = self._known_boot(header.boot_id)
+        if boot is not None:
+            boot.seen.discard(header.seq)
+
     def recall(self, header: Header) -> News:
         """Note that a message came out of the unit's journal; it says nothing of the present."""
         boot = self._known_boot(header.boot_id)

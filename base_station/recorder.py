@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import logging
 import shutil
+import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from threading import Condition, RLock, Thread
 
@@ -31,7 +33,6 @@ logger = logging.getLogger(__name__)
 LOG_FOLDER = "log"
 _TURN_S = 0.05
 _LONGEST_WAIT_S = 2.0  # for the disk, by whoever writes something urgent
-_QUEUED_BYTES_MAX = 64 * 1024 * 1024
 _LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
 _STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
@@ -48,7 +49,7 @@ class Recorder:
 
     ``write`` and ``flush`` may be called from any thread; records are kept in the order of the
     calls.  Neither raises for the disk: ``problem`` tells what is wrong, records wait in
-    memory meanwhile, and what memory cannot hold is counted in ``lost``.
+    memory meanwhile, and what memory cannot hold is refused and counted in ``lost``.
     """
 
     def __init__(
@@ -67,12 +68,15 @@ class Recorder:
         self._clock = clock
         self._on_segment = on_segment
         policy = policy or SegmentPolicy()
+        self._waiting_max = policy.waiting_bytes_max
         self.folder = data / LOG_FOLDER
         self._lock = FolderLock(data)
         try:
             self.recoveries: tuple[Recovery, ...] = tuple(recover_log(self.folder))
             self._segments = self._look_up_segments()
-            self._writer = SegmentWriter(self.folder, policy, self._segment_closed)
+            # What is taken is kept: this recorder refuses, so that the writer never has to.
+            patient = replace(policy, waiting_bytes_max=sys.maxsize)
+            self._writer = SegmentWriter(self.folder, patient, self._segment_closed)
         except BaseException:
             self._lock.close()
             raise
@@ -80,6 +84,7 @@ class Recorder:
         self._news = Condition(self._taking)
         self._queue: list[LogRecord] = []
         self._queued_bytes = 0
+        self._unwritten_bytes = 0  # that were taken from the queue, and the disk does not take
         self._flushes_asked = 0
         self._flushes_done = 0
         self._closing = False
@@ -94,13 +99,14 @@ class Recorder:
     # ---- from any thread
 
     def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
-        """Keep a record with station time ``t_ns``; False: it is lost.
+        """Keep a record with station time ``t_ns``; False: it is refused, and not in the log.
 
         Returns at once, or, where it is urgent, when it is on the disk; a disk that hangs is not
         waited for longer than two seconds.
         """
         with self._taking:  # the condition's own lock, without what a condition costs
-            if self._failure or self._queued_bytes > _QUEUED_BYTES_MAX:
+            waiting_bytes = self._queued_bytes + self._unwritten_bytes
+            if self._failure or waiting_bytes > self._waiting_max:
                 self._refused += 1
                 return False
             self._queue.append((t_ns, key, payload))
@@ -142,10 +148,11 @@ class Recorder:
         """What is wrong with the log, as a sentence for a person; empty: nothing."""
         if self._failure:
             return self._failure
-        if self._writer.problem:
+        if self._writer.problem and not self.lost:
             return self._writer.problem
         if self.lost:  # said until the station starts anew
-            return f"the disk did not keep up: {self.lost} records are missing in the log"
+            missing = f"the disk did not keep up: {self.lost} records are missing in the log"
+            return f"{missing}; {self._writer.problem}" if self._writer.problem else missing
         if self._disk_free_bytes < _LITTLE_FREE_BYTES:
             free_mb = self._disk_free_bytes / 1e6
             return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
@@ -159,7 +166,7 @@ class Recorder:
 
     @property
     def lost(self) -> int:
-        return self._refused + self._writer.lost
+        return self._refused
 
     @property
     def disk_free_bytes(self) -> int:
@@ -209,6 +216,7 @@ class Recorder:
                 self._tell_flushed(flushes)
             else:  # log time goes on although nothing comes
                 self._writer.advance(last_t_ns + now_ns - seen_ns)
+            self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
             if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
                 looked_ns = now_ns
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free

@@ -62,6 +62,18 @@ class SequenceSet(msgspec.Struct, array_like=True):
         self.firsts[begin:end] = [run.first]
         self.lasts[begin:end] = [run.last]
 
+    def discard(self, number: int) -> None:
+        """It is not there, whether it was or not."""
+        place = bisect_right(self.firsts, number) - 1
+        if place < 0 or number > self.lasts[place]:
+            return
+        first, last = self.firsts[place], self.lasts[place]
+        halves = [
+            run for run in (Run(first, number - 1), Run(number + 1, last)) if run[0] <= run[1]
+        ]
+        self.firsts[place : place + 1] = [run.first for run in halves]
+        self.lasts[place : place + 1] = [run.last for run in halves]
+
     def runs(self) -> Iterator[Run]:
         return map(Run, self.firsts, self.lasts)
 

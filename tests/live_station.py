@@ -12,6 +12,7 @@ from base_station.commands.downlink import Downlink
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
 from base_station.fusion import FUSERS
+from base_station.journals.backfill import Report
 from base_station.live.sinks import ActionDone, Projection
 from base_station.live.surroundings import Surroundings
 from base_station.past.checkpoints import Checkpoints
@@ -24,6 +25,7 @@ from shared.channels import channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
+from shared.mcap_log import SegmentPolicy
 from shared.messages import STATION_ID, Message
 from shared.messages.station import Action
 
@@ -65,11 +67,12 @@ class Store:
 class LiveStation:
     """Runs from ``with`` to its end; made again on the same folder it goes on."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, policy: SegmentPolicy | None = None) -> None:
         clock = SteadyClock(SystemClock())
         self.screen, self.store = Screen(), Store()
         self.checkpoints = Checkpoints(folder / "checkpoints")
-        self.recorder = Recorder(folder, clock)
+        self.recorder = Recorder(folder, clock, policy)
+        self.reported: Report = {}
         self.feed = LiveFeed(clock)
         self.log = LogFeed(self.recorder.folder, self.recorder.flush)
         self.router = MemoryRouter()
@@ -89,7 +92,7 @@ class LiveStation:
                 checkpoints=self.checkpoints,
                 photo_urls=lambda person_id: f"/photos/{person_id}",
                 facts=StationFacts,
-                report=lambda _: None,
+                report=self._note_report,
                 say=self.downlink.report,
                 clock=clock,
                 boot_id=clock.utc_ns(),
@@ -97,6 +100,9 @@ class LiveStation:
         )
         after = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
         self.rebuilt = self.drive.rebuild(self.log.records(after[0]), after)
+
+    def _note_report(self, report: Report) -> None:
+        self.reported = report
 
     def __enter__(self) -> Self:
         self.drive.start()

@@ -43,6 +43,7 @@ class _News(NamedTuple):
 
     report: Report | None
     replies: list[tuple[_Asked, bytes | None]]  # None: no more come
+    start_over: bool
 
 
 class Backfill:
@@ -69,6 +70,8 @@ class Backfill:
         self._urgent: list[tuple[_Asked, bytes | None]] = []
         self._replies: deque[tuple[_Asked, bytes | None]] = deque()
         self._closed = False
+        self._starts_over = False
+        self._refused = 0
         self._thread = Thread(target=self._run, name="backfill", daemon=True)
         self.fetched = 0  # messages brought so far
 
@@ -80,10 +83,16 @@ class Backfill:
     def start(self) -> None:
         self._thread.start()
 
-    def report(self, report: Report) -> None:
-        """Say what the station has now; an older report that was not looked at is forgotten."""
+    def report(self, report: Report, refused: int = 0) -> None:
+        """Say what the station has now; an older report that was not looked at is forgotten.
+
+        ``refused``: how many records its log has not taken so far.  Where there are more of them,
+        what was fetched may not have come into the log.
+        """
         with self._news:
             self._report = report
+            self._starts_over |= refused > self._refused
+            self._refused = refused
             self._news.notify()
 
     def close(self) -> None:
@@ -94,6 +103,9 @@ class Backfill:
 
     def _run(self) -> None:
         while (news := self._next()) is not None:
+            if news.start_over:
+                for journal in self._journals.values():
+                    journal.start_over()
             if news.report is not None:
                 self._take_report(news.report)
             for asked, reply in news.replies:
@@ -113,8 +125,8 @@ class Backfill:
             self._news.wait_for(
                 lambda: self._report is not None or self._urgent or self._replies or self._closed
             )
-            news = _News(self._report, self._urgent)
-            self._report, self._urgent = None, []
+            news = _News(self._report, self._urgent, self._starts_over)
+            self._report, self._urgent, self._starts_over = None, [], False
             if self._replies:
                 news.replies.append(self._replies.popleft())
             return None if self._closed else news

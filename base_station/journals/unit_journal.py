@@ -69,6 +69,12 @@ class _Boot:
         have = _union(self.held, self.fetched)
         return list(have.missing(self.first, self.settled_to))
 
+    def start_over(self) -> None:
+        """What was fetched has not all come into the log."""
+        self.fetched = SequenceSet()
+        self.urgent_known = SequenceSet()
+        self.complete.clear()
+
     def without_alerts(self) -> list[Run]:
         """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
         is missing before any number that came is lost.
@@ -105,6 +111,11 @@ class UnitJournal:
             boot.report(runs_of.get(boot_id, ()))
         if now_ns >= self._index_due_ns or not runs_of.keys() <= self._indexed.keys():
             self._index_due_ns = 0
+
+    def start_over(self) -> None:
+        """Only what is reported from now on is there, whatever was fetched."""
+        for boot in self._boots.values():
+            boot.start_over()
 
     def next_question(self) -> Question | None:
         """None: there is nothing to ask before the next report."""

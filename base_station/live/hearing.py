@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from base_station.events import Received, StationEvent
-from base_station.live_state import StationState
+from base_station.live_state import StationState, UnitState
 from shared.channels import Direction, Qos, parse_key, tracked_unit
 from shared.errors import UnknownChannelError
 
@@ -37,9 +37,22 @@ def judge(key: str, event: StationEvent, state: StationState) -> Heard:
     return Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP
 
 
+def take_back(event: StationEvent, state: StationState) -> None:
+    """The log did not take what was stepped.  It has been seen, and counts as missing: its unit
+    keeps it, and it is fetched when there is room.
+    """
+    if isinstance(event, Received) and (sender := _sender_of(event, state)) is not None:
+        sender.take_back(event.message.header)
+
+
 def _is_kept(event: Received, state: StationState) -> bool:
     """Whether the message came before: on two ways, sent again by the network, or replayed."""
+    sender = _sender_of(event, state)
+    return sender is not None and sender.has(event.message.header)
+
+
+def _sender_of(event: Received, state: StationState) -> UnitState | None:
+    """A unit, or the agent that tracks for one."""
     tracked = tracked_unit(event.unit_id)
     unit = state.units.get(tracked or event.unit_id)
-    sender = unit if unit is None or tracked is None else unit.tracker
-    return sender is not None and sender.has(event.message.header)
+    return unit if unit is None or tracked is None else unit.tracker

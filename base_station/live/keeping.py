@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 from base_station.events import Output, StationEvent, event_of
 from base_station.live.foxglove_topics import FoxgloveTopics
+from base_station.live.hearing import take_back
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.self_watch import SelfWatch
@@ -90,8 +91,10 @@ class Keeping:
     ) -> list[Output]:
         """What followed from an event, the bytes of which are in the log before it is stepped."""
         self._urgent = self._urgent or urgent
-        self._log.write(event.t_ns, key, payload)
+        kept = self._log.write(event.t_ns, key, payload)
         outputs = self._step(event)
+        if not kept:
+            take_back(event, self._pipeline.state)
         for output in outputs:
             if isinstance(output, _DECISIONS):
                 self._keep_output(output)

@@ -195,6 +195,10 @@ class Pair:
             self._start_again(None)
         elif decision == "follow":
             self._election.role = "standby"
+            self._around.log.follows = True
+        elif self._around.log.is_cut_short and not self._around.log.is_behind:
+            logger.warning("the disk takes the log again: starting again to fetch what is missing")
+            self._start_again(None)
         if self._election.role == "standby" and other is not None and other.role == "active":
             self._follower.follow(Leader(other.station, other.run))
         if self.leads:
@@ -205,6 +209,9 @@ class Pair:
         """Everything that was fetched is stepped, then the take-over, then what the bus says."""
         around, other = self._around, self._election.other
         self._follower.stop_following()
+        around.log.follows = around.log.is_cut_short = (
+            False  # a log with a hole is better than none
+        )
         around.log.wait_reached(self._follower.delivered, _STEP_S)
         place = around.log.place
         around.clock.not_before(place.t_ns)
@@ -274,6 +281,11 @@ class Pair:
             )
         elif self.followed() is None:
             found.append("No active station is heard: this one takes over in some seconds")
+        elif self._around.log.is_cut_short:
+            found.append(
+                "The disk of this standby does not take the log: free or mend it; what is missing "
+                "is fetched then"
+            )
         elif not self.in_step:
             found.append("This standby has not got everything of the active station yet")
         if self._follower.problem:

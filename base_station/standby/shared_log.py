@@ -20,12 +20,17 @@ _OPERATOR_KEY = OPERATOR.key(STATION_ID)
 
 
 class SharedLog:
-    """A ``Log`` that counts events and keeps the newest at hand.  From any thread."""
+    """A ``Log`` that counts events and keeps the newest at hand.  From any thread.
+
+    What the disk refused is in no log.  One that follows another's has no holes: it ends there.
+    """
 
     def __init__(self, log: Log, clock: Clock) -> None:
         self._log = log
         self._clock = clock
-        self.written_ns = clock.monotonic_ns()  # when something was last written
+        self.written_ns = clock.monotonic_ns()  # when something was last taken
+        self.follows = False  # it is to be the same as another station's
+        self.is_cut_short = False  # and is not, until this station starts again
         self._news = Condition()
         self._first: Place = BEGINNING  # what is at hand begins behind it
         self._places: list[Place] = []
@@ -53,10 +58,13 @@ class SharedLog:
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         with self._news:  # in one order here and there
-            kept = self._log.write(t_ns, key, payload)
-            self.written_ns = self._clock.monotonic_ns()
-            if is_event(key):
-                self._note(t_ns, key, payload)
+            kept = not self.is_cut_short and self._log.write(t_ns, key, payload)
+            if kept:
+                self.written_ns = self._clock.monotonic_ns()
+                if is_event(key):
+                    self._note(t_ns, key, payload)
+            elif self.follows:
+                self.is_cut_short = True
         return kept
 
     def flush(self) -> bool:

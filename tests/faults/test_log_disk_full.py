@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import os
 import resource
 import signal
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
+
 from base_station.recorder import Recorder
-from shared.channels import POSITION
+from shared.channels import POSITION, Qos, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
+from shared.codec import encode
 from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentWriter, read_log, segment_paths
+from shared.messages import Header, Position
+from shared.messages.station import RegisterUnit
+from shared.sequence_set import Run
+from tests.live_station import LiveStation
+from tests.waiting import until
 
 KEY = POSITION.key("anna")
 T0_NS = 1_700_000_000 * NS_PER_S
@@ -121,3 +131,48 @@ def test_a_recorder_on_a_full_disk_is_behind_until_there_is_room(tmp_path: Path)
     assert (recorder.flush(), recorder.is_behind) == (True, False)
     recorder.close()
     assert payloads(tmp_path / "log") == [b"1"]
+
+
+def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_when_there_is_room(
+    tmp_path: Path, make_position: Callable[..., Position]
+) -> None:
+    unit, boot, policy = "FF-01", 0xB007, SegmentPolicy(waiting_bytes_max=1_000_000)
+
+    def said(seq: int) -> Position:
+        return make_position(header=Header(unit, boot, seq, seq * NS_PER_S), north_m=float(seq))
+
+    def reported() -> list[Run]:
+        return [run for held in station.reported.get(unit, ()) for run in held.runs]
+
+    with LiveStation(tmp_path, policy) as station:
+        station.act(RegisterUnit(unit, "one"))
+        station.say(said(1))
+        until(lambda: reported() == [Run(1, 1)])
+        with files_of_at_most(0):
+            for _ in range(6):  # what nobody can read is logged, too
+                station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
+                time.sleep(0.1)
+            until(lambda: station.recorder.problem)
+            for seq in range(2, 100):
+                station.say(said(seq))
+            until(lambda: station.recorder.lost >= 98)
+            (shown,) = station.snapshot().units
+            assert shown.position is not None
+            assert shown.position.north_m == pytest.approx(
+                99.0
+            )  # nobody goes blind because a disk is full
+            assert reported() == [Run(1, 1)]  # and no unit is told to forget
+        until(lambda: not station.recorder.is_behind)
+        seen = station.pipeline.state.units[unit].boots[0].seen
+        missing = list(seen.missing(1, 99))
+        assert missing == [Run(2, 99)]
+        for run in missing:
+            for seq in range(run.first, run.last + 1):
+                station.feed.deliver(backfilled_key(unit, POSITION.suffix), encode(said(seq)))
+        until(lambda: list(seen.runs()) == [Run(1, 99)])
+    with LiveStation(tmp_path) as again:  # what is counted as there is on the disk
+        seen = again.pipeline.state.units[unit].boots[0].seen
+        assert list(seen.runs()) == [Run(1, 99)]
+    keys = [key for _, key, _ in read_log(tmp_path / "log")]
+    backfilled = keys.count(backfilled_key(unit, POSITION.suffix))
+    assert keys.count(POSITION.key(unit)) + backfilled == 99

@@ -29,6 +29,16 @@ def test_it_holds_what_was_added_and_says_what_was_new(numbers):
     assert {number for number in range(-1, 62) if number in held} == plain
 
 
+@given(NUMBERS, NUMBERS)
+def test_what_is_discarded_is_not_there(numbers, gone):
+    held = filled(numbers)
+    for number in gone:
+        held.discard(number)
+    left = set(numbers) - set(gone)
+    assert {number for number in range(-1, 62) if number in held} == left
+    assert held == filled(sorted(left))
+
+
 @given(NUMBERS)
 def test_runs_are_sorted_and_apart(numbers):
     runs = list(filled(numbers).runs())

@@ -21,7 +21,7 @@ from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from shared.bus_memory import MemoryRouter
 from shared.channels import ALARM, EVENT, FUSED, OPERATOR, POSITION, TICK, backfilled_key
-from shared.clock import ManualClock, SystemClock
+from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
 from shared.errors import StoreError
 from shared.messages import STATION_ID, Header, OperatorAction
@@ -139,6 +139,55 @@ def pairing(tmp_path: Path) -> Iterator[Pairing]:
     pairing = Pairing(tmp_path)
     yield pairing
     pairing.close()
+
+
+class FullDisk:
+    """A ``Log`` that takes as much as it has room for."""
+
+    problem = ""
+    is_behind = False
+
+    def __init__(self) -> None:
+        self.room = 0
+        self.kept: list[Record] = []
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        self.room -= 1
+        if self.room >= 0:
+            self.kept.append((t_ns, key, payload))
+        return self.room >= 0
+
+    def flush(self) -> bool:
+        return True
+
+
+def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> None:
+    disk, clock = FullDisk(), ManualClock()
+    log = SharedLog(disk, clock)
+    log.follows = True
+    disk.room = 3
+    for number, (t_ns, key, payload) in enumerate(events(9)):
+        if number == 6:
+            disk.room = 100
+        log.write(t_ns, key, payload)
+    assert log.is_cut_short
+    assert disk.kept == events(9)[:3]
+    assert log.behind(BEGINNING, 10**6) == events(9)[:3]
+
+
+def test_a_log_that_leads_goes_on_behind_what_the_disk_refused_and_ships_what_it_has() -> None:
+    disk, clock = FullDisk(), ManualClock()
+    log = SharedLog(disk, clock)
+    disk.room, said = 3, events(9)
+    for t_ns, key, payload in said[:6]:
+        clock.advance(1.0)
+        log.write(t_ns, key, payload)
+    assert clock.monotonic_ns() - log.written_ns == 3 * NS_PER_S  # silent like one that hangs
+    disk.room = 100
+    for record in said[6:]:
+        log.write(*record)
+    assert not log.is_cut_short
+    assert log.behind(BEGINNING, 10**6) == disk.kept == [*said[:3], *said[6:]]
 
 
 def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> None:

@@ -126,3 +126,19 @@ def test_of_two_machines_under_one_name_both_journals_are_known() -> None:
     journal.end(question, 1)
     what, asked = next_of(journal)
     assert (what, asked["epoch"], asked["from"], asked["to"]) == ("urgent", 8, 5, 6)
+
+
+def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30), last=30)
+    for what in ("urgent", "range"):
+        journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 1)
+        question = journal.next_question() or Question("none")
+        assert question.what == what
+        answer(journal, question, JournalChunk(BOOT, 11, 20, (), urgent_only=what == "urgent"))
+    for _ in range(5):
+        journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 2)
+    assert next_of(journal)[0] == "acknowledge"  # nobody has them
+    journal.start_over()
+    journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 3)
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
