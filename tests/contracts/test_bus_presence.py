@@ -1,0 +1,129 @@
+"""What every bus promises of tokens, questions and who is there."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable
+
+import pytest
+
+from shared.channels import POSITION, alive_key
+from tests.bus_ends import Ends, Heard
+from tests.waiting import until
+
+KEY = POSITION.key("anna")
+ALIVE = alive_key("anna")
+
+
+def test_tokens_appear_and_vanish(ends: Ends) -> None:
+    told: list[tuple[str, bool]] = []
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: told.append((key, alive)))
+    token = ends.unit.declare_alive(ALIVE)
+    until(lambda: told == [(ALIVE, True)], "the token")
+    token.close()
+    until(lambda: told == [(ALIVE, True), (ALIVE, False)], "the end of the token")
+
+
+def test_a_late_watcher_hears_of_tokens_that_are_there(ends: Ends) -> None:
+    early: list[str] = []
+    late: list[tuple[str, bool]] = []
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, _: early.append(key))
+    _token = ends.unit.declare_alive(ALIVE)
+    until(lambda: early == [ALIVE], "the token")
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: late.append((key, alive)))
+    until(lambda: late == [(ALIVE, True)], "the token that was there")
+
+
+def test_a_unit_that_closes_takes_its_token_along(ends: Ends) -> None:
+    told: list[tuple[str, bool]] = []
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: told.append((key, alive)))
+    _token = ends.unit.declare_alive(ALIVE)
+    until(lambda: told == [(ALIVE, True)], "the token")
+    ends.unit.close()
+    until(lambda: told == [(ALIVE, True), (ALIVE, False)], "the end of the token")
+
+
+def test_queries_are_answered_in_order(ends: Ends) -> None:
+    asked: list[tuple[str, str, bytes]] = []
+
+    def journal(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
+        asked.append((key, parameters, payload))
+        return (number.to_bytes(4, "big") for number in range(700))
+
+    ends.unit.serve("muster/v1/anna/journal", journal)
+    replies: list[bytes] = []
+
+    def answered() -> bool:
+        replies[:] = ends.station.query("muster/v1/anna/journal?from=1;to=9", b"why", 10.0)
+        return bool(replies)
+
+    until(answered, "replies")
+    assert replies == [number.to_bytes(4, "big") for number in range(700)]
+    assert asked[-1] == ("muster/v1/anna/journal", "from=1;to=9", b"why")
+
+
+def test_a_query_without_anyone_to_answer_yields_nothing(ends: Ends) -> None:
+    assert list(ends.station.query("muster/v1/nobody/journal", b"", 0.5)) == []
+
+
+@pytest.mark.parametrize("urgent", [False, True])
+def test_what_is_asked_without_waiting_is_answered_in_order_and_ended_once(
+    ends: Ends, urgent: bool
+) -> None:
+    ends.unit.serve("muster/v1/anna/journal", lambda *_: (b"%d" % n for n in range(100)))
+    heard: list[bytes | None] = []
+
+    def answered() -> bool:
+        heard.clear()
+        ends.station.ask("muster/v1/anna/journal", b"", 10.0, heard.append, urgent=urgent)
+        until(lambda: None in heard, "the end of the replies")
+        return len(heard) > 1
+
+    until(answered, "replies")
+    assert heard == [*(b"%d" % n for n in range(100)), None]
+
+
+def test_what_nobody_answers_ends_all_the_same(ends: Ends) -> None:
+    heard: list[bytes | None] = []
+    ends.station.ask("muster/v1/nobody/journal", b"", 0.5, heard.append)
+    until(lambda: bool(heard), "the end of the replies")
+    assert heard == [None]
+
+
+def test_a_query_handler_that_fails_answers_nothing(
+    ends: Ends, caplog: pytest.LogCaptureFixture
+) -> None:
+    def failing(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
+        yield b"first"
+        raise ValueError("a bug")
+
+    ends.unit.serve("muster/v1/anna/journal", failing)
+    replies: list[bytes] = []
+
+    def answered() -> bool:
+        replies[:] = ends.station.query("muster/v1/anna/journal", b"", 10.0)
+        return bool(replies)
+
+    with caplog.at_level(logging.ERROR):
+        until(answered, "what came before the failure")
+    assert replies == [b"first"]
+    assert len(caplog.records) == 1
+
+
+def test_one_knows_whether_anybody_else_listens(ends: Ends) -> None:
+    ends.unit.subscribe("muster/v1/anna/command/**", Heard())
+    assert not ends.unit.is_heard(KEY)
+    listening = ends.station.subscribe("muster/v1/*/up/**", Heard())
+    until(lambda: ends.unit.is_heard(KEY), "the station's interest")
+    assert not ends.unit.is_heard(ALIVE)
+    listening.close()
+    until(lambda: not ends.unit.is_heard(KEY), "the end of the station's interest")
+    ends.unit.close()
+    assert not ends.unit.is_heard(KEY)
+
+
+def test_a_linked_end_knows_it_until_it_closes(ends: Ends) -> None:
+    assert ends.unit.is_linked()
+    assert ends.station.is_linked()
+    ends.unit.close()
+    assert not ends.unit.is_linked()
