@@ -40,28 +40,26 @@ class FusedPosition(msgspec.Struct, frozen=True):
     floor_probability: float | None = None  # of the floor, where one is known
 
     def to_wire(self) -> fused_pb2.FusedPosition:
-        wire = fused_pb2.FusedPosition(
-            unit_id=self.unit_id,
-            t_meas_ns=self.t_meas_ns,
-            north_mm=signed32(self.north_m, 1e3),
-            east_mm=signed32(self.east_m, 1e3),
-            down_mm=signed32(self.down_m, 1e3),
-            std_north_mm=unsigned32(self.std_north_m, 1e3),
-            std_east_mm=unsigned32(self.std_east_m, 1e3),
-            std_down_mm=unsigned32(self.std_down_m, 1e3),
-            correlation_ne_permille=signed32(self.correlation_ne, 1e3),
-            heading_cdeg=heading_to_cdeg(self.heading_rad),
-            heading_std_cdeg=angle_std_to_cdeg(self.heading_std_rad),
-            floor=self.floor or 0,
-            floor_known=self.floor is not None,
-            quality=int(self.quality),  # type: ignore[arg-type]  # stubs want the generated enum
-            quality_reason=self.quality_reason,
-            fuser=self.fuser,
-            seconds_since_gps=unsigned32(self.since_gps_s or 0.0, 1.0),
-            gps_ever=self.since_gps_s is not None,
-            floor_permille=unsigned32(self.floor_probability or 0.0, 1e3),
-        )
+        wire = fused_pb2.FusedPosition()
         self.header.fill(wire.header)
+        wire.unit_id, wire.t_meas_ns = self.unit_id, self.t_meas_ns
+        wire.north_mm = signed32(self.north_m, 1e3)
+        wire.east_mm = signed32(self.east_m, 1e3)
+        wire.down_mm = signed32(self.down_m, 1e3)
+        wire.std_north_mm = unsigned32(self.std_north_m, 1e3)
+        wire.std_east_mm = unsigned32(self.std_east_m, 1e3)
+        wire.std_down_mm = unsigned32(self.std_down_m, 1e3)
+        wire.correlation_ne_permille = signed32(self.correlation_ne, 1e3)
+        wire.heading_cdeg = heading_to_cdeg(self.heading_rad)
+        wire.heading_std_cdeg = angle_std_to_cdeg(self.heading_std_rad)
+        wire.quality = int(self.quality)  # type: ignore[assignment]  # stubs want the generated enum
+        wire.quality_reason, wire.fuser = self.quality_reason, self.fuser
+        if self.floor is not None:
+            wire.floor, wire.floor_known = self.floor, True
+        if self.since_gps_s is not None:
+            wire.seconds_since_gps, wire.gps_ever = unsigned32(self.since_gps_s, 1.0), True
+        if self.floor_probability is not None:
+            wire.floor_permille = unsigned32(self.floor_probability, 1e3)
         return wire
 
     @staticmethod

@@ -7,30 +7,30 @@ import math
 _TWO_PI = 2.0 * math.pi
 HALF_TURN_CDEG = 18_000
 _CDEG_PER_RAD = HALF_TURN_CDEG / math.pi
-_SIGNED_MOST = 2**31 - 1
-_UNSIGNED_MOST = 2**32 - 1
+_SIGNED_MOST = float(2**31 - 1)
+_UNSIGNED_MOST = float(2**32 - 1)
 
 
 def signed32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a sint32; NaN is a caller's mistake and raises ValueError."""
-    try:
-        number = round(value * scale)
-    except OverflowError:  # infinite
-        return _SIGNED_MOST if value > 0.0 else -_SIGNED_MOST
-    if -_SIGNED_MOST <= number <= _SIGNED_MOST:
-        return number
-    return _SIGNED_MOST if number > 0 else -_SIGNED_MOST
+    scaled = value * scale
+    if -_SIGNED_MOST <= scaled <= _SIGNED_MOST:
+        return round(scaled)
+    return _saturated(scaled, -_SIGNED_MOST, _SIGNED_MOST)
 
 
 def unsigned32(value: float, scale: float) -> int:
     """``value * scale`` rounded into a uint32; negative becomes 0."""
-    try:
-        number = round(value * scale)
-    except OverflowError:  # infinite
-        return _UNSIGNED_MOST if value > 0.0 else 0
-    if 0 <= number <= _UNSIGNED_MOST:
-        return number
-    return _UNSIGNED_MOST if number > 0 else 0
+    scaled = value * scale
+    if 0.0 <= scaled <= _UNSIGNED_MOST:
+        return round(scaled)
+    return _saturated(scaled, 0.0, _UNSIGNED_MOST)
+
+
+def _saturated(scaled: float, least: float, most: float) -> int:
+    if math.isnan(scaled):
+        raise ValueError("not a number")
+    return round(least if scaled < least else most)
 
 
 def unsigned_known(value: float, scale: float) -> int:
