@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import secrets
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
@@ -32,7 +33,7 @@ from base_station.db.kept import KeptTables
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
 from base_station.forgetting.desk import ForgettingDesk
-from base_station.forgetting.forgetter import Forgetter
+from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
 from base_station.live.sinks import OperatorGate
@@ -56,12 +57,10 @@ from shared.bus_zenoh import ZenohBus
 from shared.channels import ROOT, clock_key
 from shared.clock import SystemClock
 from shared.envelope import Stamper
-from shared.errors import UserError
 from shared.mcap_log import SegmentPolicy
 from shared.messages import STATION_ID
-from shared.messages.station import Action
+from shared.service_manager import ServiceManager
 
-_BY_OTHER_STATION = "the other station"
 _log = logging.getLogger(__name__)
 
 
@@ -74,13 +73,19 @@ class _Again(NamedTuple):
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
     collector.relax()
-    while (again := _run_once(config, announce)) is not None:
+    manager = ServiceManager(os.environ)
+
+    def tell(line: str) -> None:
+        announce(line)
+        manager.working()
+
+    while (again := _run_once(config, tell, manager)) is not None:
         if again.cut is not None:
-            announce("what the other station does not have is set aside, and handed to it")
-            _set_aside(config.data, again.cut)
+            tell("what the other station does not have is set aside, and handed to it")
+            _set_aside(config.data, again.cut, manager)
 
 
-def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
+def _run_once(config: StationConfig, announce: Announce, manager: ServiceManager) -> _Again | None:
     joining = station_endpoint(config.data, config.bus.listen)  # refuses before anything is made
     clock = SystemClock()
     with ExitStack() as closing:
@@ -105,7 +110,10 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         pki = PkiFolder(folder.path)
         recordings = RecordingDesk(ask_over(bus), folder.recordings, steady)
         closing.enter_context(recordings)
-        side = _side(config, _parts(disk, bus, feed, pki, recordings, announce, start_again))
+        parts = _parts(
+            disk, bus, feed, pki, announce, start_again, lambda what: _forget(forgettings, what)
+        )
+        side = _side(config, parts)
         hearing = bus.subscribe(f"{ROOT}/**", side.feed.offer)
         clock_server = ClockServer(steady, lambda: side.leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
@@ -118,17 +126,20 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
 
         def report(held: Report) -> None:
             side.note_report()
-            backfill.report(held)
+            backfill.report(held, recorder.lost)
 
         expiry = ExpiryWatch(pki, clock)
-
-        def act(by: str, action: Action) -> object:
-            return drive.submit(by, action)
 
         def save_soon() -> None:
             drive.save_soon()
 
-        forgettings = disk.forgetting_desk(recordings, act, save_soon, lambda: side.leads)
+        forgettings = disk.forgetting_desk(
+            recordings,
+            # A standby does what stands in the other's log.
+            lambda by, action: drive.submit(by, action) if side.leads else None,
+            save_soon,
+            lambda: side.leads,
+        )
         drive = _start_drive(
             disk.log,
             Surroundings(
@@ -138,8 +149,11 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
                 projection=disk.projection,
                 checkpoints=disk.checkpoints,
                 photo_urls=disk.roster.photo_url,
-                facts=lambda: _facts(
-                    config, recorder, feed, router, expiry, side, recordings, forgettings
+                facts=_asked(
+                    lambda: _facts(
+                        config, recorder, feed, router, expiry, side, recordings, forgettings
+                    ),
+                    manager,
                 ),
                 clock=steady,
                 boot_id=secrets.randbits(63),
@@ -165,7 +179,7 @@ def _run_once(config: StationConfig, announce: Announce) -> _Again | None:
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         side.start(gate, beside)
-        asyncio.run(serve_until_stopped(server, announce, keep_house))
+        asyncio.run(serve_until_stopped(server, _telling(announce, manager), keep_house))
         return again[0] if again else None
 
 
@@ -174,9 +188,9 @@ def _parts(
     bus: ZenohBus,
     feed: LiveFeed,
     pki: PkiFolder,
-    recordings: RecordingDesk,
     announce: Announce,
     start_again: Callable[[Place | None], None],
+    forget: Callable[[str], None],
 ) -> Parts:
     """What a station has, however it stands to another one."""
     return Parts(
@@ -192,7 +206,7 @@ def _parts(
         on_people=disk.roster.read_again,
         on_lead=lambda: announce_first_login(disk.accounts, disk.folder.first_login, announce),
         start_again=start_again,
-        forget=lambda what: _forget_too(disk.forgetter(recordings), what),
+        forget=forget,
     )
 
 
@@ -259,22 +273,39 @@ def _start_drive(
     return drive
 
 
-def _forget_too(forgetter: Forgetter, what: str) -> None:
-    """The active station has forgotten this, and its log is this one's.  What is to go from memory
-    comes as actions of that log.
-    """
+def _asked(
+    facts: Callable[[], StationFacts], manager: ServiceManager
+) -> Callable[[], StationFacts]:
+    """The drive asks once a second, with a full disk and at a standby too; hanging, it does not."""
+
+    def asked() -> StationFacts:
+        manager.working()
+        return facts()
+
+    return asked
+
+
+def _telling(announce: Announce, manager: ServiceManager) -> Announce:
+    """What announces that consoles can connect, and tells the manager too."""
+
+    def ready(line: str) -> None:
+        announce(line)
+        manager.ready()
+
+    return ready
+
+
+def _forget(desk: ForgettingDesk, what: str) -> None:
+    """The other station has forgotten this, and of who it is this one's log tells, too."""
     kind, _, one = what.partition(" ")
-    try:
-        (forgetter.person if kind == "person" else forgetter.incident)(_BY_OTHER_STATION, one)
-    except UserError as error:
-        _log.info("nothing to forget here: %s", error)
+    desk.add(BY_OTHER_STATION, kind, one, told=True)
 
 
 def _side(config: StationConfig, parts: Parts) -> Side:
     return OneOfTwo(config.standby, parts) if config.standby.name else OnlyStation(parts)
 
 
-def _set_aside(data: Path, place: Place) -> None:
+def _set_aside(data: Path, place: Place, manager: ServiceManager) -> None:
     """What is queried must not know either of what is cut from the log."""
     folder = DataFolder(data)
     lock = folder.lock()
@@ -282,7 +313,7 @@ def _set_aside(data: Path, place: Place) -> None:
         set_aside(folder, place)
     finally:
         lock.close()
-    rebuild(data, _ignore)
+    rebuild(data, lambda _: manager.working())
 
 
 def _facts(
@@ -309,7 +340,3 @@ def _facts(
         standby=None if side.standing is None else side.standing.view(),
         recordings=recordings.views(),
     )
-
-
-def _ignore(_: object) -> None:
-    return None
