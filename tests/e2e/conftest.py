@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from tests.e2e.console_files import CONSOLE, DIST
+from tests.e2e.stage import Stage
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
-CONSOLE = Path(__file__).resolve().parents[2] / "base_station" / "console"
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 UNIT = "FF-07"
 
@@ -23,7 +23,7 @@ def chromium() -> Iterator[Browser]:
     program = next(filter(None, map(shutil.which, CHROMIUM)), None)
     if program is None:
         pytest.skip("no Chromium on this machine: install the package chromium")
-    if not (CONSOLE / "dist" / "index.html").is_file():
+    if not (DIST / "index.html").is_file():
         pytest.skip(f"the console is not built: run npm ci and npm run build in {CONSOLE}")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
@@ -60,6 +60,13 @@ def log_in(page: Page, station: StationProcess) -> None:
     page.get_by_label("Password").fill(password)
     page.get_by_role("button", name="Log in").click()
     page.get_by_role("region", name="People").wait_for()
+
+
+@pytest.fixture
+def stage(chromium: Browser) -> Iterator[Stage]:
+    stage = Stage(chromium)
+    yield stage
+    stage.close()
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Locator, Page
 
-from tests.e2e.conftest import CONSOLE
+from tests.e2e.console_files import CONSOLE
 
 AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
 SOON_MS = 15_000
@@ -30,6 +30,13 @@ def command(page: Page, name: str) -> Locator:
 
 def close(dialog: Locator) -> None:
     dialog.get_by_role("button", name="Close", exact=True).click()
+
+
+def confirm(where: Locator, name: str) -> None:
+    """Press what asks first, and say yes; two presses in haste would be one."""
+    where.get_by_role("button", name=name).click()
+    where.page.wait_for_timeout(600)
+    where.get_by_role("button", name=f"Yes, {name.lower()}").click()
 
 
 def metres_north(card: Locator) -> float:

@@ -21,6 +21,7 @@ from tests.e2e.console_page import (
     click_plan,
     close,
     command,
+    confirm,
     drag,
     menu,
     metres_north,
@@ -141,7 +142,7 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
     alarm.get_by_role("button", name="Acknowledge").click()
     expect(alarm).to_contain_text("acknowledged by admin", timeout=SOON_MS)
     wearable.cancel_mayday()
-    alarm.get_by_role("button", name="Resolve").click()
+    confirm(alarm, "Resolve")
     expect(alarm).to_have_count(0, timeout=SOON_MS)
 
 
@@ -204,10 +205,10 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     right_m, down_m = moved["east_m"] - pin["east_m"], pin["north_m"] - moved["north_m"]
     assert right_m > 0.5
     assert down_m == pytest.approx(right_m * 40 / 60, rel=0.1)
-    page.get_by_text("Pins 1").click()
+    page.get_by_role("button", name="Pins 1").click()
     page.get_by_role("button", name=f"{NAME} here").click()
     expect(form.get_by_label("East, m")).to_have_value(f"{moved['east_m']:.1f}", timeout=SOON_MS)
-    form.get_by_role("button", name="Remove pin").click()
+    confirm(form, "Remove pin")
     expect(form).to_have_count(0, timeout=SOON_MS)
     assert pins(page) == []
 
@@ -215,8 +216,8 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
 def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()
     page.wait_for_timeout(600)  # the plan has come to rest
-    page.get_by_text("Trails", exact=True).click()
-    kinds = page.get_by_role("group").filter(has=page.get_by_text("Trails", exact=True))
+    page.get_by_role("button", name="Trails").click()
+    kinds = page.get_by_role("region", name="Trails")
     kinds.get_by_label("As shown at the time").uncheck()  # it lies above the others
     for word, kind, colour in (
         ("own path", "raw", "--quiet"),
@@ -234,7 +235,7 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
         page.wait_for_timeout(300)
         assert painted(page, colour) < before + 50, kind
     kinds.get_by_label("As shown at the time").check()
-    page.get_by_text("Trails", exact=True).click()
+    kinds.get_by_role("button", name="Close").click()
 
 
 def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
@@ -337,8 +338,7 @@ def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locato
 
 def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     dialog = menu(page, "Incidents")
-    dialog.get_by_role("button", name="Close this incident").click()
-    dialog.get_by_role("button", name="Yes, close this incident").click()
+    confirm(dialog, "Close this incident")
     expect(dialog.get_by_label("Name of the new incident")).to_be_visible(timeout=SOON_MS)
     dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
     banner = page.get_by_role("region", name="Replay")
@@ -436,8 +436,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
     assert lon_m == pytest.approx(across / scale - west_m, abs=2.0)
     page.wait_for_function("document.querySelector('canvas.base-map')?.width > 0")
     assert barriers(page) == []
-    menu(page, "Site").get_by_role("button", name="Remove base map").click()
-    page.get_by_role("button", name="Yes, remove base map").click()
+    confirm(menu(page, "Site"), "Remove base map")
     expect(page.get_by_role("button", name="Remove base map")).to_have_count(0)
     page.keyboard.press("Escape")
 

@@ -7,6 +7,7 @@ import "./styles/people.css";
 import "./styles/commands.css";
 import "./styles/plan.css";
 import "./styles/dialogs.css";
+import "./styles/small.css";
 import { resume } from "./sessions";
 import { App } from "./ui/App";
 

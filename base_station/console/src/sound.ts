@@ -1,29 +1,62 @@
-/** Three short tones when an immediate alarm appears; only for who asked for sound. */
-import { useEffect, useRef } from "preact/hooks";
-import type { AlarmView } from "./wire";
+/** Alarms and a lost station are heard, unless somebody switched that off at this console. */
+import { effect, signal } from "@preact/signals";
+import type { Picture } from "./live/picture";
+import { NOTHING_YET, toneOf, type Tone } from "./live/sounding";
 
-const TONES = 3;
+const KEPT_AS = "muster-sound";
+
+export const soundOn = signal(localStorage.getItem(KEPT_AS) !== "off");
+/** Browsers play nothing before the person has pressed anything on the page. */
+export const soundBlocked = signal(!navigator.userActivation.hasBeenActive);
+
+for (const kind of ["pointerdown", "keydown"]) {
+  document.addEventListener(kind, () => (soundBlocked.value = false), { once: true });
+}
+
+/** Switching on is heard. */
+export function switchSound(on: boolean): void {
+  soundOn.value = on;
+  localStorage.setItem(KEPT_AS, on ? "on" : "off");
+  if (on) play("soon");
+}
+
+/** Sound what a picture brings, until the returned function is called. */
+export function sound(picture: Picture): () => void {
+  let before = NOTHING_YET;
+  return effect(() => {
+    void picture.nowMs.value; // goes on without the station too
+    if (picture.replay.value !== null) return;
+    const { tone, sounded } = toneOf(
+      {
+        alarms: picture.openAlarms.value,
+        linkLost: picture.link.value.kind === "down",
+        nowMs: performance.now(),
+      },
+      before,
+    );
+    before = sounded;
+    if (tone !== null && soundOn.peek() && !soundBlocked.peek()) play(tone);
+  });
+}
+
+/** Pitches in Hz, one after the other. */
+const PITCHES: Record<Tone, readonly number[]> = {
+  immediate: [880, 880, 880],
+  soon: [660],
+  link: [440, 330],
+};
 const TONE_S = 0.18;
 const STEP_S = 0.3;
 
-export function useBeeper(on: boolean, alarms: readonly AlarmView[]): void {
-  const heard = useRef<Set<string>>(new Set());
-  useEffect(() => {
-    const urgent = alarms.filter((alarm) => alarm.priority === 1 && alarm.state === "raised");
-    const fresh = urgent.some((alarm) => !heard.current.has(alarm.alarm_id));
-    heard.current = new Set(urgent.map((alarm) => alarm.alarm_id));
-    if (on && fresh) beep();
-  }, [on, alarms]);
-}
-
-function beep(): void {
+function play(tone: Tone): void {
   const context = new AudioContext();
-  for (let i = 0; i < TONES; i++) {
-    const tone = context.createOscillator();
-    tone.frequency.value = 880;
-    tone.connect(context.destination);
-    tone.start(context.currentTime + i * STEP_S);
-    tone.stop(context.currentTime + i * STEP_S + TONE_S);
-    if (i === TONES - 1) tone.onended = () => void context.close();
-  }
+  const pitches = PITCHES[tone];
+  pitches.forEach((pitch, i) => {
+    const one = context.createOscillator();
+    one.frequency.value = pitch;
+    one.connect(context.destination);
+    one.start(context.currentTime + i * STEP_S);
+    one.stop(context.currentTime + i * STEP_S + TONE_S);
+    if (i === pitches.length - 1) one.onended = () => void context.close();
+  });
 }

@@ -26,10 +26,18 @@ export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
 
+interface Assessed {
+  incident_id: string;
+  name: string;
+}
 /** The incident that is assessed. */
-export const assessed = signal<{ incident_id: string; name: string } | null>(null);
+export const assessed = signal<Assessed | null>(null);
 
 export const notice = signal<string | null>(null);
+
+/** What a small screen shows; a large one has room for both. */
+export type Half = "people" | "plan";
+export const half = signal<Half>("people");
 
 /** Show a unit on the plan; `on` is the floor where it is, as far as that is known. */
 export function select(unitId: string, on: number | null): void {
@@ -38,9 +46,20 @@ export function select(unitId: string, on: number | null): void {
   centring.value += 1;
 }
 
+/** The same, and turn to the plan where the screen has no room for it beside the list. */
+export function find(unitId: string, on: number | null): void {
+  select(unitId, on);
+  half.value = "plan";
+}
+
 export function openDialog(name: DialogName, unitId: string | null = null): void {
   dialogUnit.value = unitId;
   dialog.value = name;
+}
+
+export function assess(incident: Assessed): void {
+  assessed.value = incident;
+  openDialog("assessment");
 }
 
 /** As at the beginning, but for the floor. */

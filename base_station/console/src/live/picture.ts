@@ -26,8 +26,10 @@ export class Picture {
   readonly ready = signal(false);
   /** Now, in station time; goes on by itself when the station is silent. */
   readonly nowMs = signal(0);
-  /** For how long the station has been silent; 0 while it speaks as it should. */
+  /** For how long the station has been silent; 0 while it speaks as it should, and in the past, where
+   * nobody has gone on since. */
   readonly silentMs: ReadonlySignal<number> = computed(() => {
+    if (this.replay.value !== null) return 0;
     const silentMs = this.nowMs.value - this.heardMs.value;
     return silentMs < SILENCE_MS ? 0 : silentMs;
   });

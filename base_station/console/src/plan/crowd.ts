@@ -9,7 +9,7 @@ import VectorSource from "ol/source/Vector";
 import { displayName, urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../view";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
-import { initials } from "../words";
+import { floorName, initials } from "../words";
 import type { Colours } from "./colours";
 import { isOld, outline, regionAt } from "./ellipse";
 import { labelStyle, markStyle, regionStyle, trailStyle, type Mark } from "./marks";
@@ -28,6 +28,7 @@ export interface Scene {
 }
 
 const HEADING_KNOWN_RAD = 0.8;
+const CROWDED = 12;
 
 /** The features of one person. */
 interface Figure {
@@ -78,7 +79,7 @@ export class Crowd {
     const { trail, region, mark, label } = this.figure(unit.unit_id);
     const looks = markOf(unit, position, scene);
     const centre = siteCoordinate(position);
-    const walked = scene.trails.get(unit.unit_id) ?? [];
+    const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
     const ellipse = regionAt(position, scene.silentMs);
     region.getGeometry()?.setCoordinates([outline(centre, position, scene.silentMs)]);
@@ -119,10 +120,20 @@ export class Crowd {
   }
 }
 
-/** On the chosen floor, on a floor that nobody knows, or chosen. */
-function isShown(unit: UnitView, { floor }: PositionView, scene: Scene): boolean {
-  const here = scene.floor === "all" || floor === null || floor === scene.floor;
-  return here || unit.unit_id === scene.chosen;
+/** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who
+ * is in danger. */
+function isShown(unit: UnitView, position: PositionView, scene: Scene): boolean {
+  const danger = urgencyOf(unit, scene.alarms) === "immediate";
+  return isHere(position, scene) || danger || unit.unit_id === scene.chosen;
+}
+
+function isHere({ floor }: PositionView, scene: Scene): boolean {
+  return scene.floor === "all" || floor === null || floor === scene.floor;
+}
+
+/** In a crowd trails would hide the plan: those of whom somebody looks for remain. */
+function hasTrail({ chosen, urgency }: Mark, { units }: Scene): boolean {
+  return units.length <= CROWDED || chosen || urgency === "immediate";
 }
 
 function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
@@ -134,6 +145,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     chosen: unit.unit_id === scene.chosen,
     old: isOld(position, scene.nowMs) || position.reach.length > 0,
     ageMs: scene.nowMs - position.t_ms,
+    elsewhere: isHere(position, scene) ? "" : floorName(position.floor),
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
   };

@@ -53,7 +53,14 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       redraw.ask();
     }),
     effect(drawPins),
-    effect(() => map.showPast(pastTrails.value, picture.nowMs.value, floor.value)),
+    effect(() =>
+      map.showPast({
+        past: pastTrails.value,
+        nowMs: picture.nowMs.value,
+        floor: floor.value,
+        chosen: selectedUnit.value,
+      }),
+    ),
     followTrails(picture),
     beginOnAFloor(picture),
   ];

@@ -7,15 +7,13 @@ import { buffer, containsExtent, createEmpty, extend } from "ol/extent";
 import Point from "ol/geom/Point";
 import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
-import type { FloorChoice } from "../view";
 import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { Crowd, type Scene } from "./crowd";
 import { Grid } from "./grid";
-import { PastLayer } from "./pastLayer";
-import type { PastTrails } from "./pastTrails";
+import { PastLayer, type PastScene } from "./pastLayer";
 import { PinLayer, type PinScene, type Standing } from "./pins";
 import { SITE } from "./site";
 import type { Place } from "./tools";
@@ -91,8 +89,8 @@ export class PlanMap {
     this.pins.show({ ...scene, colours: this.colours });
   }
 
-  showPast(all: readonly PastTrails[], nowMs: number, floor: FloorChoice): void {
-    this.past.show(all, nowMs, floor, this.colours);
+  showPast(scene: PastScene): void {
+    this.past.show(scene, this.colours);
   }
 
   private selectNear(coordinate: number[], clicked: number[]): void {
@@ -142,8 +140,14 @@ export class PlanMap {
   showPeople(scene: Omit<Scene, "colours">): void {
     this.building.choose(scene.floor, this.colours);
     this.crowd.show({ ...scene, colours: this.colours });
+    if (!this.isSeen()) return;
     if (!this.fitted) this.fitted = this.fit(false);
     else if (!this.chosen && !this.showsEverybody()) this.fit();
+  }
+
+  /** Not so while another part of a small screen is shown. */
+  private isSeen(): boolean {
+    return this.map.getSize()?.every((pixels) => pixels > 0) ?? false;
   }
 
   private showsEverybody(): boolean {

@@ -13,6 +13,7 @@ export interface Mark {
   chosen: boolean;
   old: boolean;
   ageMs: number;
+  elsewhere: string; // the floor, where it is not the one shown
   headingRad: number;
   headingKnown: boolean;
 }
@@ -50,12 +51,12 @@ export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Styl
 
 /** Names keep clear of each other; the plan leaves out what does not fit. */
 export function labelStyle(mark: Mark, colours: Colours): Style {
-  const words = mark.old ? `${mark.name}, ${age(mark.ageMs)} old` : mark.name;
+  const words = [mark.name, mark.elsewhere, mark.old ? `${age(mark.ageMs)} old` : ""];
   const strong = mark.chosen || mark.urgency === "immediate";
   return new Style({
     zIndex: strong ? 2 : 1,
     text: new Text({
-      text: words,
+      text: words.filter((word) => word !== "").join(", "),
       font: `${strong ? "700" : "600"} 14px system-ui, sans-serif`,
       offsetY: RADIUS_PX + 12,
       fill: new Fill({ color: colours.text }),

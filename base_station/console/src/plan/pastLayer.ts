@@ -9,18 +9,27 @@ import type { Colours } from "./colours";
 import type { PastKind, PastTrails } from "./pastTrails";
 import { trailLines } from "./trail";
 
+export interface PastScene {
+  past: readonly PastTrails[];
+  nowMs: number;
+  floor: FloorChoice;
+  chosen: string | null; // the only one whose trails are drawn; null: everybody's
+}
+
 export class PastLayer {
   private readonly source = new VectorSource<Feature<MultiLineString>>();
   readonly layer = new VectorLayer({ source: this.source });
 
-  show(all: readonly PastTrails[], nowMs: number, floor: FloorChoice, colours: Colours): void {
+  show({ past, nowMs, floor, chosen }: PastScene, colours: Colours): void {
     this.source.clear(true);
-    for (const { kind, trails } of all) {
-      for (const points of trails.values()) {
+    for (const { kind, trails } of past) {
+      const stroke = strokeOf(kind, colours);
+      for (const [unitId, points] of trails) {
+        if (chosen !== null && unitId !== chosen) continue;
         const until = points.filter(([tMs]) => tMs <= nowMs);
         const lines = trailLines(until, nowMs, floor, Infinity);
         const feature = new Feature(new MultiLineString(lines));
-        feature.setStyle(new Style({ stroke: strokeOf(kind, colours) }));
+        feature.setStyle(new Style({ stroke }));
         this.source.addFeature(feature);
       }
     }

@@ -1,5 +1,6 @@
 /** What is being done on the plan: one thing at a time, begun with a button, ended with Escape. */
 import { signal } from "@preact/signals";
+import { half } from "../view";
 
 /** Metres in the incident frame. */
 export interface Place {
@@ -14,7 +15,9 @@ export type Tool =
   | { kind: "beacon" }
   | { kind: "anchor" } // where two points of the plan are on the Earth
   | { kind: "edit-pin"; pinId: string }
-  | { kind: "edit-beacon"; beaconId: string };
+  | { kind: "edit-beacon"; beaconId: string }
+  | { kind: "trails" } // which are drawn
+  | { kind: "pins" }; // all of them, in words
 
 export const tool = signal<Tool | null>(null);
 /** Where the person has clicked since the tool was taken. */
@@ -23,6 +26,7 @@ export const clicked = signal<readonly Place[]>([]);
 export function take(next: Tool): void {
   clicked.value = [];
   tool.value = next;
+  half.value = "plan";
 }
 
 export function putDown(): void {
@@ -30,10 +34,17 @@ export function putDown(): void {
   tool.value = null;
 }
 
+/** Put it down where it is in the hand, else take it. */
+export function toggle(next: Tool): void {
+  if (tool.peek()?.kind === next.kind) putDown();
+  else take(next);
+}
+
+const WITHOUT_PLACE: readonly Tool["kind"][] = ["meeting", "trails", "pins"];
+
 /** Whether a click on the plan says a place to the tool. */
-export function wantsPlaces(): boolean {
-  const kind = tool.peek()?.kind;
-  return kind !== undefined && kind !== "meeting";
+export function wantsPlaces(now: Tool | null): boolean {
+  return now !== null && !WITHOUT_PLACE.includes(now.kind);
 }
 
 /** A click on the plan: the anchor needs two places, the others take the last. */

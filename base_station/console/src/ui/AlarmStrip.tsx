@@ -1,33 +1,22 @@
-import { useSignal } from "@preact/signals";
 import { attempt, isPast, mayAct } from "../sessions";
-import { select } from "../view";
+import { find } from "../view";
 import * as api from "../api";
-import { useBeeper } from "../sound";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
+import { ConfirmButton } from "./ConfirmButton";
 import { Icon } from "./Icon";
+import { SoundButton } from "./SoundButton";
 
 const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
 
 export function AlarmStrip({ picture }: { picture: Picture }) {
-  const sound = useSignal(false);
   const alarms = picture.openAlarms.value;
-  useBeeper(sound.value && !isPast.value, alarms);
   return (
     <section class="alarms" aria-label="Open alarms">
       <div class="alarms-head">
         <h2>{alarms.length === 0 ? "No open alarms" : `${alarms.length} open`}</h2>
-        {!isPast.value && (
-          <button
-            type="button"
-            class="sound"
-            aria-pressed={sound.value}
-            onClick={() => (sound.value = !sound.value)}
-          >
-            <Icon name={sound.value ? "bell" : "bellOff"} /> Sound {sound.value ? "on" : "off"}
-          </button>
-        )}
+        {!isPast.value && <SoundButton />}
       </div>
       <ul aria-live="assertive" aria-relevant="additions">
         {alarms.map((alarm) => (
@@ -55,12 +44,12 @@ function AlarmRow({ alarm, picture }: RowProps) {
         class="what"
         title="Show on the plan"
         disabled={unit === undefined}
-        onClick={() => select(alarm.unit_id, unit?.peek().position?.floor ?? null)}
+        onClick={() => find(alarm.unit_id, unit?.peek().position?.floor ?? null)}
       >
         {alarm.text}
       </button>
-      <span class="for" aria-live="off">
-        for {duration(picture.nowMs.value - alarm.raised_ms)}
+      <span class="since" aria-live="off">
+        {duration(picture.nowMs.value - alarm.raised_ms)} ago
       </span>
       <span class="state">{stateOf(alarm, mayAct.value)}</span>
       {mayAct.value && <AlarmAction alarm={alarm} />}
@@ -74,18 +63,26 @@ function stateOf(alarm: AlarmView, hasButton: boolean): string {
   return hasButton ? "" : "not acknowledged";
 }
 
+/** To resolve asks first: it stands where the button to acknowledge was a moment ago. */
 function AlarmAction({ alarm }: { alarm: AlarmView }) {
-  const taken = alarm.state === "acknowledged";
-  const send = () => (taken ? api.resolve(alarm.alarm_id) : api.acknowledge(alarm.alarm_id));
-  const word = taken ? "Resolve" : "Acknowledge";
+  if (alarm.state === "acknowledged") {
+    return (
+      <ConfirmButton
+        label="Resolve"
+        about={alarm.text}
+        question="Is it over?"
+        onConfirm={() => void attempt(api.resolve(alarm.alarm_id))}
+      />
+    );
+  }
   return (
     <button
       type="button"
       class="act"
-      aria-label={`${word}: ${alarm.text}`}
-      onClick={() => void attempt(send())}
+      aria-label={`Acknowledge: ${alarm.text}`}
+      onClick={() => void attempt(api.acknowledge(alarm.alarm_id))}
     >
-      {word}
+      Acknowledge
     </button>
   );
 }

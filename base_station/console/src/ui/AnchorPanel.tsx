@@ -5,8 +5,8 @@ import type { Picture } from "../live/picture";
 import { anchorThrough, doubtOf, type Fit, type Known } from "../plan/anchor";
 import { baseMap, type LatLon } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
+import { Ends } from "./Ends";
 import { MapPicker } from "./MapPicker";
-import { Ends } from "./PinPanel";
 import { fields } from "./useLoaded";
 
 /** Where the plan lies on the Earth: two points of it, clicked, with latitude and longitude. */

@@ -1,7 +1,11 @@
+import { useEffect } from "preact/hooks";
 import { isPast, live, picture, replay, user } from "../sessions";
-import { notice } from "../view";
+import { sound } from "../sound";
+import { entitle } from "../title";
+import { half, notice } from "../view";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
+import { Halves } from "./Halves";
 import { Header } from "./Header";
 import { LinkBanner } from "./LinkBanner";
 import { Login } from "./Login";
@@ -11,6 +15,7 @@ import { ReplayBar } from "./ReplayBar";
 import { StandbyBar } from "./StandbyBar";
 
 export function App() {
+  useAttention();
   if (user.value === null) return <Login />;
   const shown = picture.value;
   if (shown === null) return null;
@@ -23,18 +28,31 @@ export function App() {
       {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}
       <Header picture={shown} />
       <AlarmStrip picture={shown} />
-      <main class="columns">
-        <People picture={shown} key={kind} />
-        <PlanPanel picture={shown} />
+      <main class="main">
+        <Halves />
+        <div class={`columns with-${half.value}`}>
+          <People picture={shown} key={kind} />
+          <PlanPanel picture={shown} />
+        </div>
       </main>
       <footer class="footer">
-        Muster supplements a certified PASS device and never replaces it. Temperatures are of the
-        equipment’s environment, not of the wearer.
+        Muster supplements a certified PASS device and never replaces it.{" "}
+        <span>Temperatures are of the equipment’s environment, not of the wearer.</span>
       </footer>
       <Notice />
       <Dialogs />
     </div>
   );
+}
+
+/** What reaches who is looking elsewhere: sounds, and the page's title. */
+function useAttention(): void {
+  const watched = live.value?.picture;
+  useEffect(() => {
+    if (watched === undefined) return undefined;
+    const ends = [sound(watched), entitle(watched)];
+    return () => ends.forEach((end) => end());
+  }, [watched]);
 }
 
 function Notice() {

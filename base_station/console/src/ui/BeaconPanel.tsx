@@ -4,7 +4,8 @@ import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";
 import type { BeaconView } from "../wire";
 import { age } from "../words";
-import { Ends } from "./PinPanel";
+import { ConfirmButton } from "./ConfirmButton";
+import { Ends } from "./Ends";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
 import { fields } from "./useLoaded";
 
@@ -62,12 +63,11 @@ export function BeaconPanel({ picture, beacon }: Props) {
       <FloorField picture={picture} start={beacon?.floor ?? null} />
       <Ends label={beacon === null ? "Place beacon" : "Change beacon"}>
         {beacon !== null && (
-          <button
-            type="button"
-            onClick={() => void attempt(api.removeBeacon(beacon.beacon_id)).then(putDown)}
-          >
-            Remove beacon
-          </button>
+          <ConfirmButton
+            label="Remove beacon"
+            question="Nobody who passes it is placed by it any more."
+            onConfirm={() => void attempt(api.removeBeacon(beacon.beacon_id)).then(putDown)}
+          />
         )}
       </Ends>
     </form>

@@ -1,15 +1,14 @@
-import type { ComponentChildren } from "preact";
 import { memo } from "preact/compat";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
-import { isOld, regionAt } from "../plan/ellipse";
-import type { AlarmView, Link, UnitView } from "../wire";
+import type { AlarmView, UnitView } from "../wire";
 import * as words from "../words";
 import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
+import { BriefFacts, Facts } from "./Facts";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { ParMark } from "./ParClock";
 import { Photo } from "./Photo";
@@ -18,28 +17,19 @@ import { AskWearer } from "./Wearer";
 interface Props {
   unitId: string;
   urgency: Urgency;
+  brief: boolean; // whoever is well is said in short
   picture: Picture;
 }
 
-const LOW_BATTERY = 0.1;
-const LINK_LEVEL: Record<Link, string> = {
-  live: "",
-  never: "",
-  stale: "caution",
-  lost: "critical",
-};
-
-export const Card = memo(({ unitId, urgency, picture }: Props) => {
+export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
   if (unit === undefined) return null;
   const name = displayName(unit);
   const chosen = selectedUnit.value === unitId;
   const unheard = unit.link === "lost" || unit.link === "never";
+  const short = brief && !chosen && urgency === "normal" && isUsual(unit);
   return (
-    <li
-      class={`card ${urgency} ${unheard ? "unheard" : ""} ${chosen ? "chosen" : ""}`}
-      data-unit={unitId}
-    >
+    <li class={`card ${urgency} ${flags({ unheard, chosen, brief: short })}`} data-unit={unitId}>
       <button
         type="button"
         class="card-head"
@@ -47,7 +37,7 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
         title="Show on the plan"
         onClick={() => select(unitId, unit.position?.floor ?? null)}
       >
-        <Photo name={name} url={unit.person?.photo_url ?? null} />
+        {!short && <Photo name={name} url={unit.person?.photo_url ?? null} />}
         <span class="names">
           <span class="name">{name}</span>
           <span class="under-name">
@@ -60,7 +50,11 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
       {unit.cloned && <TwoMachines />}
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
-      <Facts unit={unit} picture={picture} />
+      {short ? (
+        <BriefFacts unit={unit} picture={picture} />
+      ) : (
+        <Facts unit={unit} picture={picture} />
+      )}
       <Trust unit={unit} />
       {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
@@ -68,6 +62,17 @@ export const Card = memo(({ unitId, urgency, picture }: Props) => {
     </li>
   );
 });
+
+/** Heard, placed and known: what there is to say of it is usual. */
+function isUsual({ position, person, status, link, cloned }: UnitView): boolean {
+  const known = position !== null && person !== null && status !== null;
+  return known && link === "live" && !cloned;
+}
+
+function flags(set: Record<string, boolean>): string {
+  const names = Object.entries(set).filter(([, is]) => is);
+  return names.map(([name]) => name).join(" ");
+}
 
 function crewAndRole(unit: UnitView): string {
   if (unit.person === null) return unit.registered ? "nobody assigned" : "unknown unit";
@@ -100,113 +105,6 @@ function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<stri
         </li>
       ))}
     </ul>
-  );
-}
-
-function Facts({ unit, picture }: { unit: UnitView; picture: Picture }) {
-  const now = picture.nowMs.value;
-  return (
-    <dl class="facts">
-      <Where unit={unit} now={now} silentMs={picture.silentMs.value} />
-      <Heard unit={unit} now={now} silent={picture.silentMs.value > 0} />
-      <Fact icon="heat" label="Environment" level={unit.heat_level}>
-        {words.temperature(unit.ambient_degc)}
-        {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
-      </Fact>
-      <Battery part={unit.status?.battery ?? null} />
-      <Inside unit={unit} now={now} />
-    </dl>
-  );
-}
-
-function Inside({ unit, now }: { unit: UnitView; now: number }) {
-  const restSinceMs = unit.duty?.rest_since_ms ?? null;
-  if (restSinceMs !== null) {
-    return (
-      <Fact icon="clock" label="Resting for">
-        {words.minutes(now - restSinceMs)}
-      </Fact>
-    );
-  }
-  return (
-    <Fact icon="inside" label="Inside for">
-      {unit.inside_since_ms === null ? "—" : words.minutes(now - unit.inside_since_ms)}
-    </Fact>
-  );
-}
-
-interface WhereProps {
-  unit: UnitView;
-  now: number;
-  silentMs: number;
-}
-
-function Where({ unit, now, silentMs }: WhereProps) {
-  const { position } = unit;
-  if (position === null) {
-    return (
-      <Fact icon="floor" label="Position" wide>
-        no position yet
-      </Fact>
-    );
-  }
-  const old = isOld(position, now);
-  return (
-    <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
-      {words.floorOf(position)}, {words.plusMinus(regionAt(position, silentMs).major_m)}
-      <span class="spoken">, {words.place(position)}</span>
-      {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
-    </Fact>
-  );
-}
-
-interface HeardProps {
-  unit: UnitView;
-  now: number;
-  silent: boolean; // the station cannot be heard, so nobody knows of the unit's link
-}
-
-function Heard({ unit, now, silent }: HeardProps) {
-  const good = unit.link === "live" && !silent;
-  const level = silent ? "critical" : LINK_LEVEL[unit.link];
-  return (
-    <Fact
-      icon={good ? "linkGood" : "linkLost"}
-      label={silent ? "Not updated" : words.linkWord(unit.link)}
-      level={level}
-    >
-      {unit.last_heard_ms === null ? "—" : `${words.age(now - unit.last_heard_ms)} ago`}
-    </Fact>
-  );
-}
-
-function Battery({ part }: { part: number | null }) {
-  const low = part !== null && part < LOW_BATTERY;
-  return (
-    <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
-      {words.percent(part)}
-      {low && <small>low</small>}
-    </Fact>
-  );
-}
-
-interface FactProps {
-  icon: IconName;
-  label: string;
-  level?: string;
-  wide?: boolean;
-  children: ComponentChildren;
-}
-
-function Fact({ icon, label, level = "", wide = false, children }: FactProps) {
-  return (
-    <div class={`fact ${level} ${wide ? "wide" : ""}`}>
-      <dt>
-        <Icon name={icon} />
-        {label}
-      </dt>
-      <dd>{children}</dd>
-    </div>
   );
 }
 

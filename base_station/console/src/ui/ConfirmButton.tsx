@@ -1,28 +1,51 @@
 import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 
 interface Props {
   label: string;
+  about?: string; // what it would be done to, where the label alone could be any of several
   question: string;
   onConfirm: () => void;
 }
 
+/** Two presses in haste are one. */
+const HASTE_MS = 500;
+
 /** A button for what cannot be taken back: the first press only asks. */
-export function ConfirmButton({ label, question, onConfirm }: Props) {
-  const asked = useSignal(false);
-  if (!asked.value) {
+export function ConfirmButton({ label, about = "", question, onConfirm }: Props) {
+  const state = useSignal<"at rest" | "asked" | "refused">("at rest");
+  const askedMs = useRef(0);
+  const next = useRef<HTMLButtonElement>(null);
+  useEffect(() => {
+    if (state.value !== "at rest") next.current?.focus();
+  }, [state.value]);
+  if (state.value !== "asked") {
+    const spoken = about === "" ? {} : { "aria-label": `${label}: ${about}` };
     return (
-      <button type="button" onClick={() => (asked.value = true)}>
+      <button
+        type="button"
+        class="asks"
+        ref={next}
+        {...spoken}
+        onClick={() => {
+          askedMs.current = performance.now();
+          state.value = "asked";
+        }}
+      >
         {label}
       </button>
     );
   }
+  const confirm = () => {
+    if (performance.now() - askedMs.current > HASTE_MS) onConfirm();
+  };
   return (
     <span class="confirm" role="group" aria-label={question}>
       {question}
-      <button type="button" class="danger" onClick={onConfirm}>
+      <button type="button" class="danger" onClick={confirm}>
         Yes, {label.toLowerCase()}
       </button>
-      <button type="button" onClick={() => (asked.value = false)}>
+      <button type="button" ref={next} onClick={() => (state.value = "refused")}>
         No
       </button>
     </span>

@@ -1,6 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { dialog } from "../view";
+import { UrgentNow } from "./UrgentNow";
 
 interface Props {
   title: string;
@@ -24,6 +25,7 @@ export function Dialog({ title, wide = false, children }: Props) {
         <button type="button" onClick={() => element.current?.close()}>
           Close
         </button>
+        <UrgentNow />
       </header>
       {children}
     </dialog>

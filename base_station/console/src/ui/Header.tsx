@@ -1,8 +1,8 @@
-import { mayAct, user } from "../sessions";
 import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf } from "../words";
 import { Icon } from "./Icon";
+import { Menu } from "./Menu";
 import { ParClock } from "./ParClock";
 
 export function Header({ picture }: { picture: Picture }) {
@@ -13,31 +13,7 @@ export function Header({ picture }: { picture: Picture }) {
       <ParClock picture={picture} />
       <HealthLight picture={picture} />
       <LinkLight picture={picture} />
-      <nav class="menu" aria-label="Manage">
-        <button type="button" onClick={() => openDialog("incidents")}>
-          Incidents
-        </button>
-        {mayAct.value && (
-          <>
-            <button type="button" onClick={() => openDialog("units")}>
-              Units
-            </button>
-            <button type="button" onClick={() => openDialog("people")}>
-              People
-            </button>
-            <button type="button" onClick={() => openDialog("site")}>
-              Site
-            </button>
-          </>
-        )}
-        <button
-          type="button"
-          onClick={() => openDialog("account")}
-          title={`Logged in as ${user.value?.username}`}
-        >
-          Account
-        </button>
-      </nav>
+      <Menu />
     </header>
   );
 }
@@ -77,21 +53,18 @@ function HealthLight({ picture }: { picture: Picture }) {
   const health = picture.health.value;
   if (health === null) return null;
   const [first, ...more] = problemsOf(health);
-  const sentence =
-    first === undefined
-      ? "Station is well"
-      : more.length > 0
-        ? `${first} (+${more.length})`
-        : first;
+  const sentence = first ?? "Station is well";
+  const others = more.length === 0 ? "" : `+${more.length}`;
   return (
     <button
       type="button"
       class={`light ${first === undefined ? "good" : "bad"}`}
-      aria-label={`Station health: ${sentence}`}
+      aria-label={`Station health: ${sentence} ${others}`}
       onClick={() => openDialog("health")}
     >
       <Icon name={first === undefined ? "check" : "alarm"} />
       <span class="sentence">{sentence}</span>
+      {others}
     </button>
   );
 }

@@ -24,6 +24,8 @@ const PATHS = {
   people: "M9 8a3 3 0 1 0 0-.01M3 20v-2a6 6 0 0 1 12 0v2M16 5a3 3 0 0 1 0 6M18 14a5 5 0 0 1 3 5v1",
   play: "M7 4l13 8-13 8z",
   pause: "M7 4v16M17 4v16",
+  back: "M19 5v14l-10-7zM6 5v14",
+  forth: "M5 5v14l10-7zM18 5v14",
 } as const;
 
 export type IconName = keyof typeof PATHS;

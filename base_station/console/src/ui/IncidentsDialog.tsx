@@ -1,6 +1,6 @@
 import { attempt, live, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
-import { assessed, openDialog } from "../view";
+import { assess } from "../view";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes } from "../words";
 import { Columns } from "./Columns";
@@ -85,11 +85,6 @@ export function IncidentsDialog() {
       </table>
     </Dialog>
   );
-}
-
-function assess(incident: api.Incident): void {
-  assessed.value = incident;
-  openDialog("assessment");
 }
 
 function OpenForm({ done }: { done: () => void }) {

@@ -4,6 +4,9 @@ import { arrange, samePlaces, type Place } from "../live/urgency";
 import { Card } from "./Card";
 import { CommandBar } from "./CommandBar";
 
+/** With more than this, whoever is well is said in short, so that who is not is seen. */
+const MANY = 6;
+
 /** The list of people: who needs attention first, without jumping while somebody reads. */
 export function People({ picture }: { picture: Picture }) {
   const held = useSignal(false);
@@ -41,6 +44,7 @@ export function People({ picture }: { picture: Picture }) {
               key={place.unitId}
               unitId={place.unitId}
               urgency={place.urgency}
+              brief={places.value.length > MANY}
               picture={picture}
             />
           ))}

@@ -1,36 +1,41 @@
+import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
-import { take, tool } from "../plan/tools";
+import { take } from "../plan/tools";
 import type { PinView } from "../wire";
 import { clockTime } from "../words";
-import { Icon } from "./Icon";
+import { Ends } from "./Ends";
 
 /** All pins in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
 export function PinList({ picture }: { picture: Picture }) {
-  const pins = picture.pins.value;
-  if (pins.length === 0) return null;
-  const conflicts = pins.filter((pin) => pin.state === "conflict").length;
   return (
-    <details class="pin-list">
-      <summary class={conflicts > 0 ? "conflict" : ""}>
-        {conflicts > 0 && <Icon name="alarm" />} Pins {pins.length}
-        {conflicts > 0 && `, ${conflicts} in conflict`}
-      </summary>
+    <section class="tool-panel pin-list" aria-label="Pins">
+      <h3>Pins</h3>
       <ul>
-        {pins.map((pin) => (
+        {picture.pins.value.map((pin) => (
           <li key={pin.pin_id} class={pin.state}>
-            <button
-              type="button"
-              aria-pressed={isChosen(pin)}
-              onClick={() => take({ kind: "edit-pin", pinId: pin.pin_id })}
-            >
-              {said(pin, picture)}
-              <small> {WORDS[pin.state] ?? pin.state}</small>
-            </button>
+            <PinWords pin={pin} picture={picture} />
           </li>
         ))}
       </ul>
-    </details>
+      <Ends />
+    </section>
+  );
+}
+
+/** A button for who may change it. */
+function PinWords({ pin, picture }: { pin: PinView; picture: Picture }) {
+  const words = (
+    <>
+      {said(pin, picture)}
+      <small> {WORDS[pin.state] ?? pin.state}</small>
+    </>
+  );
+  if (!mayAct.value) return <span>{words}</span>;
+  return (
+    <button type="button" onClick={() => take({ kind: "edit-pin", pinId: pin.pin_id })}>
+      {words}
+    </button>
   );
 }
 
@@ -39,11 +44,6 @@ const WORDS: Record<string, string> = {
   waiting: "waits",
   conflict: "in conflict",
 };
-
-function isChosen(pin: PinView): boolean {
-  const now = tool.value;
-  return now?.kind === "edit-pin" && now.pinId === pin.pin_id;
-}
 
 /** "Ana here, 12:40", "Ana met Bo, 12:41", "Ana at beacon 7, start". */
 function said(pin: PinView, picture: Picture): string {

@@ -5,6 +5,8 @@ import { displayName } from "../live/urgency";
 import { putDown } from "../plan/tools";
 import type { PinView, UnitView } from "../wire";
 import { clockTime } from "../words";
+import { ConfirmButton } from "./ConfirmButton";
+import { Ends } from "./Ends";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
 import { fields } from "./useLoaded";
 
@@ -55,12 +57,11 @@ export function PinPanel({ picture, unitId, pin }: Props) {
       )}
       <Ends label={fixed ? null : pin === null ? "Set pin" : "Move pin"}>
         {pin !== null && (
-          <button
-            type="button"
-            onClick={() => void attempt(api.removePin(pin.pin_id)).then(putDown)}
-          >
-            Remove pin
-          </button>
+          <ConfirmButton
+            label="Remove pin"
+            question="The trail goes back to what is known without it."
+            onConfirm={() => void attempt(api.removePin(pin.pin_id)).then(putDown)}
+          />
         )}
       </Ends>
     </form>
@@ -195,23 +196,6 @@ function WhenField({ set }: { set: number | null }) {
 function timeOf(given: Record<string, string>, picture: Picture): number | undefined {
   const ago = Number(given["when"] ?? "0");
   return ago === 0 ? undefined : Math.round(picture.nowMs.peek() - ago * 60_000);
-}
-
-interface EndsProps {
-  label: string | null;
-  children?: preact.ComponentChildren;
-}
-
-export function Ends({ label, children }: EndsProps) {
-  return (
-    <p class="ends">
-      {label !== null && <button class="primary">{label}</button>}
-      {children}
-      <button type="button" onClick={putDown}>
-        Cancel
-      </button>
-    </p>
-  );
 }
 
 function onDuty(picture: Picture): UnitView[] {

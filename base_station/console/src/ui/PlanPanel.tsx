@@ -10,7 +10,7 @@ import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, take, tool, wantsPlaces, type Place } from "../plan/tools";
 import { Floors } from "./Floors";
-import { PlanTools } from "./PlanTools";
+import { PlanTools, ToolPanel } from "./PlanTools";
 
 export function PlanPanel({ picture }: { picture: Picture }) {
   const target = useRef<HTMLDivElement>(null);
@@ -36,9 +36,10 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   return (
     <section class="plan" aria-label="Plan">
+      <PlanTools picture={picture} />
       <Floors picture={picture} />
       <div
-        class={`map ${tool.value === null ? "" : "placing"}`}
+        class={`map ${wantsPlaces(tool.value) ? "placing" : ""}`}
         ref={target}
         tabIndex={0}
         role="application"
@@ -58,7 +59,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       <div class="north" aria-hidden="true">
         N
       </div>
-      <PlanTools picture={picture} />
+      <ToolPanel picture={picture} />
     </section>
   );
 }
@@ -67,7 +68,7 @@ function eventsOf(picture: Picture): PlanEvents {
   return {
     select: (unitId) => select(unitId, null),
     click(place) {
-      if (!wantsPlaces()) return false;
+      if (!wantsPlaces(tool.peek())) return false;
       click(place);
       return true;
     },

@@ -1,15 +1,60 @@
+import type { ComponentChildren } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
-import { loadingKinds, shownKinds, toggle, type TrailKind } from "../plan/pastTrails";
-import { putDown, take, tool } from "../plan/tools";
+import { putDown, toggle, tool, type Tool } from "../plan/tools";
 import { AnchorPanel } from "./AnchorPanel";
 import { BeaconPanel } from "./BeaconPanel";
+import { Icon } from "./Icon";
 import { PinList } from "./PinList";
 import { MeetingPanel, PinPanel, StartPanel } from "./PinPanel";
+import { TrailsPanel } from "./TrailsPanel";
 
-/** What can be done on the plan, and the panel of what is being done. */
+/** Above the plan: what can be done on it and what can be seen of it. */
 export function PlanTools({ picture }: { picture: Picture }) {
+  const pins = picture.pins.value;
+  const conflicts = pins.filter((pin) => pin.state === "conflict").length;
+  return (
+    <div class="plan-tools" role="group" aria-label="On the plan">
+      {mayAct.value && (
+        <>
+          <ToolButton tool={{ kind: "start" }}>All start here</ToolButton>
+          <ToolButton tool={{ kind: "beacon" }}>Beacon</ToolButton>
+        </>
+      )}
+      <ToolButton tool={{ kind: "trails" }}>Trails</ToolButton>
+      {pins.length > 0 && (
+        <ToolButton tool={{ kind: "pins" }} alarmed={conflicts > 0}>
+          Pins {pins.length}
+          {conflicts > 0 && `, ${conflicts} in conflict`}
+        </ToolButton>
+      )}
+    </div>
+  );
+}
+
+interface ButtonProps {
+  tool: Tool;
+  alarmed?: boolean;
+  children: ComponentChildren;
+}
+
+function ToolButton({ tool: mine, alarmed = false, children }: ButtonProps) {
+  return (
+    <button
+      type="button"
+      class={alarmed ? "conflict" : ""}
+      aria-pressed={tool.value?.kind === mine.kind}
+      onClick={() => toggle(mine)}
+    >
+      {alarmed && <Icon name="alarm" />}
+      {children}
+    </button>
+  );
+}
+
+/** Below the plan: the panel of what is being done, until it is done or Escape is pressed. */
+export function ToolPanel({ picture }: { picture: Picture }) {
   const now = tool.value;
   useLayoutEffect(() => {
     if (now === null) return undefined;
@@ -19,39 +64,13 @@ export function PlanTools({ picture }: { picture: Picture }) {
     document.addEventListener("keydown", leave);
     return () => document.removeEventListener("keydown", leave);
   }, [now]);
-  return (
-    <>
-      <div class="plan-tools">
-        {now === null && <Buttons />}
-        <Trails />
-        <PinList picture={picture} />
-      </div>
-      {now !== null && mayAct.value && <Panel picture={picture} />}
-    </>
-  );
+  if (now?.kind === "trails") return <TrailsPanel />;
+  if (now?.kind === "pins") return <PinList picture={picture} />;
+  return now !== null && mayAct.value ? <Panel now={now} picture={picture} /> : null;
 }
 
-function Buttons() {
-  if (!mayAct.value) return null;
-  return (
-    <div class="tool-buttons" role="group" aria-label="On the plan">
-      <button
-        type="button"
-        title="Everybody began here"
-        onClick={() => take({ kind: "start" })}
-      >
-        All start here
-      </button>
-      <button type="button" onClick={() => take({ kind: "beacon" })}>
-        Beacon
-      </button>
-    </div>
-  );
-}
-
-function Panel({ picture }: { picture: Picture }) {
-  const now = tool.value;
-  switch (now?.kind) {
+function Panel({ now, picture }: { now: Tool; picture: Picture }) {
+  switch (now.kind) {
     case "pin":
       return <PinPanel key={now.unitId} picture={picture} unitId={now.unitId} pin={null} />;
     case "edit-pin": {
@@ -75,31 +94,4 @@ function Panel({ picture }: { picture: Picture }) {
     default:
       return null;
   }
-}
-
-const KINDS: readonly [TrailKind, string][] = [
-  ["fused", "As shown at the time"],
-  ["raw", "The unit’s own path"],
-  ["smoothed", "Best known since"],
-];
-
-/** Which trails are drawn, with the lines they are drawn in. */
-function Trails() {
-  return (
-    <details class="trails">
-      <summary>Trails</summary>
-      {KINDS.map(([kind, word]) => (
-        <label key={kind}>
-          <input
-            type="checkbox"
-            checked={shownKinds.value.has(kind)}
-            onChange={() => toggle(kind)}
-          />
-          <span class={`trail-line ${kind}`} aria-hidden="true" />
-          {word}
-          {loadingKinds.value.has(kind) && <small> is worked out …</small>}
-        </label>
-      ))}
-    </details>
-  );
 }

@@ -5,6 +5,7 @@ import type { Target } from "../live/commands";
 import { crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
 import { displayName } from "../live/urgency";
 import { clockTime, minutes } from "../words";
+import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { ParMark } from "./ParClock";
 
@@ -26,9 +27,11 @@ export function RollCallDialog() {
           <button type="button" onClick={() => openDialog("par_request")}>
             Ask by radio
           </button>
-          <button type="button" onClick={() => tick({ everyone: true })}>
-            All heard
-          </button>
+          <ConfirmButton
+            label="All heard"
+            question="Has everybody answered?"
+            onConfirm={() => tick({ everyone: true })}
+          />
         </p>
       )}
       {crews.map((crew) => (

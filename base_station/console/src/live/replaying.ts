@@ -1,0 +1,30 @@
+/** Where to go in the past: from alarm to alarm, with a little of what came before.  Pure. */
+
+/** An alarm is better seen coming. */
+export const LEAD_MS = 5_000;
+/** Who goes back twice in short time wants the alarm before. */
+const PATIENCE_MS = 3_000;
+
+interface Raised {
+  raised_ms: number;
+}
+
+/** The time before the next alarm; null: there is none. */
+export function nextAlarmMs(alarms: readonly Raised[], atMs: number): number | null {
+  const later = starts(alarms).filter((startMs) => startMs > atMs);
+  return later.length === 0 ? null : Math.min(...later);
+}
+
+/** The time before the alarm that came last; null: there was none. */
+export function previousAlarmMs(alarms: readonly Raised[], atMs: number): number | null {
+  const earlier = starts(alarms).filter((startMs) => startMs < atMs - PATIENCE_MS);
+  return earlier.length === 0 ? null : Math.max(...earlier);
+}
+
+function starts(alarms: readonly Raised[]): number[] {
+  return alarms.map(({ raised_ms }) => raised_ms - LEAD_MS);
+}
+
+export function within(atMs: number, startMs: number, endMs: number): number {
+  return Math.min(Math.max(atMs, startMs), endMs);
+}

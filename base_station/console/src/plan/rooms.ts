@@ -1,0 +1,47 @@
+/** In which room of the plan somebody is, as far as that can be said.  Pure. */
+import type { Geometry } from "geojson";
+import type { Plan, PositionView } from "../wire";
+import { ring, type Region } from "./ellipse";
+import { siteCoordinate } from "./site";
+
+/** A region wider than this is in no room. */
+const WIDEST_M = 10;
+const SURE_OF_FLOOR = 0.95;
+
+/** "in store" where all of the region lies in the room, "near store" where only its middle does; empty
+ * where the plan, the floor or the place is not known well enough. */
+export function roomWord(plan: Plan | null, position: PositionView, region: Region): string {
+  if (plan === null || position.floor === null || region.major_m > WIDEST_M) return "";
+  if ((position.floor_probability ?? 1) < SURE_OF_FLOOR) return "";
+  const centre = siteCoordinate(position);
+  const room = plan.features.find(
+    ({ properties, geometry }) =>
+      properties?.["kind"] === "room" &&
+      properties["floor"] === position.floor &&
+      holds(geometry, centre),
+  );
+  const name: unknown = room?.properties?.["name"];
+  if (room === undefined || typeof name !== "string" || name === "") return "";
+  const whole = ring(centre, region).every((at) => holds(room.geometry, at));
+  return `${whole ? "in" : "near"} ${name}`;
+}
+
+/** Whether a place lies in an area, by counting the borders east of it; holes count by themselves. */
+function holds(area: Geometry, at: readonly [number, number]): boolean {
+  return ringsOf(area).filter((border) => isInside(border, at)).length % 2 === 1;
+}
+
+function ringsOf(area: Geometry): number[][][] {
+  if (area.type === "Polygon") return area.coordinates;
+  return area.type === "MultiPolygon" ? area.coordinates.flat() : [];
+}
+
+function isInside(border: readonly number[][], [east, north]: readonly [number, number]): boolean {
+  let inside = false;
+  border.forEach(([x2 = 0, y2 = 0], i) => {
+    const [x1 = 0, y1 = 0] = border.at(i - 1) ?? [];
+    const crosses = y1 > north !== y2 > north;
+    if (crosses && east < x1 + ((north - y1) / (y2 - y1)) * (x2 - x1)) inside = !inside;
+  });
+  return inside;
+}

@@ -1,0 +1,47 @@
+import { useSignal } from "@preact/signals";
+import { mayAct, user } from "../sessions";
+import { openDialog, type DialogName } from "../view";
+
+const FOR_EVERYBODY: readonly [DialogName, string][] = [["incidents", "Incidents"]];
+const FOR_COMMANDERS: readonly [DialogName, string][] = [
+  ["units", "Units"],
+  ["people", "People"],
+  ["site", "Site"],
+];
+
+/** What is managed and not watched; behind one button where there is no room. */
+export function Menu() {
+  const open = useSignal(false);
+  const entries = mayAct.value ? [...FOR_EVERYBODY, ...FOR_COMMANDERS] : FOR_EVERYBODY;
+  const choose = (name: DialogName) => {
+    open.value = false;
+    openDialog(name);
+  };
+  return (
+    <div class="menu">
+      <button
+        type="button"
+        class="menu-button"
+        aria-expanded={open.value}
+        aria-controls="menu"
+        onClick={() => (open.value = !open.value)}
+      >
+        Menu
+      </button>
+      <nav id="menu" class={open.value ? "open" : ""} aria-label="Manage">
+        {entries.map(([name, word]) => (
+          <button key={name} type="button" onClick={() => choose(name)}>
+            {word}
+          </button>
+        ))}
+        <button
+          type="button"
+          onClick={() => choose("account")}
+          title={`Logged in as ${user.value?.username}`}
+        >
+          Account
+        </button>
+      </nav>
+    </div>
+  );
+}

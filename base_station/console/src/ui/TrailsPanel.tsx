@@ -1,0 +1,36 @@
+import { loadingKinds, shownKinds, toggle, type TrailKind } from "../plan/pastTrails";
+import { selectedUnit } from "../view";
+import { Ends } from "./Ends";
+
+const KINDS: readonly [TrailKind, string][] = [
+  ["fused", "As shown at the time"],
+  ["raw", "The unit’s own path"],
+  ["smoothed", "Best known since"],
+];
+
+/** Which trails are drawn, with the lines they are drawn in. */
+export function TrailsPanel() {
+  return (
+    <section class="tool-panel trails" aria-label="Trails">
+      <h3>Trails</h3>
+      {KINDS.map(([kind, word]) => (
+        <label key={kind}>
+          <input
+            type="checkbox"
+            checked={shownKinds.value.has(kind)}
+            onChange={() => toggle(kind)}
+          />
+          <span class={`trail-line ${kind}`} aria-hidden="true" />
+          {word}
+          {loadingKinds.value.has(kind) && <small> is worked out …</small>}
+        </label>
+      ))}
+      <p class="quiet">
+        {selectedUnit.value === null
+          ? "Choose a person to compare only that person’s."
+          : "The last two are drawn for the chosen person."}
+      </p>
+      <Ends />
+    </section>
+  );
+}

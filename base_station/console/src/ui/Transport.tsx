@@ -1,0 +1,147 @@
+import { useSignal } from "@preact/signals";
+import { attempt, type Replay } from "../sessions";
+import * as api from "../api";
+import { LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
+import type { ReplayView } from "../wire";
+import { clockTime, countdown } from "../words";
+import { Icon, type IconName } from "./Icon";
+import { useLoaded } from "./useLoaded";
+
+const SPEEDS = [0.5, 1, 2, 4, 8, 16, 32, 64];
+const STEP_MS = 10_000;
+
+interface Props {
+  replay: Replay;
+  state: ReplayView;
+}
+
+/** Play, seek and speed; the alarms are marks on the way and places to go to. */
+export function Transport({ replay, state }: Props) {
+  const [loaded] = useLoaded(() => api.incidentAlarms(replay.incident.incident_id));
+  const alarms = loaded.value ?? [];
+  const { start_ms: start, end_ms: end, at_ms: at, playing } = state;
+  const change = (what: api.ReplayChange) => void attempt(api.changeReplay(replay.id, what));
+  const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });
+  const jump = (ms: number | null) => (ms === null ? undefined : () => seek(ms));
+  const restart = at >= end ? { at_ms: start } : {};
+  return (
+    <div class="transport">
+      <Step icon="back" word="Alarm before" shown="Alarm" go={jump(previousAlarmMs(alarms, at))} />
+      <Step icon="back" word="Back 10 s" shown="10 s" go={jump(at - STEP_MS)} />
+      <Step
+        icon={playing ? "pause" : "play"}
+        word={playing ? "Pause" : "Play"}
+        go={() => change(playing ? { playing: false } : { ...restart, playing: true })}
+      />
+      <Step icon="forth" word="On 10 s" shown="10 s" go={jump(at + STEP_MS)} />
+      <Step icon="forth" word="Next alarm" shown="Alarm" go={jump(nextAlarmMs(alarms, at))} />
+      <time>{clockTime(at)}</time>
+      <SeekBar state={state} alarms={alarms} seek={seek} />
+      <span class="passed">
+        {countdown(at - start)} of {countdown(end - start)}
+      </span>
+      <GoTo alarms={alarms} seek={seek} />
+      <Speed state={state} choose={(speed) => change({ speed })} />
+    </div>
+  );
+}
+
+interface StepProps {
+  icon: IconName;
+  word: string;
+  shown?: string; // beside the icon
+  go: (() => void) | undefined; // undefined: there is nothing in that direction
+}
+
+function Step({ icon, word, shown, go }: StepProps) {
+  return (
+    <button type="button" aria-label={word} title={word} disabled={go === undefined} onClick={go}>
+      <Icon name={icon} />
+      {shown}
+    </button>
+  );
+}
+
+interface SeekProps {
+  alarms: readonly api.PastAlarm[];
+  seek: (ms: number) => void;
+}
+
+/** The alarms in words, to go to. */
+function GoTo({ alarms, seek }: SeekProps) {
+  return (
+    <select
+      class="go-to"
+      aria-label="Go to an alarm"
+      value=""
+      disabled={alarms.length === 0}
+      onChange={(event) => {
+        const chosen = alarms.find((alarm) => alarm.alarm_id === event.currentTarget.value);
+        if (chosen !== undefined) seek(chosen.raised_ms - LEAD_MS);
+        event.currentTarget.value = "";
+      }}
+    >
+      <option value="">{alarms.length === 0 ? "No alarms" : `${alarms.length} alarms …`}</option>
+      {alarms.map((alarm) => (
+        <option key={alarm.alarm_id} value={alarm.alarm_id}>
+          {clockTime(alarm.raised_ms)} {alarm.text}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+function Speed({ state, choose }: { state: ReplayView; choose: (speed: number) => void }) {
+  const speeds = [...new Set([...SPEEDS, state.speed])].sort((a, b) => a - b);
+  return (
+    <label>
+      Speed
+      <select
+        value={String(state.speed)}
+        onChange={(event) => choose(Number(event.currentTarget.value))}
+      >
+        {speeds.map((speed) => (
+          <option key={speed} value={String(speed)}>
+            {speed}×
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** The incident's time from left to right, with a mark where an alarm was raised. */
+function SeekBar({ state, alarms, seek }: SeekProps & { state: ReplayView }) {
+  const dragged = useSignal<number | null>(null);
+  const { start_ms: start, end_ms: end, at_ms: at } = state;
+  const shown = dragged.value ?? at;
+  return (
+    <span class="seek">
+      <svg class="seek-marks" viewBox="0 0 1000 10" preserveAspectRatio="none" aria-hidden="true">
+        {alarms.map((alarm) => (
+          <rect
+            key={alarm.alarm_id}
+            class={`p${alarm.priority}`}
+            x={(1000 * (alarm.raised_ms - start)) / Math.max(1, end - start) - 2}
+            width="4"
+            height="10"
+          />
+        ))}
+      </svg>
+      <input
+        type="range"
+        aria-label="Time of the incident"
+        aria-valuetext={clockTime(shown)}
+        min={start}
+        max={end}
+        step={1000}
+        value={shown}
+        onInput={(event) => (dragged.value = Number(event.currentTarget.value))}
+        onChange={(event) => {
+          dragged.value = null;
+          seek(Number(event.currentTarget.value));
+        }}
+      />
+    </span>
+  );
+}

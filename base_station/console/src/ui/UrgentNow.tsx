@@ -1,0 +1,26 @@
+import { live } from "../sessions";
+import { dialog, find } from "../view";
+import { Icon } from "./Icon";
+
+/** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait. */
+export function UrgentNow() {
+  const picture = live.value?.picture;
+  const urgent = (picture?.openAlarms.value ?? []).filter(
+    (alarm) => alarm.priority === 1 && alarm.state === "raised",
+  );
+  const [first, ...more] = urgent;
+  if (picture === undefined || first === undefined) return <div role="alert" />;
+  const show = () => {
+    dialog.value = null;
+    find(first.unit_id, picture.unit(first.unit_id)?.peek().position?.floor ?? null);
+  };
+  return (
+    <div role="alert" class="urgent-now">
+      <button type="button" onClick={show}>
+        <Icon name="alarm" />
+        {first.text}
+        {more.length > 0 && ` (+${more.length})`}
+      </button>
+    </div>
+  );
+}

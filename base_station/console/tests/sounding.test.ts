@@ -1,0 +1,65 @@
+import { describe, expect, it } from "vitest";
+import { AGAIN_MS, NOTHING_YET, toneOf, type Heard, type Sounded } from "../src/live/sounding";
+import { titleOf } from "../src/title";
+import { alarm } from "./fixtures";
+
+function heard(change: Partial<Heard>): Heard {
+  return { alarms: [], linkLost: false, nowMs: 0, ...change };
+}
+
+function after(...moments: Partial<Heard>[]): (string | null)[] {
+  let sounded: Sounded = NOTHING_YET;
+  return moments.map((moment) => {
+    const next = toneOf(heard(moment), sounded);
+    sounded = next.sounded;
+    return next.tone;
+  });
+}
+
+const FALL = alarm("fall");
+const HEAT = alarm("heat", { priority: 2 });
+
+describe("what is to be heard", () => {
+  it("is nothing while all is well", () => {
+    expect(after({}, { nowMs: AGAIN_MS })).toEqual([null, null]);
+  });
+
+  it("is an immediate alarm at once, and again until somebody takes it", () => {
+    const taken = alarm("fall", { state: "acknowledged" });
+    expect(
+      after(
+        { alarms: [FALL] },
+        { alarms: [FALL], nowMs: AGAIN_MS - 1 },
+        { alarms: [FALL], nowMs: AGAIN_MS },
+        { alarms: [taken], nowMs: 3 * AGAIN_MS },
+      ),
+    ).toEqual(["immediate", null, "immediate", null]);
+  });
+
+  it("is a second immediate alarm without waiting", () => {
+    const both = [FALL, alarm("mayday")];
+    expect(after({ alarms: [FALL] }, { alarms: both, nowMs: 100 })).toEqual([
+      "immediate",
+      "immediate",
+    ]);
+  });
+
+  it("is an alarm of the second priority once, and information never", () => {
+    const news = alarm("news", { priority: 3 });
+    expect(
+      after({ alarms: [HEAT, news] }, { alarms: [HEAT, news], nowMs: 5 * AGAIN_MS }),
+    ).toEqual(["soon", null]);
+  });
+
+  it("is the loss of the station, as often as an alarm", () => {
+    expect(
+      after({ linkLost: true }, { linkLost: true, nowMs: 1 }, { linkLost: true, nowMs: AGAIN_MS }),
+    ).toEqual(["link", null, "link"]);
+  });
+});
+
+it("the title says what is wrong", () => {
+  expect(titleOf(false, 0)).toBe("Muster");
+  expect(titleOf(false, 2)).toBe("(2!) Muster");
+  expect(titleOf(true, 2)).toContain("NO CONNECTION");
+});

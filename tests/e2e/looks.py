@@ -1,0 +1,89 @@
+"""What anybody who looks at a page would find wrong with how it is laid out."""
+
+from __future__ import annotations
+
+from playwright.sync_api import Page
+
+SMALLEST_TEXT_PX = 12
+SMALLEST_TARGET_PX = 24  # WCAG 2.2, 2.5.8
+SETTLED_MS = 200
+
+_FIND = """
+([smallestText, smallestTarget]) => {
+  const found = [];
+  const said = (element) => {
+    const words = element.getAttribute("aria-label") || element.textContent || element.className;
+    return `${element.tagName.toLowerCase()} "${words.trim().slice(0, 40)}"`;
+  };
+  const dialog = document.querySelector("dialog[open]");
+  const root = dialog ?? document.body;
+
+  // What of an element its scrolling ancestors leave to be seen.
+  const seen = (element) => {
+    let { left, top, right, bottom } = element.getBoundingClientRect();
+    for (let at = element.parentElement; at; at = at.parentElement) {
+      if (getComputedStyle(at).overflow === "visible") continue;
+      const box = at.getBoundingClientRect();
+      left = Math.max(left, box.left); right = Math.min(right, box.right);
+      top = Math.max(top, box.top); bottom = Math.min(bottom, box.bottom);
+    }
+    return { left, top, right, bottom };
+  };
+  const isShown = (element) => element.checkVisibility({ visibilityProperty: true });
+
+  if (document.scrollingElement.scrollWidth > innerWidth)
+    found.push(`the page is ${document.scrollingElement.scrollWidth} px wide`);
+
+  for (const one of root.querySelectorAll("button, select, input, summary, a")) {
+    if (!isShown(one)) continue;
+    const box = one.getBoundingClientRect();
+    if (Math.min(box.width, box.height) < smallestTarget && one.type !== "checkbox")
+      found.push(`too small to hit: ${said(one)}`);
+    const left = seen(one);
+    const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
+    if (x <= left.left || x >= left.right || y <= left.top || y >= left.bottom) {
+      const scrolls = (at) => at && (at.scrollWidth > at.clientWidth || scrolls(at.parentElement));
+      if ((x < 0 || x > innerWidth) && !scrolls(one.parentElement))
+        found.push(`beside the screen: ${said(one)}`);
+      continue; // to be scrolled to
+    }
+    const hit = document.elementFromPoint(x, y);
+    if (hit !== null && hit !== one && !one.contains(hit) && !hit.contains(one))
+      found.push(`${said(one)} is covered by ${said(hit)}`);
+  }
+
+  for (const one of root.querySelectorAll(".what, .name, h2, .fact dd, .mayday, .par-clock")) {
+    if (!isShown(one)) continue;
+    const [box, around] = [one.getBoundingClientRect(), one.parentElement.getBoundingClientRect()];
+    const clips = getComputedStyle(one).overflow !== "visible";
+    const cut = clips && one.scrollWidth > one.clientWidth + 1;
+    const sticksOut =
+      box.right > around.right + 1 || box.bottom > around.bottom + 1 || box.top < around.top - 1;
+    if (cut || sticksOut) found.push(`not wholly seen: ${said(one)}`);
+  }
+
+  const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const { parentElement: one, textContent } = texts.currentNode;
+    if (textContent.trim() === "" || !isShown(one) || one.closest(".spoken")) continue;
+    const size = parseFloat(getComputedStyle(one).fontSize);
+    if (size < smallestText) found.push(`${size} px of text: ${said(one)}`);
+  }
+
+  const map = document.querySelector(".map").getBoundingClientRect();
+  for (const one of document.querySelectorAll(".plan > :not(.map, .zoom, .north)")) {
+    const box = one.getBoundingClientRect();
+    const apart =
+      box.right <= map.left + 1 || box.left >= map.right - 1 ||
+      box.bottom <= map.top + 1 || box.top >= map.bottom - 1;
+    if (!apart) found.push(`lies over the plan: ${said(one)}`);
+  }
+  return [...new Set(found)];
+}
+"""
+
+
+def flaws(page: Page) -> list[str]:
+    page.wait_for_timeout(SETTLED_MS)
+    found: list[str] = page.evaluate(_FIND, [SMALLEST_TEXT_PX, SMALLEST_TARGET_PX])
+    return found

@@ -1,0 +1,104 @@
+"""A station that is only played: the console sees any picture, with no process and no wait.
+
+What the real station does is tested in ``test_console``; here it only matters how a picture looks.
+"""
+
+from __future__ import annotations
+
+import json
+import mimetypes
+from collections.abc import Mapping, Sequence
+from urllib.parse import parse_qs, urlsplit
+
+import msgspec
+from playwright.sync_api import Page, Route, WebSocketRoute
+
+from base_station.api.wire import Delta, Snapshot
+from tests.e2e.console_files import DIST
+
+ADDRESS = "http://station.test"
+API = "/api/v1"
+
+Answers = Mapping[str, object]
+
+
+class PlayedStation:
+    """Answers one page."""
+
+    def __init__(self, page: Page, picture: Snapshot, answers: Answers) -> None:
+        self._changes: list[str] = []
+        self._picture = picture
+        self._answers = answers
+        self._sockets: list[WebSocketRoute] = []
+        self._page = page
+        page.route("**/*", self._answer)
+        page.route_web_socket("**/*", self._speak)
+
+    def open(self) -> None:
+        self._page.goto(ADDRESS)
+
+    def changes(self) -> list[str]:
+        """The paths of what it was asked to change so far."""
+        self._page.wait_for_timeout(100)
+        return list(self._changes)
+
+    def change(self, **what: object) -> None:
+        """Something happens: a delta goes out."""
+        delta = Delta(seq=self._picture.seq + 1, now_ms=self._picture.now_ms, **what)  # type: ignore[arg-type]
+        self._picture = msgspec.structs.replace(self._picture, seq=delta.seq, **what)
+        for socket in self._sockets:
+            socket.send(msgspec.json.encode(delta).decode())
+
+    def fall_silent(self) -> None:
+        """The link to the station is cut."""
+        for socket in self._sockets:
+            socket.close()
+        self._sockets.clear()
+        self._page.unroute_all()
+        self._page.route_web_socket("**/*", lambda socket: socket.close())
+
+    def _speak(self, socket: WebSocketRoute) -> None:
+        self._sockets.append(socket)
+        socket.on_message(lambda _: self._show(socket))
+        self._show(socket)
+
+    def _show(self, socket: WebSocketRoute) -> None:
+        socket.send(msgspec.json.encode(self._picture).decode())
+
+    def _answer(self, route: Route) -> None:
+        url, method = urlsplit(route.request.url), route.request.method
+        if not url.path.startswith(API):
+            self._serve(route, url.path)
+            return
+        path = url.path.removeprefix(API)
+        if method != "GET":
+            self._changes.append(path)
+            route.fulfill(status=204)
+            return
+        kind = parse_qs(url.query).get("kind", [""])[0]
+        answer = self._answers.get(f"{path}?{kind}", self._answers.get(path))
+        status = 404 if path not in self._answers and answer is None else 200
+        route.fulfill(status=status, body=json.dumps(answer), content_type="application/json")
+
+    def _serve(self, route: Route, path: str) -> None:
+        file = DIST / (path.removeprefix("/") or "index.html")
+        kind = mimetypes.guess_type(file.name)[0] or "application/octet-stream"
+        route.fulfill(path=file, content_type=kind)
+
+
+def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str, object]:
+    """What the console asks for at its beginning and in its dialogs."""
+    return {
+        "/me": {"username": "chief", "role": role},
+        "/site/base-map": None,
+        "/people": list(people),
+        "/units": [],
+        "/incidents": [],
+        "/export-formats": [{"name": "gpx", "suffix": ".gpx", "needs_anchor": True}],
+        "/replays": [],
+        "/tokens": [],
+        "/users": [],
+        "/audit": [],
+        "/forgettings": [],
+        **more,
+    }

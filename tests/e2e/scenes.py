@@ -1,0 +1,284 @@
+"""Pictures that a commander may meet: quiet, a bad minute, forty people, the past, nobody."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from base_station.api import wire
+
+NOW_MS = 1_795_255_608_000
+MINUTE_MS = 60_000
+PLAN = Path(__file__).resolve().parents[2] / "edge" / "simulation" / "building.geojson"
+NAMES = (
+    "Astrid Lindqvist",
+    "Jonas Bergman",
+    "Mira Okafor",
+    "Tomas Novak",
+    "Elena Rossi",
+    "Bartholomew Featherstonehaugh-Cholmondeley",
+    "Wolfeschlegelsteinhausenbergerdorff",
+    "Li Na",
+)
+CREWS = ("Engine 1", "Engine 2", "Rescue 3", "Hazardous Materials Response Team 12", "Ladder 4")
+HEALTH = wire.HealthView((), 120_431, 0, 0, 81_000_000, 40_000_000_000, 210.0, insecure=False)
+INCIDENT = wire.IncidentView(
+    "20261121-1", "Mill Road 7, flats", NOW_MS - 52 * MINUTE_MS, None, 1200.0, 300.0, 2400.0
+)
+
+
+def unit_id(index: int) -> str:
+    return f"FF-{index + 1:02}"
+
+
+def person(index: int) -> wire.PersonView:
+    name = NAMES[index % len(NAMES)]
+    if index >= len(NAMES):
+        name = f"{name} {index // len(NAMES) + 1}"
+    return wire.PersonView(f"p{index}", name, CREWS[index % len(CREWS)], "Search", None)
+
+
+def position(index: int, age_ms: int = 400) -> wire.PositionView:
+    return wire.PositionView(
+        t_ms=NOW_MS - age_ms,
+        north_m=1.5 + (index * 5.3) % 11,
+        east_m=1.5 + (index * 3.7) % 21,
+        down_m=0.0,
+        floor=index % 2,
+        ellipse_major_m=0.8 + 0.3 * (index % 5) + age_ms / 1000,
+        ellipse_minor_m=0.6 + age_ms / 1000,
+        ellipse_heading_rad=index * 0.7,
+        std_down_m=0.2,
+        heading_rad=index * 1.1,
+        heading_std_rad=0.1,
+        quality="good",
+        quality_reason="",
+        since_gps_s=None,
+        lat_deg=None,
+        lon_deg=None,
+        floor_probability=1.0,
+        reach=(),
+    )
+
+
+def unit(index: int) -> wire.UnitView:
+    """Somebody at work, who is well."""
+    return wire.UnitView(
+        unit_id=unit_id(index),
+        label=unit_id(index),
+        registered=True,
+        person=person(index),
+        link="live",
+        last_heard_ms=NOW_MS - 300,
+        status=wire.StatusView("walking", 0.0, 0.4 + index % 6 / 10, False, 420, 260.0),
+        status_ms=NOW_MS - 500,
+        ambient_degc=18.0 + index,
+        heat_level="",
+        position=position(index),
+        inside_since_ms=NOW_MS - 14 * MINUTE_MS,
+        duty=wire.DutyView(
+            NOW_MS - 9 * MINUTE_MS,
+            "chief",
+            NOW_MS + (3 + index % 9) * MINUTE_MS,
+            None,
+            NOW_MS - 14 * MINUTE_MS,
+            None,
+            NOW_MS + 26 * MINUTE_MS,
+        ),
+        alarms=(),
+        trust=wire.TrustView("green", ""),
+        clock=wire.ClockView(1.0, 0.5),
+        cloned=False,
+    )
+
+
+def trail(index: int) -> tuple[wire.TrailPoint, ...]:
+    """From the engine to where somebody is now."""
+    end = position(index)
+    steps = 60
+    return tuple(
+        wire.TrailPoint(
+            NOW_MS - 1000 * (steps - step),
+            -25 + (end.north_m + 25) * step / steps,
+            -8 + (end.east_m + 8) * step / steps + math.sin(step / 5),
+            end.floor,
+        )
+        for step in range(steps)
+    )
+
+
+def picture(units: list[wire.UnitView], *alarms: wire.AlarmView) -> wire.Snapshot:
+    return wire.Snapshot(
+        seq=1,
+        now_ms=NOW_MS,
+        incident=INCIDENT,
+        units=tuple(units),
+        alarms=alarms,
+        commands=(),
+        trails={one.unit_id: trail(int(one.unit_id[3:]) - 1) for one in units},
+        pins=(),
+        beacons=(),
+        plan=msgspec.Raw(PLAN.read_bytes()),
+        anchor=None,
+        health=HEALTH,
+        replay=None,
+    )
+
+
+def quiet(count: int = 5) -> wire.Snapshot:
+    return picture([unit(index) for index in range(count)])
+
+
+def alarm(index: int, rule: str, priority: int, text: str, ago_s: int) -> wire.AlarmView:
+    raised_ms = NOW_MS - 1000 * ago_s
+    return wire.AlarmView(
+        f"{rule}:{unit_id(index)}",
+        rule,
+        unit_id(index),
+        priority,
+        "raised",
+        "warning" if rule == "heat" else "alarm",
+        text,
+        "",
+        raised_ms,
+        raised_ms,
+    )
+
+
+def with_alarms(one: wire.UnitView, *alarms: wire.AlarmView, **change: object) -> wire.UnitView:
+    ids = tuple(alarm.alarm_id for alarm in alarms)
+    return msgspec.structs.replace(one, alarms=ids, **change)
+
+
+def bad_minute(count: int = 5) -> wire.Snapshot:
+    """One is down, one is in the heat, one is not heard, one is not ours, one was never heard."""
+    units = [unit(index) for index in range(count)]
+    fall = alarm(1, "fall", 1, "Jonas Bergman may have fallen", 50)
+    still = alarm(1, "no-motion", 1, "Jonas Bergman has not moved for 30 s", 34)
+    heat = alarm(
+        2, "heat", 2, "186 °C around the equipment of Mira Okafor, 35% of its heat budget used", 55
+    )
+    lost = alarm(3, "link-lost", 2, "Nothing heard of Tomas Novak's unit for 30 s", 41)
+    lying = wire.StatusView("lying", 55.0, 0.07, False, 80, 51.0)
+    units[1] = with_alarms(units[1], fall, still, status=lying)
+    units[2] = with_alarms(units[2], heat, heat_level="warning", ambient_degc=186.0)
+    units[3] = with_alarms(
+        units[3],
+        lost,
+        link="lost",
+        last_heard_ms=NOW_MS - 71_000,
+        position=position(3, 71_000),
+        trust=wire.TrustView("red", "not heard: shown where it last was"),
+    )
+    stranger = msgspec.structs.replace(
+        unit(count), registered=False, person=None, position=None, duty=None, status=None
+    )
+    silent = msgspec.structs.replace(
+        unit(count + 1), link="never", last_heard_ms=None, position=None, status=None
+    )
+    shown = picture([*units, stranger, silent], fall, still, heat, lost)
+    par = wire.CommandView(
+        "c1",
+        "par_request",
+        "",
+        "chief",
+        NOW_MS - 60_000,
+        NOW_MS + 500_000,
+        True,
+        True,
+        tuple(
+            wire.DeliveryView(
+                one.unit_id, state, NOW_MS - 60_000, None, None, "chief" if state == "x" else "", ""
+            )
+            for one, state in zip(
+                units, ("received", "received", "sent", "queued", "received"), strict=False
+            )
+        ),
+    )
+    health = msgspec.structs.replace(
+        HEALTH, problems=("only 700 MB are free for the log", "The bus's router is away")
+    )
+    pins = (
+        pin("a", 0, "used", 3.0, ""),
+        pin("b", 1, "conflict", 8.0, "It is 11.2 m from where the trail was then"),
+    )
+    return msgspec.structs.replace(shown, commands=(par,), health=health, pins=pins)
+
+
+def pin(pin_id: str, index: int, state: str, north_m: float, text: str) -> wire.PinView:
+    return wire.PinView(
+        pin_id=pin_id,
+        kind="place",
+        unit_id=unit_id(index),
+        other_id="",
+        t_ms=NOW_MS - 90_000,
+        north_m=north_m,
+        east_m=4.0,
+        floor=0,
+        std_m=1.0,
+        heading_rad=None,
+        heading_std_rad=0.0,
+        note="",
+        by="chief",
+        set_ms=NOW_MS - 80_000,
+        state=state,
+        residual_m=0.4,
+        sigmas=0.3,
+        text=text,
+    )
+
+
+def taken(one: wire.AlarmView) -> wire.AlarmView:
+    """The same alarm once somebody has acknowledged it."""
+    return msgspec.structs.replace(one, state="acknowledged", by="chief")
+
+
+def crowd() -> wire.Snapshot:
+    """Forty people, four of whom need somebody."""
+    return bad_minute(40)
+
+
+def nobody() -> wire.Snapshot:
+    empty = picture([])
+    return msgspec.structs.replace(empty, incident=None, plan=None)
+
+
+def past() -> wire.Snapshot:
+    shown = bad_minute()
+    replay = wire.ReplayView(
+        INCIDENT.incident_id, INCIDENT.opened_ms, NOW_MS + 8 * MINUTE_MS, NOW_MS, 4.0, True
+    )
+    return msgspec.structs.replace(shown, replay=replay)
+
+
+INCIDENTS = [
+    {
+        "incident_id": INCIDENT.incident_id,
+        "name": INCIDENT.name,
+        "opened_ms": INCIDENT.opened_ms,
+        "closed_ms": NOW_MS + 8 * MINUTE_MS,
+    }
+]
+PEOPLE = [
+    {
+        "person_id": f"p{index}",
+        "name": name,
+        "crew": CREWS[index % len(CREWS)],
+        "role": "Search",
+        "photo_url": None,
+    }
+    for index, name in enumerate(NAMES)
+]
+PAST_ALARMS: list[dict[str, Any]] = [
+    {
+        "alarm_id": one.alarm_id,
+        "unit_id": one.unit_id,
+        "priority": one.priority,
+        "text": one.text,
+        "raised_ms": one.raised_ms - minutes * MINUTE_MS,
+    }
+    for minutes, one in enumerate(bad_minute().alarms)
+]

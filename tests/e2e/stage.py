@@ -1,0 +1,50 @@
+"""The console on a screen of any size, with a station that is played."""
+
+from __future__ import annotations
+
+from playwright.sync_api import Browser, Page
+
+from base_station.api.wire import Snapshot
+from tests.e2e import scenes
+from tests.e2e.played_station import PlayedStation, answers
+
+SCREENS = {
+    "laptop": (1280, 800),
+    "large": (1920, 1080),
+    "tablet": (1024, 768),
+    "tablet upright": (768, 1024),
+    "phone": (390, 844),
+    "phone on its side": (844, 390),
+}
+PAST = f"/incidents/{scenes.INCIDENT.incident_id}"
+ANSWERS = answers(
+    "administrator",
+    {
+        "/incidents": scenes.INCIDENTS,
+        PAST: scenes.INCIDENTS[0],
+        f"{PAST}/alarms": scenes.PAST_ALARMS,
+        "/replays": [{"replay_id": "r1", "incident_id": scenes.INCIDENT.incident_id}],
+    },
+    people=scenes.PEOPLE,
+)
+
+
+class Stage:
+    """Opens the console on a picture."""
+
+    def __init__(self, browser: Browser) -> None:
+        self._browser = browser
+        self._pages: list[Page] = []
+
+    def open(self, picture: Snapshot, screen: str = "laptop") -> tuple[Page, PlayedStation]:
+        width, height = SCREENS[screen]
+        page = self._browser.new_page(viewport={"width": width, "height": height})
+        self._pages.append(page)
+        station = PlayedStation(page, picture, ANSWERS)
+        station.open()
+        page.get_by_role("heading", level=1).wait_for()
+        return page, station
+
+    def close(self) -> None:
+        for page in self._pages:
+            page.close()

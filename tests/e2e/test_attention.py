@@ -1,0 +1,128 @@
+"""What somebody tired, in haste or looking elsewhere must see, hear, and not do by a slip."""
+
+from __future__ import annotations
+
+import re
+from urllib.parse import quote
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import barriers, confirm, menu
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+
+def strip(page: Page) -> Locator:
+    return page.get_by_role("region", name="Open alarms")
+
+
+def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    cards = page.locator(".card")
+    expect(cards).to_have_count(42)
+    expect(cards.first).to_contain_text("Jonas Bergman")
+    expect(cards.first).to_contain_text("Fall")
+    expect(cards.first.get_by_text("Battery")).to_be_visible()
+    calm = page.locator(".card.normal", has_text="Astrid Lindqvist 2")
+    expect(calm).to_have_class(re.compile("brief"))
+    calm.get_by_role("button").click()
+    expect(calm).not_to_have_class(re.compile("brief"))  # who is chosen is shown whole
+
+
+def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
+    """The button to acknowledge is followed at its place by the one to resolve."""
+    page, station = stage.open(scenes.bad_minute())
+    fall = scenes.bad_minute().alarms[0]
+    strip(page).get_by_role("button", name=f"Acknowledge: {fall.text}").click()
+    station.change(alarms=(scenes.taken(fall),))
+    row = strip(page).get_by_role("listitem").filter(has_text=fall.text)
+    row.get_by_role("button", name="Resolve").dblclick()
+    row.get_by_role("button", name="Yes, resolve").click()  # a third, as fast as it gets
+    assert station.changes() == [f"/alarms/{quote(fall.alarm_id)}/acknowledge"]
+    row.get_by_role("button", name="No").click()
+    expect(row.get_by_role("button", name="Resolve")).to_be_focused()
+    with page.expect_request(re.compile("/resolve$")):
+        confirm(row, "Resolve")
+
+
+def test_an_evacuation_takes_two_presses_at_two_places(stage: Stage) -> None:
+    for screen in ("laptop", "phone"):
+        page, station = stage.open(scenes.bad_minute(), screen)
+        first = page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate")
+        first.dblclick(force=True)
+        assert station.changes() == [], screen
+        page.get_by_role("button", name="Evacuate now").click()
+        page.wait_for_timeout(100)
+        assert station.changes() == ["/commands"], screen
+
+
+def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    dialog = menu(page, "Units")
+    dialog.get_by_role("alert").get_by_role("button", name="Jonas Bergman may have fallen").click()
+    expect(dialog).to_have_count(0)
+    expect(page.locator(".card.chosen")).to_contain_text("Jonas Bergman")
+
+
+def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    people, plan = page.get_by_role("region", name="People"), page.locator(".map")
+    expect(people).to_be_visible()
+    expect(plan).to_be_hidden()
+    strip(page).get_by_role("button", name="Jonas Bergman may have fallen", exact=True).click()
+    expect(plan).to_be_visible()
+    expect(people).to_be_hidden()
+    page.get_by_role("button", name="Menu").click()
+    page.get_by_role("navigation").get_by_role("button", name="Units").click()
+    expect(page.get_by_role("dialog")).to_be_visible()
+
+
+def test_what_is_old_looks_old_when_the_station_is_gone(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    expect(page).to_have_title("(4!) Muster")
+    station.fall_silent()
+    banner = page.get_by_role("alert").filter(has_text="Connection to the station lost")
+    expect(banner).to_contain_text("is not being updated")
+    expect(page).to_have_title(re.compile("NO CONNECTION"))
+    expect(page.locator(".card").first).to_contain_text("Not updated")
+    assert flaws(page) == []
+    assert barriers(page) == []
+
+
+def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    page.evaluate(
+        """() => {
+          window.tones = 0;
+          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          window.AudioContext = class {
+            constructor() { window.tones += 1; }
+            createOscillator() { return { ...silent }; }
+          };
+        }"""
+    )
+    expect(page.get_by_role("button", name="No sound yet")).to_be_visible()
+    page.keyboard.press("Shift")
+    fall = scenes.bad_minute().alarms[0]
+    station.change(alarms=(fall,))
+    page.wait_for_function("window.tones === 1")
+    page.get_by_role("button", name="Sound on").click()
+    expect(page.get_by_role("button", name="Sound off")).to_be_visible()
+    station.change(alarms=(scenes.bad_minute().alarms[1],))
+    page.wait_for_timeout(700)
+    assert page.evaluate("window.tones") == 1
+
+
+def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
+    page, _ = stage.open(scenes.past())
+    bar = page.get_by_role("region", name="Replay")
+    with page.expect_request(re.compile("/replays/r1$")) as sent:
+        bar.get_by_role("button", name="Alarm before").click()
+    last_ms = max(alarm["raised_ms"] for alarm in scenes.PAST_ALARMS)
+    assert sent.value.post_data_json == {"at_ms": last_ms - 5000}
+    with page.expect_request(re.compile("/replays/r1$")) as sent:
+        bar.get_by_label("Go to an alarm").select_option(index=1)
+    assert sent.value.post_data_json == {"at_ms": scenes.PAST_ALARMS[0]["raised_ms"] - 5000}
+    expect(bar.get_by_role("button", name="Next alarm")).to_be_disabled()
+    expect(page.get_by_role("button", name="Evacuate")).to_have_count(0)

@@ -1,0 +1,62 @@
+"""How the console looks on every kind of screen, in every state, with a station that is played."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from base_station.api.wire import Snapshot
+from tests.e2e import scenes
+from tests.e2e.console_page import barriers, close, menu
+from tests.e2e.looks import flaws
+from tests.e2e.stage import SCREENS, Stage
+
+
+def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, list[str]]:
+    """What is wrong, by screen; screens on which nothing is are left out."""
+    found = {}
+    for name, (width, height) in SCREENS.items():
+        page.set_viewport_size({"width": width, "height": height})
+        found[name] = look(page)
+    return {name: flaws for name, flaws in found.items() if flaws}
+
+
+@pytest.mark.parametrize(
+    "scene", [scenes.quiet, scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past]
+)
+def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
+    page, _ = stage.open(scene())
+    assert on_every_screen(page, flaws) == {}
+
+
+@pytest.mark.parametrize("scene", [scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past])
+def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapshot]) -> None:
+    page, _ = stage.open(scene())
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert barriers(page) == [], scheme
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert barriers(page) == []
+
+
+def test_dialogs_fit_every_screen(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    for name in ("Incidents", "Units", "People", "Site", "Account"):
+        dialog = menu(page, name)
+        assert on_every_screen(page, flaws) == {}, name
+        close(dialog)
+        page.set_viewport_size({"width": 1280, "height": 800})
+
+
+def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    tools = page.get_by_role("group", name="On the plan")
+    for name in ("Trails", "Pins 2", "Beacon"):
+        tools.get_by_role("button", name=name).click()
+        assert on_every_screen(page, flaws) == {}, name
+        assert barriers(page) == [], name
+        page.set_viewport_size({"width": 1280, "height": 800})
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("form")).to_have_count(0)
