@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
+from base_station.fusion.fixes.sky import COMMON_S
 from base_station.fusion.fixes.trust import FixTrust
 from base_station.fusion.kernels import Placed
 from base_station.fusion.knowledge import Knowledge, estimate_of
@@ -179,6 +180,7 @@ class GpsInertialFuser:
             return FixVerdict(False, "fits, but the receiver was wrong just before")
         if self._unguided_m2(fix.t_mono_ns) == 0.0:
             memory.trust.compare(distance2)
+            memory.trust.compare_pair(fix, then)
         self._horizontal.update(self._sighting(fix, then, self._kind.doubt_lasts))
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
@@ -190,11 +192,12 @@ class GpsInertialFuser:
     def _correct_past(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
         """A fix of a time before the newest one: the state then, less the path walked since."""
         sighting = self._sighting(fix, then, self._kind.doubt_lasts)
-        whole_m2 = sighting.slow_m**2 + sighting.white_m2
-        once = msgspec.structs.replace(sighting, slow_m=0.0, white_m2=whole_m2)
+        slow_m2 = sighting.slow_m**2
+        own_m2 = slow_m2 + sighting.white_m2
+        once = msgspec.structs.replace(sighting, slow_m=0.0, white_m2=own_m2)
         if self._horizontal.distance2(once) > self._kind.gate:
             return FixVerdict(False, "does not fit the path walked")
-        lasting_m2 = 2.0 * self._kind.wander_s * fix.horizontal_std_m**2 + whole_m2
+        lasting_m2 = 2.0 * self._kind.slow_s * slow_m2 + own_m2
         self._horizontal.update(msgspec.structs.replace(once, white_m2=lasting_m2))
         return FixVerdict(True)
 
@@ -288,7 +291,7 @@ class GpsInertialFuser:
         last, kind, trust = self._memory.last, self._kind, self._memory.trust
         since = since_then(then, last)
         outside_m = self._horizontal.outside_m(since.north_m, since.east_m)
-        std_m, part = trust.best_m(fix), kind.wander_part
+        own_m2, common_m2, part = trust.own_m2(fix), trust.common_m2(fix), 1.0 - trust.fresh_part
         doubt_m2 = lasts * trust.doubt_m2(fix, walls_std_m(kind, outside_m))
         doubt_m2 += self._unguided_m2(fix.t_mono_ns)
         doubt_m2 += since.doubt_m2(kind, self._horizontal.drift_std_radps)
@@ -297,8 +300,9 @@ class GpsInertialFuser:
             east_m=fix.east_m,
             since_north_m=since.north_m,
             since_east_m=since.east_m,
-            slow_m=std_m * math.sqrt(part),
-            white_m2=std_m**2 * (1.0 - part) + doubt_m2,
+            slow_m=math.sqrt(own_m2 * part),
+            common_m=math.sqrt(common_m2),
+            white_m2=own_m2 * (1.0 - part) + doubt_m2,
         )
 
     def _unguided_m2(self, t_mono_ns: int) -> float:
@@ -308,14 +312,15 @@ class GpsInertialFuser:
         return unguided_m2(self._kind, t_mono_ns, heard_ns)
 
     def _let_wander(self, t_mono_ns: int) -> None:
-        """Predict the fixes' slow error up to the time of this one."""
+        """Predict the fixes' slow errors up to the time of this one."""
         before_ns = self._memory.wander_t_mono_ns
         self._memory.wander_t_mono_ns = max(t_mono_ns, before_ns or t_mono_ns)
         if before_ns is None or t_mono_ns <= before_ns:
             return
-        keep = math.exp(-(t_mono_ns - before_ns) / NS_PER_S / self._kind.wander_s)
-        self._horizontal.fade(keep)
-        self._height.fade(keep)
+        since_s = (t_mono_ns - before_ns) / NS_PER_S
+        lasts_s = np.array([self._kind.slow_s] * 2 + [COMMON_S] * 2)
+        self._horizontal.fade(np.exp(-since_s / lasts_s))
+        self._height.fade(math.exp(-since_s / self._kind.height_slow_s))
 
     def _turned_away(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
         """Outside the gate; but fixes that draw the shape of the walk are right after all."""

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_DRIFT = 6
+_DRIFT = 8
 _LEAST_SCALE2 = 0.05  # of a state whose turn means anything
 
 
@@ -81,8 +81,8 @@ def walk(
     With ``c, s`` after the drift, ``(a, b)`` cosine and sine of what was drifted and ``t`` the
     time moving, the Jacobian is the identity but for
 
-        north  [1, 0, dn, -de, 0, 0,    0]        c  [0, 0, a, -b, 0, 0, -s t]
-        east   [0, 1, de,  dn, 0, 0,    0]        s  [0, 0, b,  a, 0, 0,  c t]
+        north  [1, 0, dn, -de, 0 ...    0]        c  [0, 0, a, -b, 0 ... -s t]
+        east   [0, 1, de,  dn, 0 ...    0]        s  [0, 0, b,  a, 0 ...  c t]
 
     and the noise is that of the place, of the turn across ``(c, s)``, and of the drift rate.
     """
@@ -91,14 +91,16 @@ def walk(
     c = cosine * mean[2, 0] - sine * mean[3, 0]
     s = sine * mean[2, 0] + cosine * mean[3, 0]
     by_drift_c, by_drift_s = -s * moving_s, c * moving_s
-    for column in range(7):
-        of_c, of_s, of_drift = covariance[2, column], covariance[3, column], covariance[6, column]
+    for column in range(_DRIFT + 1):
+        of_c, of_s = covariance[2, column], covariance[3, column]
+        of_drift = covariance[_DRIFT, column]
         covariance[0, column] += north_m * of_c - east_m * of_s
         covariance[1, column] += east_m * of_c + north_m * of_s
         covariance[2, column] = cosine * of_c - sine * of_s + by_drift_c * of_drift
         covariance[3, column] = sine * of_c + cosine * of_s + by_drift_s * of_drift
-    for row in range(7):
-        of_c, of_s, of_drift = covariance[row, 2], covariance[row, 3], covariance[row, 6]
+    for row in range(_DRIFT + 1):
+        of_c, of_s = covariance[row, 2], covariance[row, 3]
+        of_drift = covariance[row, _DRIFT]
         covariance[row, 0] += north_m * of_c - east_m * of_s
         covariance[row, 1] += east_m * of_c + north_m * of_s
         covariance[row, 2] = cosine * of_c - sine * of_s + by_drift_c * of_drift
@@ -109,7 +111,7 @@ def walk(
     covariance[3, 3] += turn_var * c * c
     covariance[2, 3] -= turn_var * c * s
     covariance[3, 2] -= turn_var * c * s
-    covariance[6, 6] += drift_var
+    covariance[_DRIFT, _DRIFT] += drift_var
     mean[0, 0] += c * north_m - s * east_m
     mean[1, 0] += s * north_m + c * east_m
     mean[2, 0], mean[3, 0] = c, s
@@ -161,7 +163,7 @@ def placed_before(
     mean: Floats, covariance: Floats, north_m: float, east_m: float
 ) -> tuple[float, ...]:
     """What ``Placed`` holds, by a state of ``HorizontalFilter``.  The place is that before so much
-    of own path was walked: ``[1, 0, -dn, de, 0, 0, 0]`` and ``[0, 1, -de, -dn, 0, 0, 0]`` of it.
+    of own path was walked: ``[1, 0, -dn, de, 0 ...]`` and ``[0, 1, -de, -dn, 0 ...]`` of it.
     """
     c, s = mean[2, 0], mean[3, 0]
     north = np.array([1.0, 0.0, -north_m, east_m])

@@ -25,8 +25,9 @@ class Parameters:
     air_std_m: float = 0.3  # a barometer's noise, gusts included
     air_m_per_sqrt_s: float = 0.02  # its shift's wander where the weather is known
     weather_m_per_sqrt_s: float = 0.2  # and where it is not: 350 Pa an hour
-    wander_part: float = 0.8  # of a fix's variance that wanders slowly
-    wander_s: float = 60.0  # with this correlation time
+    slow_s: float = 30.0  # correlation time of what a receiver errs by itself and slowly
+    height_slow_part: float = 0.8  # of a satellite height's variance
+    height_slow_s: float = 60.0
     wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it
     wall_reach_m: float = 5.0  # falling off by distance
     inside_std_m: float = 8.0  # and being inside

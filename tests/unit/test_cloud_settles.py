@@ -8,8 +8,8 @@ import pytest
 
 from base_station.fusion.plane.wall_cloud import GUESSES, WallCloud
 
-MEAN = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
-SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, 1e-6, 1e-6, 1e-10])
+MEAN = np.eye(9)[2]
+SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, *[1e-6] * 4, 1e-10])
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def cloud() -> WallCloud:
 
 def told(cloud: WallCloud, north_m: float, std_m: float) -> bool:
     mean, covariance = cloud.moments()
-    known = [0, 1, 2, 3, 6]
+    known = [0, 1, 2, 3, 8]
     mean, covariance = mean[known], covariance[np.ix_(known, known)]
     mean[0], covariance[0, 0] = north_m, std_m**2
     covariance[0, 1:] = covariance[1:, 0] = 0.0

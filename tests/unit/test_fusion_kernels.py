@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.kernels import Placed
 
+STATES, DRIFT = 9, 8  # of ``HorizontalFilter``
+
 Floats = NDArray[np.float64]
 
 
@@ -34,29 +36,29 @@ def placed_before(mean: Floats, covariance: Floats, north_m: float, east_m: floa
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
-    expected = filter_of(7, seed)
+    expected = filter_of(STATES, seed)
     mean, covariance = expected.x.copy(), expected.P.copy()
     north_m, east_m, moving_s, place_var_m2, turn_var, drift_var = 0.7, -0.4, 0.5, 0.02, 0.03, 0.04
-    drifted_rad = float(expected.x[6, 0]) * moving_s
+    drifted_rad = float(expected.x[DRIFT, 0]) * moving_s
     a, b = math.cos(drifted_rad), math.sin(drifted_rad)
     c = a * expected.x[2, 0] - b * expected.x[3, 0]
     s = b * expected.x[2, 0] + a * expected.x[3, 0]
-    jacobian, noise = np.eye(7), np.zeros((7, 7))
+    jacobian, noise = np.eye(STATES), np.zeros((STATES, STATES))
     jacobian[0, 2:4], jacobian[1, 2:4] = (north_m, -east_m), (east_m, north_m)
     jacobian[2, 2:4], jacobian[3, 2:4] = (a, -b), (b, a)
     # The place moves by the turn after the drift, which the covariance does not tell apart.
-    jacobian[2, 6], jacobian[3, 6] = -s * moving_s, c * moving_s
+    jacobian[2, DRIFT], jacobian[3, DRIFT] = -s * moving_s, c * moving_s
     across = np.array([-s, c])
     noise[:2, :2] = place_var_m2 * np.eye(2)
     noise[2:4, 2:4] = turn_var * np.outer(across, across)
-    noise[6, 6] = drift_var
+    noise[DRIFT, DRIFT] = drift_var
 
     kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
     expected.predict(F=jacobian, Q=noise)
 
     same(covariance, expected.P)
     moved = (c * north_m - s * east_m, s * north_m + c * east_m)
-    same(mean[:2, 0] - filter_of(7, seed).x[:2, 0], moved)
+    same(mean[:2, 0] - filter_of(STATES, seed).x[:2, 0], moved)
     same(mean[2:4, 0], (c, s))
 
 
@@ -82,9 +84,9 @@ def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
 
 
 def test_the_place_before_is_the_present_one_less_the_path() -> None:
-    now = filter_of(7, 1)
+    now = filter_of(STATES, 1)
     north_m, east_m = 3.0, -2.0
-    back = np.zeros((2, 7))
+    back = np.zeros((2, STATES))
     back[:, :2], back[:, 2:4] = np.eye(2), [[-north_m, east_m], [-east_m, -north_m]]
     place, spread = back @ now.x[:, 0], back @ now.P @ back.T
 
@@ -98,18 +100,18 @@ def test_the_place_before_is_the_present_one_less_the_path() -> None:
 
 
 def test_a_state_without_a_direction_has_no_turn() -> None:
-    placed = placed_before(np.zeros((7, 1)), np.eye(7), 0.0, 0.0)
+    placed = placed_before(np.zeros((STATES, 1)), np.eye(STATES), 0.0, 0.0)
     assert (placed.turn_rad, placed.turn_std_rad) == (0.0, math.pi)
 
 
 def test_a_place_is_less_sure_by_what_is_added() -> None:
-    placed = placed_before(np.eye(7)[:, 2:3], 9.0 * np.eye(7), 0.0, 0.0)
+    placed = placed_before(np.eye(STATES)[:, 2:3], 9.0 * np.eye(STATES), 0.0, 0.0)
     assert placed.widened(16.0).std_north_m == pytest.approx(5.0)
 
 
 def test_arrays_of_any_layout_will_do() -> None:
     """``filterpy`` makes new ones, and nothing must be compiled while the station is live."""
-    one, other = filter_of(7, 2), filter_of(7, 2)
+    one, other = filter_of(STATES, 2), filter_of(STATES, 2)
     kernels.walk(one.x, one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
     kernels.walk(other.x, np.asfortranarray(other.P), 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
     assert np.array_equal(one.x, other.x)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.fusion.fixes.sky import COMMON_PART, Sky
+from base_station.fusion.fixes.sky import OWN_PART, Sky, common_m2
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
 from shared.messages.station import SetAnchor, SetReference, SetStart
@@ -16,7 +16,9 @@ from tests.station_script import Script
 
 Floats = NDArray[np.float64]
 
-STD_M = 1.5
+STD_M = 1.27
+COMMON_M = math.sqrt(common_m2(STD_M))
+OWN_M = math.sqrt(STD_M**2 - COMMON_M**2)
 
 
 def after(seconds: float, off_m: tuple[float, float] = (3.0, -2.0)) -> Sky:
@@ -42,15 +44,15 @@ def test_it_does_what_it_says() -> None:
     rng, left2, said2 = np.random.default_rng(2), [], []
     common2, common_said2 = [], []
     for _ in range(200):
-        common = rng.normal(0.0, math.sqrt(COMMON_PART) * STD_M, 2)
-        own = rng.normal(0.0, math.sqrt(0.45) * STD_M, 2)
+        common = rng.normal(0.0, COMMON_M, 2)
+        own = rng.normal(0.0, math.sqrt(OWN_PART) * OWN_M, 2)
         place = rng.normal(0.0, 0.3, 2)
         sky = Sky()
         for second in range(60):
-            white = rng.normal(0.0, math.sqrt(0.1) * STD_M, 2)
+            white = rng.normal(0.0, math.sqrt(1.0 - OWN_PART) * OWN_M, 2)
             north_m, east_m = (common + own + place + white).tolist()
             sky.note(second * NS_PER_S, (north_m, east_m), STD_M, 0.3)
-        error = common + rng.normal(0.0, math.sqrt(1.0 - COMMON_PART) * STD_M, 2)
+        error = common + rng.normal(0.0, OWN_M, 2)
         fix = sky.corrected(fix_at(float(error[0]), float(error[1])), 60 * NS_PER_S)
         left2 += [fix.north_m**2, fix.east_m**2]
         said2.append(fix.horizontal_std_m**2)

@@ -8,7 +8,7 @@ from base_station.fusion.port import FixVerdict, PlaceFix
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix
 
-STD_FLOOR_M = 1.5  # receivers are too sure of themselves
+STD_FLOOR_M = 1.27  # each axis: 1.5 m CEP of data sheets; who claims better is too sure
 STD_UNSTATED_M = 10.0
 STD_ABSURD_M = 100.0
 FURTHEST_M = 50_000.0  # from the anchor

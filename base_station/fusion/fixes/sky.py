@@ -19,14 +19,22 @@ from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
 
-COMMON_PART = 0.45  # of a good fix's variance
-OWN_PART = 0.45  # slow too; the rest is new with every fix
+COMMON_MOST_M = 1.5  # each axis, of what orbits, clocks and the air do to anybody
+COMMON_PART = 0.45  # of a fix's variance, at most
+OWN_PART = 0.8  # of the rest is slow too; what is left is new with every fix
 COMMON_S, OWN_S = 1200.0, 300.0  # correlation times, of a receiver that does not move
 HEARD_S = 60.0  # after which nothing is taken off any more
 GATE2 = 13.8  # chi-square of two degrees, 99.9 %
 
 _COMMON, _OWN, _PLACE = range(3)
 _OBSERVE = np.ones(3)
+
+
+def common_m2(std_m: float) -> float:
+    """Variance, each axis, of what a receiver that claims so much errs by with all others: a bad
+    one errs by itself.
+    """
+    return min(COMMON_MOST_M**2, COMMON_PART * std_m**2)
 
 
 class Sky(msgspec.Struct):
@@ -47,7 +55,7 @@ class Sky(msgspec.Struct):
             return
         mean, covariance = self._at(t_ns)
         self.t_ns = t_ns
-        noise_m2 = (1.0 - COMMON_PART - OWN_PART) * self.std_m**2
+        noise_m2 = (1.0 - OWN_PART) * (self.std_m**2 - common_m2(self.std_m))
         noise_m2 += max(0.0, std_m**2 - self.std_m**2)
         spread = float(_OBSERVE @ covariance @ _OBSERVE) + noise_m2
         apart = np.array(off_m) - _OBSERVE @ mean
@@ -62,28 +70,30 @@ class Sky(msgspec.Struct):
         if self.t_ns is None or abs(t_ns - self.t_ns) > HEARD_S * NS_PER_S:
             return fix
         mean, covariance = self._at(max(t_ns, self.t_ns))
-        learnt_m2 = COMMON_PART * self.std_m**2 - float(covariance[_COMMON, _COMMON])
-        variance_m2 = fix.horizontal_std_m**2
-        left_m2 = max(variance_m2 - learnt_m2, (1.0 - COMMON_PART) * variance_m2)
+        was_m2, is_m2 = common_m2(fix.horizontal_std_m), float(covariance[_COMMON, _COMMON])
         return msgspec.structs.replace(
             fix,
             north_m=fix.north_m - float(mean[_COMMON, 0]),
             east_m=fix.east_m - float(mean[_COMMON, 1]),
-            horizontal_std_m=math.sqrt(left_m2),
-            common_m2=float(covariance[_COMMON, _COMMON]),
+            horizontal_std_m=math.sqrt(fix.horizontal_std_m**2 - was_m2 + is_m2),
+            common_m2=is_m2,
         )
 
     def _begin(self, std_m: float, place_std_m: float) -> None:
         self.std_m = std_m
         self.mean_m = np.zeros((3, 2)).tolist()
-        variances = [COMMON_PART * std_m**2, OWN_PART * std_m**2, place_std_m**2]
-        self.covariance_m2 = np.diag(variances).tolist()
+        self.covariance_m2 = np.diag([*self._slow_m2(), place_std_m**2]).tolist()
 
     def _at(self, t_ns: int) -> tuple[Floats, Floats]:
         """Mean (3, 2) and covariance (3, 3) at that time, the last fix's or later."""
         since_s = 0.0 if self.t_ns is None else (t_ns - self.t_ns) / NS_PER_S
         keep = np.array([math.exp(-since_s / COMMON_S), math.exp(-since_s / OWN_S), 1.0])
-        variances = self.std_m**2 * np.array([COMMON_PART, OWN_PART, 0.0])
+        variances = np.array([*self._slow_m2(), 0.0])
         mean, covariance = np.array(self.mean_m), np.array(self.covariance_m2)
         spread = np.outer(keep, keep) * covariance + np.diag((1.0 - keep**2) * variances)
         return keep[:, None] * mean, spread
+
+    def _slow_m2(self) -> tuple[float, float]:
+        """Variances of what all err by, and of what the station's receiver adds for long."""
+        common = common_m2(self.std_m)
+        return common, OWN_PART * (self.std_m**2 - common)

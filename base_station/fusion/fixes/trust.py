@@ -11,13 +11,23 @@ import math
 import msgspec
 
 from base_station.fusion.fixes.outliers import Outliers, Shape
-from base_station.fusion.fixes.sky import COMMON_PART
+from base_station.fusion.fixes.sky import common_m2
 from base_station.fusion.parameters import Parameters
+from base_station.fusion.path.memory import OwnPlace
 from base_station.fusion.port import PlaceFix
+from shared.clock import NS_PER_S
 
-SURPRISE_LEAST, SURPRISE_MOST = 1.06, 8.0
-SURPRISED = 3.0  # chi-square of 2 degrees of freedom from which a fix is worse than it claims
+SURPRISE_LEAST, SURPRISE_MOST = 1.0, 8.0
+# Chi-square of 2 degrees of freedom from which a fix is worse than it claims: at this rate of
+# forgiving, those that are just as they claim leave no surprise on the mean.
+SURPRISED = 4.85
 FORGIVEN = 0.97  # of a surprise is left after a fix
+FRESH_PART = 0.4  # of a receiver's own variance, before it is learnt: new with every fix
+FRESH_FIXES = 15.0  # which is worth so many pairs of fixes
+FRESH_LEAST = 0.1
+FRESH_KEPT = 200.0  # pairs that are remembered
+FRESH_MOST = 4.0
+IN_A_ROW_NS = 3 * NS_PER_S
 EXCESS = 2.0  # what a receiver admits beyond its usual accuracy is but half of it
 
 
@@ -27,8 +37,11 @@ class FixTrust(msgspec.Struct):
     same_since_m: float = 0.0  # distance walked when the fix last changed
     distrust: int = 0  # grows by one with a fix that does not fit, falls by two with one that does
     outliers: Outliers = msgspec.field(default_factory=Outliers)
-    best_std_m: float = math.inf  # the best that the receiver ever claimed
+    best_own_m2: float = math.inf  # least variance of its own that the receiver ever claimed
     surprise: float = 1.0  # how much worse fixes fit than they claim, as a variance
+    before: tuple[PlaceFix, OwnPlace] | None = None  # the last fix and the own path's place then
+    fresh_sum: float = FRESH_FIXES * FRESH_PART
+    fresh_pairs: float = FRESH_FIXES
 
     def is_stuck(self, kind: Parameters, fix: PlaceFix, walked_m: float) -> bool:
         """The very same place again and again while the wearer walks on."""
@@ -47,18 +60,40 @@ class FixTrust(msgspec.Struct):
         self.outliers.clear()
         return True
 
-    def best_m(self, fix: PlaceFix) -> float:
-        """The receiver's accuracy where nothing disturbs it."""
-        self.best_std_m = min(self.best_std_m, fix.horizontal_std_m)
-        return self.best_std_m
+    def own_m2(self, fix: PlaceFix) -> float:
+        """Variance of what the receiver errs by itself where nothing disturbs it."""
+        claimed_m2 = fix.horizontal_std_m**2 - self.common_m2(fix)
+        self.best_own_m2 = min(self.best_own_m2, claimed_m2)
+        return self.best_own_m2
+
+    @property
+    def fresh_part(self) -> float:
+        """Of the own variance: what is new with every fix, and not slow."""
+        return min(max(self.fresh_sum / self.fresh_pairs, FRESH_LEAST), 1.0)
+
+    def compare_pair(self, fix: PlaceFix, then: OwnPlace) -> None:
+        """Two fixes in a row differ from the way between them by what is new with each: whatever
+        the heading, their squared distance is the way's and four such variances on the mean.
+        """
+        before, self.before = self.before, (fix, then)
+        if before is None or not 0 < fix.t_mono_ns - before[0].t_mono_ns < IN_A_ROW_NS:
+            return
+        (last, was) = before
+        apart_m2 = (fix.north_m - last.north_m) ** 2 + (fix.east_m - last.east_m) ** 2
+        way_m2 = (then.north_m - was.north_m) ** 2 + (then.east_m - was.east_m) ** 2
+        claimed_m2 = fix.horizontal_std_m**2 - self.common_m2(fix)
+        part = min((apart_m2 - way_m2) / (4.0 * claimed_m2), FRESH_MOST)
+        keep = 1.0 - 1.0 / FRESH_KEPT
+        self.fresh_sum = keep * self.fresh_sum + part
+        self.fresh_pairs = keep * self.fresh_pairs + 1.0
 
     def common_m2(self, fix: PlaceFix) -> float:
         """Variance of what everybody's fixes err by alike."""
-        return COMMON_PART * self.best_m(fix) ** 2 if fix.common_m2 is None else fix.common_m2
+        return common_m2(fix.horizontal_std_m) if fix.common_m2 is None else fix.common_m2
 
     def doubt_m2(self, fix: PlaceFix, walls_std_m: float) -> float:
         """Variance beyond that."""
-        best_m2 = self.best_std_m**2
+        best_m2 = self.own_m2(fix) + self.common_m2(fix)
         excess_m2 = EXCESS**2 * (fix.horizontal_std_m**2 - best_m2)
         return excess_m2 + walls_std_m**2 + best_m2 * max(0.0, self.surprise - 1.0)
 

@@ -139,10 +139,10 @@ class CompassedFilter(HorizontalFilter):
         if self._deaf is not None:
             self._deaf.spread(variance_m2)
 
-    def fade(self, keep: float) -> None:
-        super().fade(keep)
+    def fade(self, keeps: Floats) -> None:
+        super().fade(keeps)
         if self._deaf is not None:
-            self._deaf.fade(keep)
+            self._deaf.fade(keeps)
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
         super().reframe(turn_rad, north_m, east_m)

@@ -1,8 +1,8 @@
 """Where a path of unknown heading may lead: one hypothesis a direction, all the way round.
 
-Given the heading, a path and fixes with a slow error are a linear problem in
-``[north, east, b_n, b_e]``.  Every hypothesis has the same covariance, because neither the
-path's noise nor a fix's depends on the direction; so there is one gain for all, and only means
+Given the heading, a path and fixes with slow errors are a linear problem in
+``[north, east, b_n, b_e, k_n, k_e]``.  Every hypothesis has the same covariance, because neither
+the path's noise nor a fix's depends on the direction; so there is one gain for all, and only means
 and weights differ (a Rao-Blackwellised grid: Doucet et al. 2000, section 3).
 """
 
@@ -28,8 +28,14 @@ class Sighting(msgspec.Struct, frozen=True):
     east_m: float
     since_north_m: float  # own path walked since it was valid
     since_east_m: float
-    slow_m: float  # weight of the fixes' slow error, which has unit variance
+    slow_m: float  # weight of the receiver's slow error, which has unit variance
+    common_m: float  # and of the one that all receivers of the site share
     white_m2: float  # variance of the rest, each axis
+
+
+def slow_errors(sighting: Sighting) -> Floats:
+    """(2, 4): what the slow errors ``[b_n, b_e, k_n, k_e]`` do to a fix."""
+    return np.hstack([sighting.slow_m * np.eye(2), sighting.common_m * np.eye(2)])
 
 
 class SavedBank(msgspec.Struct, frozen=True):
@@ -45,8 +51,8 @@ class HeadingBank:
     def __init__(
         self, means: Floats, covariance: Floats, turns_rad: Floats, weights: Floats
     ) -> None:
-        self._means = means  # (n, 4) north, east, and the fixes' slow error
-        self._covariance = covariance  # (4, 4), of every hypothesis
+        self._means = means  # (n, 6) north, east, and the fixes' slow errors
+        self._covariance = covariance  # (6, 6), of every hypothesis
         self._turns_rad = turns_rad  # (n,)
         self._cosine, self._sine = np.cos(turns_rad), np.sin(turns_rad)
         self._weights = weights  # (n,), their sum is 1
@@ -55,7 +61,7 @@ class HeadingBank:
     def about(
         mean: Floats, covariance: Floats, heading_rad: float, heading_std_rad: float
     ) -> HeadingBank:
-        """``mean`` (4,) and ``covariance`` (4, 4) for every heading, weighted by a normal
+        """``mean`` (6,) and ``covariance`` (6, 6) for every heading, weighted by a normal
         distribution about one; a standard deviation of pi and above: any heading is as likely.
         """
         offsets_rad = SPACING_RAD * np.arange(-HYPOTHESES // 2, HYPOTHESES // 2, dtype=np.float64)
@@ -67,10 +73,10 @@ class HeadingBank:
 
     @staticmethod
     def given(mean: Floats, covariance: Floats) -> HeadingBank:
-        """Of a normal distribution (6,), (6, 6) of ``[north, east, c, s, b_n, b_e]``: given the
-        heading, the rest of it is normal too.
+        """Of a normal distribution (8,), (8, 8) of ``[north, east, c, s, b_n, b_e, k_n, k_e]``:
+        given the heading, the rest of it is normal too.
         """
-        own, turn = [0, 1, 4, 5], [2, 3]
+        own, turn = [0, 1, 4, 5, 6, 7], [2, 3]
         c, s = float(mean[2]), float(mean[3])
         across = np.array([-s, c]) / (c * c + s * s)
         with_turn = covariance[np.ix_(own, turn)] @ across
@@ -111,12 +117,12 @@ class HeadingBank:
         self._covariance[0, 0] += variance_m2
         self._covariance[1, 1] += variance_m2
 
-    def fade(self, keep: float) -> None:
-        """Time went by for the fixes' slow error, of unit variance."""
-        self._means[:, 2:] *= keep
-        self._covariance[2:, :] *= keep
-        self._covariance[:, 2:] *= keep
-        self._covariance[[2, 3], [2, 3]] += 1.0 - keep**2
+    def fade(self, keeps: Floats) -> None:
+        """Time went by for the fixes' slow errors (4,), of unit variance."""
+        self._means[:, 2:] *= keeps
+        self._covariance[2:, :] *= keeps[:, None]
+        self._covariance[:, 2:] *= keeps
+        self._covariance[range(2, 6), range(2, 6)] += 1.0 - keeps**2
 
     def forget_place(self, variance_m2: float) -> None:
         self._covariance[:2, :] = 0.0
@@ -136,7 +142,7 @@ class HeadingBank:
         observe = _observe(sighting)
         gain = self._covariance @ observe.T @ inverse
         self._means += innovations @ gain.T
-        keep = np.eye(4) - gain @ observe
+        keep = np.eye(6) - gain @ observe
         noise = sighting.white_m2 * gain @ gain.T
         self._covariance = keep @ self._covariance @ keep.T + noise
         weights = self._weights * np.exp(-0.5 * (distances2 - distances2.min()))
@@ -163,18 +169,19 @@ class HeadingBank:
         self._turns_rad = self._turns_rad + turn_rad
         self._cosine, self._sine = np.cos(self._turns_rad), np.sin(self._turns_rad)
         self._means[:, :2] = self._means[:, :2] @ turn.T + shift_m
-        self._means[:, 2:] = self._means[:, 2:] @ turn.T
-        both = np.kron(np.eye(2), turn)
+        for pair in (slice(2, 4), slice(4, 6)):
+            self._means[:, pair] = self._means[:, pair] @ turn.T
+        both = np.kron(np.eye(3), turn)
         self._covariance = both @ self._covariance @ both.T
 
     def moments(self) -> tuple[Floats, Floats]:
-        """Mean (6,) and covariance (6, 6) of ``[north, east, cos, sin, b_n, b_e]``."""
+        """Mean (8,) and covariance (8, 8) of ``[north, east, cos, sin, b_n, b_e, k_n, k_e]``."""
         weights, cosine, sine = self._weights, self._cosine, self._sine
         states = np.column_stack([self._means[:, :2], cosine, sine, self._means[:, 2:]])
         mean: Floats = weights @ states
         apart = states - mean
         covariance: Floats = (apart * weights[:, None]).T @ apart
-        own = [0, 1, 4, 5]
+        own = [0, 1, 4, 5, 6, 7]
         covariance[np.ix_(own, own)] += self._covariance
         between = SPACING_RAD**2 / 12.0  # a hypothesis stands for the headings next to it
         covariance[2, 2] += between * float(weights @ sine**2)
@@ -193,7 +200,7 @@ class HeadingBank:
 
 
 def _observe(sighting: Sighting) -> Floats:
-    return np.hstack([np.eye(2), sighting.slow_m * np.eye(2)])
+    return np.hstack([np.eye(2), slow_errors(sighting)])
 
 
 def _squares(innovations: Floats, inverse: Floats) -> Floats:

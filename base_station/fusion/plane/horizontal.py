@@ -7,10 +7,12 @@ unit's own path moves the wearer by
 
     north += c dn - s de        east += s dn + c de
 
-which is *linear* in ``[north, east, c, s, b_n, b_e, w]``.  ``b`` is the slowly wandering part of
-the fixes' error in units of their stated standard deviation (first-order Gauss-Markov), so that
-a minute of fixes is not believed to average it away.  ``w`` is the rate at which the unit's own
-heading drifts while the wearer moves: what fixes tell of it outside goes on being right inside.
+which is *linear* in ``[north, east, c, s, b_n, b_e, k_n, k_e, w]``.  ``b`` and ``k`` are the slowly
+wandering parts of the fixes' error, each of unit variance (first-order Gauss-Markov), so that
+minutes of fixes are not believed to average them away: ``b`` is the receiver's own and lasts a
+minute, ``k`` is everybody's and lasts for much of an incident (see ``fixes.sky``).  ``w`` is the
+rate at which the unit's own heading drifts while the wearer moves: what fixes tell of it outside
+goes on being right inside.
 A fix that comes late is an observation of the present state less the path walked since.
 """
 
@@ -25,7 +27,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion import kernels
 from base_station.fusion.kernels import Placed
-from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting
+from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting, slow_errors
 from base_station.fusion.told import told
 from shared.geo import wrap_pi
 
@@ -33,9 +35,10 @@ Floats = NDArray[np.float64]
 
 _UNKNOWN_VAR_M2 = 1e8
 REOPEN = 1.5  # times the width at which one hypothesis was enough
-_STATES = 7
-_PLACE_AND_SLOW = [0, 1, 4, 5]
-_DRIFT = 6
+_STATES = 9
+_PLACE_AND_SLOW = [0, 1, 4, 5, 6, 7]
+_SLOW = [4, 5, 6, 7]
+DRIFT = 8
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
@@ -59,7 +62,7 @@ class HorizontalFilter:
         self._filter = KalmanFilter(dim_x=_STATES, dim_z=2)
         self._filter.x = np.zeros((_STATES, 1))
         self._filter.x[2, 0] = 1.0
-        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0])
+        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0])
         self._bank: HeadingBank | None = None  # where it is, the filter mirrors its moments
         self._stale = False  # and is behind it
 
@@ -80,7 +83,7 @@ class HorizontalFilter:
         return self._bank is None
 
     def moments(self) -> tuple[Floats, Floats]:
-        """Mean (7,) and covariance (7, 7) of the whole state."""
+        """Mean (9,) and covariance (9, 9) of the whole state."""
         now = self._current()
         return now.x[:, 0].copy(), now.P.copy()
 
@@ -95,17 +98,17 @@ class HorizontalFilter:
         self._filter.x, self._filter.P = mean.reshape(_STATES, 1).copy(), covariance.copy()
 
     def settle(self, mean: Floats, covariance: Floats) -> None:
-        """Begin again with ``[north, east, c, s, w]``; of fixes' slow error nothing is known."""
-        known = [0, 1, 2, 3, _DRIFT]
+        """Begin again with ``[north, east, c, s, w]``; of fixes' slow errors nothing is known."""
+        known = [0, 1, 2, 3, DRIFT]
         whole, spread = np.zeros(_STATES), np.zeros((_STATES, _STATES))
         whole[known], spread[np.ix_(known, known)] = mean, covariance
-        spread[4, 4] = spread[5, 5] = 1.0
+        spread[_SLOW, _SLOW] = 1.0
         self.adopt(whole, spread)
         self._open_heading(self._linear_rad)
 
     def _open_heading(self, from_rad: float) -> None:
         """Past so wide a heading one hypothesis will not do."""
-        mean, covariance = self._filter.x[:_DRIFT, 0], self._filter.P[:_DRIFT, :_DRIFT]
+        mean, covariance = self._filter.x[:DRIFT, 0], self._filter.P[:DRIFT, :DRIFT]
         if self._bank is None and turn_of(mean, covariance)[1] > from_rad:
             self._bank = HeadingBank.given(mean, covariance)
             self._stale = True
@@ -115,7 +118,7 @@ class HorizontalFilter:
         turns out worse than it was taken for has a drift that is less known.
         """
         if self._bank is None and std_radps > self._drift_std_radps:
-            self._filter.P[_DRIFT, _DRIFT] += std_radps**2 - self._drift_std_radps**2
+            self._filter.P[DRIFT, DRIFT] += std_radps**2 - self._drift_std_radps**2
         self._drift_std_radps = std_radps
 
     def begin(
@@ -174,16 +177,16 @@ class HorizontalFilter:
             self._filter.P[0, 0] += variance_m2
             self._filter.P[1, 1] += variance_m2
 
-    def fade(self, keep: float) -> None:
-        """Time went by for the fixes' slow error."""
+    def fade(self, keeps: Floats) -> None:
+        """Time went by for the fixes' slow errors: (4,) of each what is left."""
         if self._bank is not None:
-            self._bank.fade(keep)
+            self._bank.fade(keeps)
             self._stale = True
             return
-        self._filter.x[4:6] *= keep
-        self._filter.P[4:6, :] *= keep
-        self._filter.P[:, 4:6] *= keep
-        self._filter.P[[4, 5], [4, 5]] += 1.0 - keep**2
+        self._filter.x[_SLOW, 0] *= keeps
+        self._filter.P[_SLOW, :] *= keeps[:, None]
+        self._filter.P[:, _SLOW] *= keeps
+        self._filter.P[_SLOW, _SLOW] += 1.0 - keeps**2
 
     def distance2(self, sighting: Sighting) -> float:
         """How far a fix lies from what is believed, chi-square of two degrees of freedom."""
@@ -215,7 +218,7 @@ class HorizontalFilter:
         """
         self.reframe(turn_rad, 0.0, 0.0)
         north_m, east_m, c, s = self._filter.x[:4, 0]
-        by = np.array([-east_m, north_m, -s, c, 0.0, 0.0, 0.0])
+        by = np.array([-east_m, north_m, -s, c, *[0.0] * (_STATES - 4)])
         self._filter.P += std_rad**2 * np.outer(by, by)
 
     def face(self, turn_rad: float, variance: float) -> None:
@@ -223,7 +226,8 @@ class HorizontalFilter:
         mean, covariance = self.moments()
         c, s = float(mean[2]), float(mean[3])
         scale2 = c * c + s * s
-        observe = np.array([[0.0, 0.0, -s / scale2, c / scale2, 0.0, 0.0, 0.0]])
+        observe = np.zeros((1, _STATES))
+        observe[0, 2:4] = -s / scale2, c / scale2
         to = observe @ mean + wrap_pi(turn_rad - math.atan2(s, c))
         mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
         mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
@@ -246,7 +250,7 @@ class HorizontalFilter:
             self._stale = True
             return
         whole = np.eye(_STATES)
-        whole[:6, :6] = np.kron(np.eye(3), turn)
+        whole[:DRIFT, :DRIFT] = np.kron(np.eye(DRIFT // 2), turn)
         self._filter.x = whole @ self._filter.x
         self._filter.x[:2, 0] += north_m, east_m
         self._filter.P = whole @ self._filter.P @ whole.T
@@ -255,17 +259,17 @@ class HorizontalFilter:
         """The filter, abreast of the bank."""
         if self._stale and self._bank is not None:
             mean, covariance = self._bank.moments()
-            self._filter.x[:_DRIFT, 0] = mean
+            self._filter.x[:DRIFT, 0] = mean
             self._filter.P = np.zeros((_STATES, _STATES))
-            self._filter.P[:_DRIFT, :_DRIFT] = covariance
+            self._filter.P[:DRIFT, :DRIFT] = covariance
             self._forget_drift()
         self._stale = False
         return self._filter
 
     def _forget_drift(self) -> None:
-        self._filter.x[_DRIFT, 0] = 0.0
-        self._filter.P[_DRIFT, :] = self._filter.P[:, _DRIFT] = 0.0
-        self._filter.P[_DRIFT, _DRIFT] = self._drift_std_radps**2
+        self._filter.x[DRIFT, 0] = 0.0
+        self._filter.P[DRIFT, :] = self._filter.P[:, DRIFT] = 0.0
+        self._filter.P[DRIFT, DRIFT] = self._drift_std_radps**2
 
     def _reset_place_var(self, variance_m2: float) -> None:
         covariance = self._filter.P
@@ -290,14 +294,17 @@ def turn_of(mean: Floats, covariance: Floats) -> tuple[float, float]:
     return math.atan2(s, c), min(math.sqrt(max(variance, 0.0)), math.pi)
 
 
+def place_then(north_m: float, east_m: float) -> Floats:
+    """(2, 9): the place before this much of own path was walked, by the present state."""
+    observe = np.zeros((2, _STATES))
+    observe[0, :4] = 1.0, 0.0, -north_m, east_m
+    observe[1, :4] = 0.0, 1.0, -east_m, -north_m
+    return observe
+
+
 def _linear(sighting: Sighting) -> tuple[Floats, Floats, Floats]:
-    """Measurement (2, 1), its matrix (2, 7) and its covariance (2, 2)."""
-    north_m, east_m, slow_m = sighting.since_north_m, sighting.since_east_m, sighting.slow_m
-    observe = np.array(
-        [
-            [1.0, 0.0, -north_m, east_m, slow_m, 0.0, 0.0],
-            [0.0, 1.0, -east_m, -north_m, 0.0, slow_m, 0.0],
-        ]
-    )
+    """Measurement (2, 1), its matrix (2, 9) and its covariance (2, 2)."""
+    observe = place_then(sighting.since_north_m, sighting.since_east_m)
+    observe[:, _SLOW] = slow_errors(sighting)
     place = np.array([[sighting.north_m], [sighting.east_m]])
     return place, observe, sighting.white_m2 * np.eye(2)

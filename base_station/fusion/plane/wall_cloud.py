@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.plane.heading_bank import Sighting
+from base_station.fusion.plane.heading_bank import Sighting, slow_errors
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -51,12 +51,12 @@ class WallCloud:
     def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
         self._rng = np.random.Generator(np.random.PCG64(seed))
         self._scale = float(np.hypot(mean[2], mean[3]))
-        own, slow = [0, 1, 2, 3, 6], [4, 5]
+        own, slow = [0, 1, 2, 3, 8], [4, 5, 6, 7]
         spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
         root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
         drawn = self._rng.normal(size=(GUESSES, 5)) @ root.T
         gain = np.linalg.solve(spread, covariance[np.ix_(own, slow)]).T
-        self._slow = mean[slow] + drawn @ gain.T  # (n, 2)
+        self._slow = mean[slow] + drawn @ gain.T  # (n, 4)
         self._slow_covariance = (
             covariance[np.ix_(slow, slow)] - gain @ covariance[np.ix_(own, slow)]
         )
@@ -85,10 +85,10 @@ class WallCloud:
 
     @staticmethod
     def restore(saved: SavedCloud) -> WallCloud:
-        cloud = WallCloud(np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.eye(7), 0)
+        cloud = WallCloud(np.eye(9)[2], np.eye(9), 0)
         cloud._guesses = np.frombuffer(saved.guesses).reshape(GUESSES, 4).copy()
         cloud._log_weights = np.frombuffer(saved.weights).copy()
-        cloud._slow = np.frombuffer(saved.slow).reshape(GUESSES, 2).copy()
+        cloud._slow = np.frombuffer(saved.slow).reshape(GUESSES, 4).copy()
         cloud._slow_covariance = np.array(saved.slow_covariance)
         cloud._scale = saved.scale
         cloud._pending = np.array(saved.pending)
@@ -148,10 +148,11 @@ class WallCloud:
         self._guesses[:, :2] += math.sqrt(variance_m2) * self._rng.normal(size=(GUESSES, 2))
         self._moments = None
 
-    def fade(self, keep: float) -> None:
-        """Time went by for the fixes' slow error, of unit variance."""
-        self._slow *= keep
-        self._slow_covariance = keep**2 * self._slow_covariance + (1.0 - keep**2) * np.eye(2)
+    def fade(self, keeps: Floats) -> None:
+        """Time went by for the fixes' slow errors (4,), of unit variance."""
+        self._slow *= keeps
+        self._slow_covariance *= np.outer(keeps, keeps)
+        self._slow_covariance += np.diag(1.0 - keeps**2)
         self._moments = None
 
     def agree(self, mean: Floats, covariance: Floats) -> bool:
@@ -199,27 +200,26 @@ class WallCloud:
         apart, spread = self._innovations(sighting)
         inverse = np.linalg.inv(spread)
         self._log_weights = self._log_weights - 0.5 * ((apart @ inverse) * apart).sum(axis=1)
-        gain = sighting.slow_m * self._slow_covariance @ inverse
+        observe = slow_errors(sighting)
+        gain = self._slow_covariance @ observe.T @ inverse
         self._slow += apart @ gain.T
-        self._slow_covariance = (
-            self._slow_covariance - sighting.slow_m * gain @ self._slow_covariance
-        )
+        self._slow_covariance = self._slow_covariance - gain @ observe @ self._slow_covariance
         self._moments = None
         self._draw_anew()
 
     def moments(self) -> tuple[Floats, Floats]:
-        """Mean (7,) and covariance (7, 7) in the state of ``HorizontalFilter``."""
+        """Mean (9,) and covariance (9, 9) in the state of ``HorizontalFilter``."""
         if self._moments is None:
             weights, guesses = _normal(self._log_weights), self._guesses
-            states = np.empty((GUESSES, 7))
+            states = np.empty((GUESSES, 9))
             states[:, :2] = guesses[:, :2]
             states[:, 2], states[:, 3] = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
             states[:, 2:4] *= self._scale
-            states[:, 4:6], states[:, 6] = self._slow, guesses[:, 3]
+            states[:, 4:8], states[:, 8] = self._slow, guesses[:, 3]
             mean = weights @ states
             apart = states - mean
             covariance = (apart * weights[:, None]).T @ apart
-            covariance[4:6, 4:6] += self._slow_covariance
+            covariance[4:8, 4:8] += self._slow_covariance
             covariance[[0, 1], [0, 1]] += FLOOR_VAR_M2
             self._moments = mean, covariance
         mean, covariance = self._moments
@@ -235,8 +235,9 @@ class WallCloud:
             sighting.since_north_m - self._pending[0], sighting.since_east_m - self._pending[1]
         )
         seen_m = np.array([sighting.north_m, sighting.east_m])
-        apart = seen_m + since_m - self._guesses[:, :2] - sighting.slow_m * self._slow
-        spread = sighting.slow_m**2 * self._slow_covariance + sighting.white_m2 * np.eye(2)
+        observe = slow_errors(sighting)
+        apart = seen_m + since_m - self._guesses[:, :2] - self._slow @ observe.T
+        spread = observe @ self._slow_covariance @ observe.T + sighting.white_m2 * np.eye(2)
         return apart, spread
 
     def _turned(self, north_m: float, east_m: float) -> Floats:

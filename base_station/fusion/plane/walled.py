@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from base_station.fusion.kernels import Placed, placed_before
 from base_station.fusion.plane.compassed import CompassedFilter, SavedCompassed
 from base_station.fusion.plane.heading_bank import Sighting
-from base_station.fusion.plane.horizontal import turn_of
+from base_station.fusion.plane.horizontal import DRIFT, place_then, turn_of
 from base_station.fusion.plane.wall_cloud import SavedCloud, WallCloud
 from base_station.fusion.port import Bearing
 from base_station.fusion.told import told
@@ -92,10 +92,10 @@ class WalledFilter:
     def drift_std_radps(self) -> float:
         """Of what is known of the own heading's drift rate."""
         _, covariance = self.moments()
-        return math.sqrt(max(float(covariance[6, 6]), 0.0))
+        return math.sqrt(max(float(covariance[DRIFT, DRIFT]), 0.0))
 
     def moments(self) -> tuple[Floats, Floats]:
-        """Mean (7,) and covariance (7, 7) of the state of ``HorizontalFilter``."""
+        """Mean (9,) and covariance (9, 9) of the state of ``HorizontalFilter``."""
         return self._plain.moments() if self._cloud is None else self._cloud.moments()
 
     def placed_before(self, north_m: float, east_m: float) -> Placed:
@@ -211,10 +211,10 @@ class WalledFilter:
         if self._cloud is not None:
             self._cloud.spread(variance_m2)
 
-    def fade(self, keep: float) -> None:
-        self._plain.fade(keep)
+    def fade(self, keeps: Floats) -> None:
+        self._plain.fade(keeps)
         if self._cloud is not None:
-            self._cloud.fade(keep)
+            self._cloud.fade(keeps)
 
     def distance2(self, sighting: Sighting) -> float:
         """To what is believed; or, if nearer, to what would be without a compass."""
@@ -238,13 +238,3 @@ class WalledFilter:
             self._plain.adopt(*self._cloud.moments())
             self._cloud = None
         self._plain.reframe(turn_rad, north_m, east_m)
-
-
-def place_then(north_m: float, east_m: float) -> Floats:
-    """(2, 7): the place before this much of own path was walked, by the present state."""
-    return np.array(
-        [
-            [1.0, 0.0, -north_m, east_m, 0.0, 0.0, 0.0],
-            [0.0, 1.0, -east_m, -north_m, 0.0, 0.0, 0.0],
-        ]
-    )

@@ -117,7 +117,7 @@ class HeightFilter:
 
     def correct(self, down_m: float, std_m: float) -> None:
         """Take a fix's height, unless it cannot be true."""
-        part = self._kind.wander_part
+        part = self._kind.height_slow_part
         observe = np.array([[1.0, std_m * math.sqrt(part), 0.0]])
         noise_m2 = std_m**2 * (1.0 - part)
         innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
