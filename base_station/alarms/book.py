@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from base_station.alarms.port import SOON, AlarmRule, Clear, Finding, Verdict
+from base_station.alarms.port import SOON, AlarmRule, Clear, Finding
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -59,7 +59,9 @@ class AlarmBook:
                     f"{error!r}",
                 )
                 continue
-            changed = self._follow(state, rule, key, unit.unit_id, verdict)
+            if verdict is None or (current is None and isinstance(verdict, Clear)):
+                continue
+            changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
                 yield changed
 
@@ -110,11 +112,14 @@ class AlarmBook:
                 alarm.text = FORGOTTEN
 
     def _follow(
-        self, state: StationState, rule: AlarmRule, key: str, unit_id: str, verdict: Verdict
+        self,
+        state: StationState,
+        rule: AlarmRule,
+        key: str,
+        unit_id: str,
+        current: Alarm | None,
+        verdict: Finding | Clear,
     ) -> Alarm | None:
-        current = state.alarms.get(key)
-        if verdict is None:
-            return None
         if isinstance(verdict, Clear):
             return None if current is None else _clear(state, rule, current, verdict)
         if current is None or (not current.is_open and _is_new(state, rule, current, verdict)):

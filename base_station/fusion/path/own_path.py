@@ -15,6 +15,7 @@ from shared.messages import Position
 from shared.quality import Quality
 
 MOVING_MPS = 0.1
+TURN_SEEN_M = 0.1  # of way that has a direction
 LEARNT_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
 SUDDEN = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 
@@ -40,15 +41,36 @@ class OwnPath(msgspec.Struct):
 
     def stretch(self, kind: Parameters, last: Position | None, position: Position) -> Stretch:
         """From ``last``, or from the frame's origin, to ``position``."""
+        north_m, east_m, down_m = position.north_m, position.east_m, position.down_m
+        duration_s = sudden_var = doubt_m2 = 0.0
         if last is None:
             self.first_heading_std_rad, self.moving_s = position.heading_std_rad, 0.0
-            return self._stretch(kind, position.north_m, position.east_m, position.down_m, 0.0)
-        duration_s = (position.header.t_mono_ns - last.header.t_mono_ns) / NS_PER_S
-        north_m, east_m = position.north_m - last.north_m, position.east_m - last.east_m
-        down_m = position.down_m - last.down_m
-        sudden_var = self._sudden_var(kind, last, position, duration_s)
-        doubt_m2 = 0.0 if position.quality is Quality.GOOD else _added_m2(last, position)
-        return self._stretch(kind, north_m, east_m, down_m, duration_s, sudden_var, doubt_m2)
+        else:
+            north_m, east_m, down_m = (
+                north_m - last.north_m,
+                east_m - last.east_m,
+                down_m - last.down_m,
+            )
+            duration_s = (position.header.t_mono_ns - last.header.t_mono_ns) / NS_PER_S
+            if position.heading_std_rad > last.heading_std_rad:
+                sudden_var = self._sudden_var(kind, last, position, duration_s)
+            if position.quality is not Quality.GOOD:
+                doubt_m2 = _added_m2(last, position)
+        length_m = math.hypot(north_m, east_m)
+        moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
+        self.moving_s += moving_s
+        turned_rad = self._turned(north_m, east_m) if length_m >= TURN_SEEN_M else 0.0
+        return Stretch(
+            north_m,
+            east_m,
+            down_m,
+            length_m,
+            moving_s,
+            kind.walk_m_per_sqrt_m**2 * length_m + doubt_m2,
+            kind.turn_rad_per_sqrt_m**2 * length_m
+            + sudden_var
+            + (kind.turn_part * turned_rad) ** 2,
+        )
 
     def drift_radps(self, kind: Parameters, position: Position) -> float:
         """How fast its heading may drift, by what the unit itself says."""
@@ -58,37 +80,15 @@ class OwnPath(msgspec.Struct):
         stated_radps = kind.drift_doubt * grown_rad / self.moving_s
         return min(max(stated_radps, kind.drift_least_radps), kind.drift_most_radps)
 
-    def _stretch(
-        self,
-        kind: Parameters,
-        north_m: float,
-        east_m: float,
-        down_m: float,
-        duration_s: float,
-        sudden_var: float = 0.0,
-        doubt_m2: float = 0.0,
-    ) -> Stretch:
-        length_m = math.hypot(north_m, east_m)
-        moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
-        self.moving_s += moving_s
-        turn_var = kind.turn_rad_per_sqrt_m**2 * length_m + sudden_var
-        turn_var += (kind.turn_part * self._turned(north_m, east_m, length_m)) ** 2
-        place_var_m2 = kind.walk_m_per_sqrt_m**2 * length_m + doubt_m2
-        return Stretch(north_m, east_m, down_m, length_m, moving_s, place_var_m2, turn_var)
-
     def _sudden_var(
         self, kind: Parameters, last: Position, position: Position, duration_s: float
     ) -> float:
         """What the unit says of its heading beyond its drift."""
         grown = position.heading_std_rad**2 - last.heading_std_rad**2
-        if grown <= 0.0:
-            return 0.0
         usual_rad = SUDDEN * self.drift_radps(kind, last) * duration_s
         return max(0.0, grown - 2.0 * position.heading_std_rad * usual_rad)
 
-    def _turned(self, north_m: float, east_m: float, length_m: float) -> float:
-        if length_m < 0.1:
-            return 0.0
+    def _turned(self, north_m: float, east_m: float) -> float:
         step_rad = math.atan2(east_m, north_m)
         last_rad, self.last_step_rad = self.last_step_rad, step_rad
         return 0.0 if last_rad is None else abs(wrap_pi(step_rad - last_rad))
