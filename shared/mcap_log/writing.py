@@ -16,7 +16,12 @@ from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.folder import segment_number, segment_path
 from shared.mcap_log.making import ChunkMaker, McapFile, bytes_of
-from shared.mcap_log.schemas import DERIVED, descriptor_set, sender_time_and_sequence, wire_type_of
+from shared.mcap_log.schemas import (
+    descriptor_set,
+    is_derived,
+    sender_time_and_sequence,
+    wire_type_of,
+)
 
 _ENCODING = "protobuf"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
@@ -61,7 +66,7 @@ class Segment:
         self._chunk = ChunkMaker()
         self._chunk_bytes = chunk_bytes
         self._schemas: dict[str, int] = {}
-        self._topics: dict[str, int] = {}
+        self._topics: dict[str, tuple[int, bool]] = {}  # by key, and whether it counts as a message
         self.index_entries = 0
         self.start_ns = 0
         self.end_ns = 0
@@ -72,17 +77,14 @@ class Segment:
         return self._mcap.file
 
     def add(self, t_ns: int, key: str, payload: bytes) -> None:
-        topic = self._topics.get(key)
-        if topic is None:
-            topic = self._register(key)
+        topic, counts = self._topics.get(key) or self._register(key)
         said_ns, sequence = sender_time_and_sequence(payload)
         self._chunk.add_message(topic, t_ns, payload, said_ns or t_ns, sequence)
         if self._chunk.size > self._chunk_bytes:
             self.end_chunk()
         self.start_ns = self.start_ns or t_ns
         self.end_ns = max(self.end_ns, t_ns)
-        if not key.startswith(DERIVED):
-            self.messages += 1
+        self.messages += counts
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""
@@ -105,15 +107,16 @@ class Segment:
             self.file.path, state, self.start_ns, self.end_ns, self.messages, self.file.tell()
         )
 
-    def _register(self, key: str) -> int:
+    def _register(self, key: str) -> tuple[int, bool]:
         wire_type = wire_type_of(key)
         schema = 0 if wire_type is None else self._schema_of(wire_type)
-        topic = self._topics[key] = len(self._topics) + 1
+        topic = len(self._topics) + 1
+        registered = self._topics[key] = topic, not is_derived(key)
         encoding = "" if wire_type is None else _ENCODING
         record = bytes_of(Channel(topic, key, encoding, {}, schema))
         self._mcap.topics[topic] = record
         self._chunk.add_record(record)
-        return topic
+        return registered
 
     def _schema_of(self, wire_type: Any) -> int:
         name = wire_type.DESCRIPTOR.full_name
