@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.path.straight import Straight
 from base_station.fusion.port import Estimate, PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.geo import rotate
@@ -107,6 +108,7 @@ class PathHistory(msgspec.Struct):
     packed_fixes: bytes = b""
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
+    straight: Straight = msgspec.field(default_factory=Straight)  # since the last settled point
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
 
     @property
@@ -144,11 +146,13 @@ class PathHistory(msgspec.Struct):
             return
         tip = self.points[-1]
         before_ns, before_north_m, before_east_m = tip.t_ns, tip.north_m, tip.east_m
-        if self._is_settled(tip, flags):
+        t_ns = max(t_ns, before_ns + 1)
+        if self._is_settled(tip, flags) or not self._goes_straight_to(position, t_ns):
             tip = self._begin_point(tip)
-        tip.t_ns = max(t_ns, before_ns + 1)
+        tip.t_ns = t_ns
         tip.flags |= flags
         _follow(tip, position)
+        self._pass_by(tip)
         if not flags & (BREAK | RESTART):
             stepped_m = abs(tip.north_m - before_north_m) + abs(tip.east_m - before_east_m)
             if stepped_m > MOVING_M:
@@ -170,6 +174,7 @@ class PathHistory(msgspec.Struct):
         late.flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
         _follow(late, position)
         self.points.insert(row, late)
+        self.straight = Straight()
 
     def show(self, estimate: Estimate, floor: int | None) -> None:
         """What is estimated at the newest point without any pin."""
@@ -260,8 +265,21 @@ class PathHistory(msgspec.Struct):
             or tip.t_ns - before.t_ns >= STEP_NS
         )
 
+    def _goes_straight_to(self, position: Position, t_ns: int) -> bool:
+        """Whether all since the last settled point was on the way there, at one pace."""
+        before = self.points[-2]
+        after_s = (t_ns - before.t_ns) / NS_PER_S
+        north_m, east_m = position.north_m - before.north_m, position.east_m - before.east_m
+        return self.straight.leads_to(north_m, east_m, after_s)
+
+    def _pass_by(self, tip: Point) -> None:
+        before = self.points[-2]
+        after_s = (tip.t_ns - before.t_ns) / NS_PER_S
+        self.straight.pass_by(tip.north_m - before.north_m, tip.east_m - before.east_m, after_s)
+
     def _begin_point(self, tip: Point) -> Point:
         """A new tip; until it is estimated, it is shown where the last one was."""
+        self.straight = Straight()
         begun = _shown_as(tip)
         self.points.append(begun)
         if len(self.points) >= 2 * CHUNK:
