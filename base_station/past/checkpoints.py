@@ -1,7 +1,9 @@
 """The pipeline's state as files, one now and then, so that neither a restart nor a seek in a
 replay has to step the whole log.
 
-They are a cache: a file that is torn, older than the program or missing only costs time.
+They are a cache: a file that is torn, of another version of the program or missing only costs
+time.  What the parts of the state look like inside is known to nobody here, so any other program
+text counts as another version.
 """
 
 from __future__ import annotations
@@ -12,6 +14,8 @@ from pathlib import Path
 import msgspec
 import zstandard
 
+import base_station
+import shared
 from base_station.pipeline import Checkpoint, read_checkpoint
 from shared.clock import NS_PER_S
 
@@ -34,8 +38,8 @@ class _File(msgspec.Struct, frozen=True, array_like=True):
     t_ns: int
     events_at_t: int
     crc32: int
-    pipeline: bytes
-    packed: bool = False  # with zstd; the checksum is of what is packed
+    pipeline: bytes  # packed with zstd; the checksum is of that
+    program: int = 0  # checksum of the program's text
 
 
 class Checkpoints:
@@ -43,6 +47,7 @@ class Checkpoints:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._program = _program()
         folder.mkdir(parents=True, exist_ok=True)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
@@ -50,7 +55,7 @@ class Checkpoints:
         packed = zstandard.ZstdCompressor(level=1).compress(
             pipeline
         )  # an hour of a hundred units is 27 MB as it is
-        file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, packed=True)
+        file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, self._program)
         content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"
         part = path.with_suffix(".part")
@@ -67,7 +72,7 @@ class Checkpoints:
     def latest(self, until_ns: int | None = None) -> SavedState | None:
         """The newest usable one, at or before ``until_ns`` where that is given."""
         for path in reversed(self._paths(until_ns)):
-            saved = _read(path)
+            saved = _read(path, self._program)
             if saved is not None:
                 return saved
         return None
@@ -92,16 +97,21 @@ class Checkpoints:
             old[-1].unlink(missing_ok=True)
 
 
-def _read(path: Path) -> SavedState | None:
+def _program() -> int:
+    """Over the text of everything that a state may come from."""
+    total = 0
+    for package in (base_station, shared):
+        for path in sorted(Path(package.__path__[0]).rglob("*.py")):
+            total = zlib.crc32(path.read_bytes(), total)
+    return total
+
+
+def _read(path: Path, program: int) -> SavedState | None:
     try:
         file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
     except (OSError, msgspec.MsgspecError, UnicodeDecodeError):
         return None
-    if zlib.crc32(file.pipeline) != file.crc32:
+    if file.program != program or zlib.crc32(file.pipeline) != file.crc32:
         return None
-    checkpoint = read_checkpoint(_unpacked(file))
+    checkpoint = read_checkpoint(zstandard.ZstdDecompressor().decompress(file.pipeline))
     return SavedState(file.t_ns, file.events_at_t, checkpoint) if checkpoint else None
-
-
-def _unpacked(file: _File) -> bytes:
-    return zstandard.ZstdDecompressor().decompress(file.pipeline) if file.packed else file.pipeline
