@@ -17,13 +17,21 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.core.types import UniTuple, float64, void
+from numba.core.types import UniTuple, boolean, float64, void
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
 _DRIFT = 8
 _LEAST_SCALE2 = 0.05  # of a state whose turn means anything
+
+# What ``climb`` remembers of the own path.
+LEVEL_M = 0  # walked since it last climbed
+CLIMBED_M = 1  # net, in these metres
+SETTLED_M2 = 2  # the unit's own variance of its height when its wearer last walked
+DOUBT_M2 = 3  # by how much it is larger now
+RODE_M = 4  # climbed while the wearer rests
+PATH = 5
 
 
 class Placed(NamedTuple):
@@ -51,6 +59,7 @@ class Placed(NamedTuple):
 
 
 _VECTOR, _MATRIX = float64[:], float64[:, :]  # of any layout: filterpy makes new ones
+_THREE = UniTuple(float64, 3)  # type: ignore[no-untyped-call]
 _PLACED = UniTuple(float64, len(Placed._fields))  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
@@ -117,11 +126,41 @@ def walk(
     mean[2, 0], mean[3, 0] = c, s
 
 
-@_compiled(void(_MATRIX, _MATRIX, float64, float64))
-def climb(mean: Floats, covariance: Floats, down_m: float, added_m2: float) -> None:
-    """The own height went on: the state of ``HeightFilter`` is predicted."""
+@_compiled(void(_MATRIX, _MATRIX, _VECTOR, _THREE, boolean, _THREE))
+def climb(
+    mean: Floats,
+    covariance: Floats,
+    path: Floats,
+    stretch: tuple[float, float, float],
+    moves: bool,
+    how: tuple[float, float, float],
+) -> None:
+    """The own height went on: the state of ``HeightFilter`` is predicted.
+
+    ``stretch``: metres down, metres walked, and how sure the unit is of its height; ``moves``:
+    whether its wearer goes anywhere; ``how``: the variance by metre climbed and by metre walked,
+    and the climb that changes floor.  ``path`` (PATH,) is what is remembered of stretches before:
+    a unit that rests and grows less sure of its height may be riding a lift.
+    """
+    down_m, walked_m, own_std_m = stretch
+    per_climb_m2, per_walk_m2, level_m = how
+    grown_m2 = max(0.0, own_std_m * own_std_m - path[SETTLED_M2])
+    ridden_m2 = 0.0
+    if moves:
+        ridden_m2 = grown_m2  # what is left of a ride that is over
+        path[SETTLED_M2] = own_std_m * own_std_m
+        path[DOUBT_M2] = path[RODE_M] = 0.0
+    else:
+        path[DOUBT_M2] = grown_m2
+        path[RODE_M] += down_m
+    stairs_m2 = per_climb_m2 * abs(down_m) + per_walk_m2 * walked_m
     mean[0, 0] += down_m
-    covariance[0, 0] += added_m2
+    if path[DOUBT_M2] < stairs_m2:  # else the unit knows of the ride, and how well
+        covariance[0, 0] += max(stairs_m2, ridden_m2)
+    path[LEVEL_M] += walked_m
+    path[CLIMBED_M] += down_m
+    if abs(path[CLIMBED_M]) > level_m:
+        path[LEVEL_M] = path[CLIMBED_M] = 0.0
 
 
 @_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64))

@@ -119,12 +119,46 @@ def test_arrays_of_any_layout_will_do() -> None:
         kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
 
 
+def climb(
+    mean: Floats,
+    covariance: Floats,
+    path: Floats,
+    stretch: tuple[float, float, float],
+    *,
+    moves: bool = True,
+) -> None:
+    """0.05 m2 a metre climbed, 0.005 a metre walked, storeys change by half a metre."""
+    kernels.climb(mean, covariance, path, stretch, moves, (0.05, 0.005, 0.5))
+
+
 def test_a_climb_is_filterpy_s_prediction() -> None:
     expected = filter_of(3, 4)
     mean, covariance = expected.x.copy(), expected.P.copy()
-    kernels.climb(mean, covariance, -0.3, 0.02)
+    climb(mean, covariance, np.zeros(kernels.PATH), (-0.3, 1.0, 0.0))
     expected.predict(
         u=np.array([[-0.3]]), B=np.eye(3)[:, :1], F=np.eye(3), Q=np.diag([0.02, 0.0, 0.0])
     )
     same(mean, expected.x)
     same(covariance, expected.P)
+
+
+def test_a_ride_that_the_unit_feels_is_doubt_until_its_wearer_walks() -> None:
+    mean, covariance, path = np.zeros((3, 1)), np.zeros((3, 3)), np.zeros(kernels.PATH)
+    climb(mean, covariance, path, (0.0, 1.0, 0.2))
+    climb(mean, covariance, path, (-3.0, 0.0, 0.7), moves=False)
+    assert path[kernels.DOUBT_M2] == pytest.approx(0.7**2 - 0.2**2)
+    assert path[kernels.RODE_M] == -3.0
+    assert covariance[0, 0] == pytest.approx(0.2**2)  # beside the doubt
+    climb(mean, covariance, path, (0.0, 1.0, 0.7))
+    assert path[kernels.DOUBT_M2] == path[kernels.RODE_M] == 0.0
+    assert covariance[0, 0] == pytest.approx(0.7**2)
+    assert mean[0, 0] == -3.0
+
+
+def test_who_climbs_has_not_walked_on_the_level() -> None:
+    mean, covariance, path = np.zeros((3, 1)), np.zeros((3, 3)), np.zeros(kernels.PATH)
+    for _ in range(4):
+        climb(mean, covariance, path, (-0.1, 2.0, 0.0))
+    assert path[kernels.LEVEL_M] == pytest.approx(8.0)
+    climb(mean, covariance, path, (-0.2, 1.0, 0.0))
+    assert path[kernels.LEVEL_M] == 0.0

@@ -35,8 +35,7 @@ class SavedHeight(msgspec.Struct, frozen=True):
     x: list[float]
     covariance: list[list[float]]
     air_t_mono_ns: int | None
-    level_m: float
-    climbed_m: float
+    path: list[float]
     rides: Rides
 
 
@@ -48,8 +47,7 @@ class HeightFilter:
     def __init__(self, kind: Parameters) -> None:
         self._kind = kind
         self._air_t_mono_ns: int | None = None  # None: the shift is not known yet
-        self._level_m = 0.0  # walked since the path last climbed
-        self._climbed_m = 0.0  # net, in the last metres
+        self._path = np.zeros(kernels.PATH)  # how the own path climbed: ``kernels.climb``
         self._rides = Rides()
         self._filter = KalmanFilter(dim_x=3, dim_z=1)
         self._filter.x = np.zeros((3, 1))
@@ -57,16 +55,14 @@ class HeightFilter:
 
     def save(self) -> SavedHeight:
         state, covariance = self._filter.x.ravel().tolist(), self._filter.P.tolist()
-        return SavedHeight(
-            state, covariance, self._air_t_mono_ns, self._level_m, self._climbed_m, self._rides
-        )
+        path = self._path.tolist()
+        return SavedHeight(state, covariance, self._air_t_mono_ns, path, self._rides)
 
     def load(self, saved: SavedHeight) -> None:
         self._filter.x = np.array(saved.x).reshape(3, 1)
         self._filter.P = np.array(saved.covariance)
         self._air_t_mono_ns = saved.air_t_mono_ns
-        self._level_m, self._climbed_m = saved.level_m, saved.climbed_m
-        self._rides = saved.rides
+        self._path, self._rides = np.array(saved.path), saved.rides
 
     @property
     def down_m(self) -> float:
@@ -74,11 +70,11 @@ class HeightFilter:
 
     @property
     def variance_m2(self) -> float:
-        return float(self._filter.P[0, 0]) + self._rides.doubt_m2
+        return float(self._filter.P[0, 0]) + float(self._path[kernels.DOUBT_M2])
 
     @property
     def walked_level(self) -> bool:
-        return self._level_m > self._kind.level_walk_m
+        return bool(self._path[kernels.LEVEL_M] > self._kind.level_walk_m)
 
     def begin(self, down_m: float, std_m: float) -> None:
         """Known anew; the barometer's shift is to be found again."""
@@ -97,16 +93,17 @@ class HeightFilter:
         """The own height went on by this much; ``own_std_m`` is how sure the unit is of it, and
         ``moves`` whether its wearer goes anywhere.
         """
-        ridden_m2 = self._rides.follow(own_std_m, down_m, moves=moves)
-        stairs_m2 = climb_var_m2(self._kind, down_m, walked_m)
-        # Else the unit knows of the ride, and how well.
-        unknown = self._rides.doubt_m2 < stairs_m2
-        added_m2 = max(stairs_m2, ridden_m2) if unknown else 0.0
-        kernels.climb(self._filter.x, self._filter.P, down_m, added_m2)
-        self._level_m += walked_m
-        self._climbed_m += down_m
-        if abs(self._climbed_m) > self._kind.level_m:
-            self._level_m = self._climbed_m = 0.0
+        kind = self._kind
+        kernels.climb(
+            self._filter.x,
+            self._filter.P,
+            self._path,
+            (down_m, walked_m, own_std_m),
+            moves,
+            (kind.climb_m_per_sqrt_climb_m**2, kind.climb_m_per_sqrt_m**2, kind.level_m),
+        )
+        if moves:
+            self._rides.felt.clear()
 
     def fade(self, keep: float) -> None:
         """Time went by for the fixes' slow error."""
@@ -140,14 +137,14 @@ class HeightFilter:
             kind.air_std_m**2,
             _GATE_STD**2,
         )
-        lifted_m = self._rides.feel(air)
+        lifted_m = self._rides.feel(air, float(self._path[kernels.RODE_M]))
         if lifted_m:  # in the height or in the barometer's shift: their sum is known
             self._filter.P += lifted_m**2 * _EITHER
 
     def rest_on(self, storeys_down_m: Sequence[float]) -> None:
         """Somebody in the building who walked on the level is on a storey."""
         kind = self._kind
-        self._level_m = 0.0
+        self._path[kernels.LEVEL_M] = 0.0
         if not storeys_down_m:
             return
         apart2 = np.square(np.array(storeys_down_m) - self.down_m)

@@ -25,25 +25,11 @@ JUMP = 0.6  # of the change at once: a door or a fan
 
 
 class Rides(msgspec.Struct):
-    settled_m2: float = 0.0  # the unit's own variance when its wearer last walked
-    doubt_m2: float = 0.0  # by how much it is larger now
-    climbed_m: float = 0.0  # by the own path since then
-    felt: list[tuple[int, float]] = msgspec.field(default_factory=list)  # heights since then
+    felt: list[tuple[int, float]] = msgspec.field(default_factory=list)  # heights while it rests
 
-    def follow(self, own_std_m: float, climbed_m: float, *, moves: bool) -> float:
-        """The own path went on; gives the variance that is left of a ride that is over."""
-        grown_m2 = max(0.0, own_std_m**2 - self.settled_m2)
-        if not moves:
-            self.doubt_m2 = grown_m2
-            self.climbed_m += climbed_m
-            return 0.0
-        self.settled_m2, self.doubt_m2, self.climbed_m = own_std_m**2, 0.0, 0.0
-        self.felt.clear()
-        return grown_m2
-
-    def feel(self, air: AirHeight) -> float:
-        """By how much the air says that somebody who stands was lifted, and the own path does
-        not; 0 where it does not say so.
+    def feel(self, air: AirHeight, climbed_m: float) -> float:
+        """By how much the air says that somebody who stands was lifted, and the own path, which
+        climbed by so much meanwhile, does not; 0 where it does not say so.
         """
         felt, now_ns = self.felt, air.t_mono_ns
         felt.append((now_ns, air.down_m))
@@ -56,7 +42,7 @@ class Rides(msgspec.Struct):
         last = [one[1] for one in takewhile(lambda one: now_ns - one[0] <= OVER_NS, reversed(felt))]
         goes_on = max(last) - min(last) > OVER_M or now_ns - begin_ns < BEGIN_NS + OVER_NS
         lifted_m = median(last) - median(first)
-        if goes_on or abs(lifted_m) < STOREY_M or abs(self.climbed_m) > CLIMBED_M:
+        if goes_on or abs(lifted_m) < STOREY_M or abs(climbed_m) > CLIMBED_M:
             return 0.0
         jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(felt))
         self.felt = [felt[-1]]
