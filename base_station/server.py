@@ -12,6 +12,7 @@ from pathlib import Path
 
 import uvicorn
 from starlette.types import ASGIApp
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from base_station import collector
 from shared.errors import ConfigError
@@ -20,6 +21,9 @@ _GRACE_S = 5
 _HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
 _LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
+_MOST_CONNECTIONS = 2000
+_MOST_OF_ONE = 500  # address: a proxy, or two hundred consoles behind one router
+_ASK_WITHIN_S = 10.0  # the head of a request
 
 
 class _Server(uvicorn.Server):
@@ -27,6 +31,45 @@ class _Server(uvicorn.Server):
     def capture_signals(self) -> Generator[None]:
         """Signals are the station's, which stops everything in order."""
         yield
+
+
+class _Connection(H11Protocol):
+    """Nobody takes all the station's connections, or holds one without asking anything."""
+
+    _deadline: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        host = self.client[0] if self.client else ""
+        hosts = (getattr(one, "client", None) or ("",) for one in self.connections)
+        same = sum(1 for one in hosts if one[0] == host)
+        if len(self.connections) > _MOST_CONNECTIONS or same > _MOST_OF_ONE:
+            transport.abort()
+        self._mind_deadline()
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        self._mind_deadline()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._end_deadline()
+        super().connection_lost(exc)
+
+    def _mind_deadline(self) -> None:
+        answering = getattr(self.cycle, "response_complete", True) is False
+        if answering:
+            self._end_deadline()
+        elif self._deadline is None:
+            self._deadline = self.loop.call_later(_ASK_WITHIN_S, self._give_up)
+
+    def _end_deadline(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def _give_up(self) -> None:
+        if self.transport.get_protocol() is self:  # else it is a WebSocket by now
+            self.transport.close()
 
 
 class ConsoleServer:
@@ -44,6 +87,7 @@ class ConsoleServer:
         self._scheme = "http" if certificate is None else "https"
         config = uvicorn.Config(
             app,
+            http=_Connection,
             ssl_certfile=certificate,
             ssl_keyfile=private_key,
             log_config=None,

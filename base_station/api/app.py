@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 from fastapi import Depends, FastAPI
 
 from base_station.api.console_files import serve_console
+from base_station.api.forms import MOST_BYTES
 from base_station.api.headers import SecurityHeaders
 from base_station.api.problems import ProblemDocument, handle_problems
 from base_station.api.routes import ROUTERS
@@ -16,7 +17,6 @@ from base_station.api.security import LoginThrottle, check_origin, check_standin
 from base_station.api.services import Services
 
 PREFIX = "/api/v1"
-MOST_BODY_BYTES = 12_000_000
 _SWEEP_S = 5.0
 _PROBLEMS = {
     code: {"model": ProblemDocument, "content": {"application/problem+json": {}}}
@@ -45,7 +45,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         docs_url=None,  # its pages would load from elsewhere
         redoc_url=None,
         dependencies=[Depends(check_origin), Depends(check_standing)],
-        max_body_size=MOST_BODY_BYTES,
+        max_body_size=MOST_BYTES,
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
     )
     app.state.services = services

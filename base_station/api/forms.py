@@ -13,6 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from base_station.db.records import FOREVER_NS, Window
 
 NS_PER_MS = 1_000_000
+MOST_BYTES = 65_536  # of a form
+MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
 LAST_MS = FOREVER_NS // NS_PER_MS
 
 _PRINTABLE = r"^[^\x00-\x1f\x7f]*$"

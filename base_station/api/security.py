@@ -7,16 +7,19 @@ something must come with the station's own ``Origin``.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import ipaddress
+from collections.abc import Callable, Collection, Coroutine
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Any
 from urllib.parse import urlsplit
 
-from fastapi import Depends, Request
+from fastapi import Depends, Request, Response
+from fastapi.routing import APIRoute
 from fastapi.security import APIKeyCookie, HTTPBearer
 from limits import parse
 from limits.storage import MemoryStorage
 from limits.strategies import MovingWindowRateLimiter
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from base_station.api.problems import Problem
@@ -45,12 +48,16 @@ def principal_of(connection: HTTPConnection, services: Services) -> Principal | 
 
 
 def is_own_origin(connection: HTTPConnection) -> bool:
-    """Whether the page that asks was served by this station; True where none is named."""
+    """Whether the page that asks was served by this station; True where none is named.
+
+    Over TLS a page that was not is another one, whatever its host.
+    """
     origin = connection.headers.get("origin")
     if origin is None:
         return True
-    host = connection.headers.get("host", "")
-    return urlsplit(origin).netloc == host and host != ""
+    host, asking = connection.headers.get("host", ""), urlsplit(origin)
+    schemes = {"https"} if services_of(connection).secure else {"http", "https"}  # behind a proxy
+    return asking.scheme in schemes and asking.netloc == host and host != ""
 
 
 def check_origin(connection: HTTPConnection) -> None:
@@ -86,12 +93,16 @@ def _signed_in(
 ) -> Principal:
     principal = principal_of(request, services)
     if principal is None:
-        raise Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
+        raise _nobody()
     tags = request.scope["route"].tags
     if not covers(principal, tags):
         allowed = ", ".join(sorted(principal.scopes))
         raise Problem(403, f"This token is for {allowed}, not for {', '.join(tags)}.")
     return principal
+
+
+def _nobody() -> Problem:
+    return Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
 
 
 Viewer = Annotated[Principal, Depends(_signed_in)]
@@ -115,6 +126,20 @@ def _at_least(principal: Principal, role: Role) -> Principal:
             403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
         )
     return principal
+
+
+class AfterLogin(APIRoute):
+    """A route with a large body, which is not read from just anybody."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        handle = super().get_route_handler()
+
+        async def checked(request: Request) -> Response:
+            if await run_in_threadpool(principal_of, request, services_of(request)) is None:
+                raise _nobody()
+            return await handle(request)
+
+        return checked
 
 
 class Scope(StrEnum):
@@ -155,11 +180,23 @@ class LoginThrottle:
 
     def check(self, address: str, username: str) -> None:
         """Count a try; Problem 429 where there were too many."""
-        allowed = self._limiter.hit(_LOGINS_OF_ALL, address) and self._limiter.hit(
-            _LOGINS_OF_ONE, address, username
+        place = _place_of(address)
+        allowed = self._limiter.hit(_LOGINS_OF_ALL, place) and self._limiter.hit(
+            _LOGINS_OF_ONE, place, username
         )
         if not allowed:
             raise Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
+
+
+def _place_of(address: str) -> str:
+    """One machine has as many addresses of an IPv6 network as it likes; they count as one."""
+    try:
+        parsed = ipaddress.ip_address(address.partition("%")[0])
+    except ValueError:
+        return address
+    if parsed.version == 6 and parsed.ipv4_mapped is None:
+        return str(ipaddress.ip_network((parsed, 64), strict=False))
+    return str(getattr(parsed, "ipv4_mapped", None) or parsed)
 
 
 def throttle_of(request: Request) -> LoginThrottle:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
+from threading import Lock
 from typing import Annotated
 
 from fastapi import Depends
@@ -47,6 +48,7 @@ class Services:
     recordings: RecordingDesk | None = None  # None: a station that only replays
     hindsight: Hindsight | None = None  # None: a station without a log
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
+    darkroom: Lock = field(default_factory=Lock)  # one picture at a time: each may take 400 MB
 
     def act(self, by: str, action: Action) -> ActionDone:
         """Have the drive take a person's action, and wait until it can be read everywhere.

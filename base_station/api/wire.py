@@ -236,6 +236,7 @@ class ReplayView(msgspec.Struct, frozen=True):
     at_ms: int
     speed: float
     playing: bool
+    seeking: bool = False  # on the way to ``at_ms``; what is shown is of another time
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sqlite3
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
@@ -10,8 +11,10 @@ import httpx
 import pytest
 import pytest_asyncio
 
+from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
+from base_station.api.problems import Problem
 from base_station.api.routes import ROUTERS
-from base_station.api.security import COOKIE, Scope
+from base_station.api.security import COOKIE, LoginThrottle, Scope
 from base_station.db.accounts import SESSION_S, Role
 from shared.clock import ManualClock
 from tests.station import ORIGIN, PASSWORD, DeskStation
@@ -85,6 +88,7 @@ async def test_every_route_but_the_login_wants_a_login(station: DeskStation) -> 
                     open_paths.add((method, path, answer.status_code))
     assert open_paths == {
         ("post", "/api/v1/login", 422),
+        ("post", "/api/v1/login/hand-over", 422),
         ("post", "/api/v1/logout", 204),
         ("get", "/api/v1/standby/leads", 200),  # asked by the other station's console
     }
@@ -175,11 +179,133 @@ async def test_security_headers_are_on_every_answer(station: DeskStation) -> Non
             assert headers["x-frame-options"] == "DENY"
 
 
-async def test_a_body_without_end_is_refused(browser: httpx.AsyncClient) -> None:
-    answer = await browser.post(
-        "/people", content=b"x" * 13_000_000, headers={"content-type": "application/json"}
-    )
+async def chunks(count: int) -> AsyncIterator[bytes]:
+    for _ in range(count):
+        yield bytes(100_000)
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "most"),
+    [
+        ("POST", "/people", MOST_BYTES),
+        ("PUT", "/site/plan", MOST_UPLOADED_BYTES),
+        ("PUT", "/people/x/photo", MOST_UPLOADED_BYTES),
+    ],
+)
+async def test_a_body_without_end_is_refused(
+    browser: httpx.AsyncClient, method: str, path: str, most: int
+) -> None:
+    length = {"content-type": "application/json"}
+    answer = await browser.request(method, path, content=b"x" * (most + 1), headers=length)
     assert answer.status_code == 413
+    unsaid = await browser.request(method, path, content=chunks(most // 100_000 + 1))
+    assert unsaid.status_code == 413
+
+
+@pytest.mark.parametrize("path", ["/site/plan", "/people/x/photo", "/site/base-map?world=1"])
+async def test_nobody_who_is_not_logged_in_has_a_large_body_read(
+    station: DeskStation, path: str
+) -> None:
+    read = 0
+
+    async def body() -> AsyncIterator[bytes]:
+        nonlocal read
+        for _ in range(100):
+            read += 1
+            yield bytes(100_000)
+
+    async with station.client() as client:
+        assert (await client.put(path, content=body())).status_code == 401
+    assert read <= 1
+
+
+@pytest.mark.parametrize("bomb", ["[" * 60_000, '{"a":' * 10_000, "9" * 60_000, '"\\ud800"'])
+async def test_json_that_is_a_trap_is_refused(browser: httpx.AsyncClient, bomb: str) -> None:
+    for path in ("/people", "/commands", "/tokens"):
+        assert (await browser.post(path, content=bomb)).status_code in (400, 422)
+    assert (await browser.put("/site/plan", content=bomb)).status_code in (400, 422)
+
+
+async def test_a_login_ends_the_one_before_it_in_the_same_browser(
+    browser: httpx.AsyncClient,
+) -> None:
+    before = browser.cookies[COOKIE]
+    credentials = {"username": "viewer", "password": PASSWORD}
+    assert (await browser.post("/login", json=credentials)).status_code == 200
+    after = browser.cookies[COOKIE]
+    assert after != before  # nobody chooses another's session
+    browser.cookies.clear()
+    browser.cookies.set(COOKIE, before, domain="station")
+    assert (await browser.get("/me")).status_code == 401
+
+
+async def test_a_new_password_ends_the_logins_elsewhere(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    async with station.client() as elsewhere:
+        credentials = {"username": "commander", "password": PASSWORD}
+        assert (await elsewhere.post("/login", json=credentials)).status_code == 200
+        changed = {"old_password": "wrong", "new_password": f"{PASSWORD} 2"}
+        assert (await browser.post("/me/password", json=changed)).status_code == 403
+        assert (await elsewhere.get("/me")).status_code == 200
+        changed["old_password"] = PASSWORD
+        assert (await browser.post("/me/password", json=changed)).status_code == 204
+        assert (await elsewhere.get("/me")).status_code == 401
+        assert (await browser.get("/me")).status_code == 401
+
+
+@pytest.mark.parametrize(
+    "addresses",
+    [
+        [f"2001:db8:1:2::{number:x}" for number in range(1, 13)],
+        [f"fe80::{number:x}%eth0" for number in range(1, 13)],
+        ["192.0.2.1", "::ffff:192.0.2.1"] * 6,
+    ],
+)
+def test_another_address_of_one_network_is_no_way_round_the_limit(addresses: list[str]) -> None:
+    throttle = LoginThrottle()
+    for address in addresses[:10]:
+        throttle.check(address, "commander")
+    with pytest.raises(Problem):
+        throttle.check(addresses[10], "commander")
+    throttle.check("2001:db8:1:3::1", "commander")
+
+
+async def test_headers_that_a_proxy_would_set_are_no_way_round_the_limit(
+    station: DeskStation,
+) -> None:
+    async with station.client() as client:
+        wrong = {"username": "commander", "password": "guess"}
+        answers = [
+            await client.post("/login", json=wrong, headers={"X-Forwarded-For": f"192.0.2.{one}"})
+            for one in range(11)
+        ]
+    assert answers[-1].status_code == 429
+
+
+async def test_over_tls_a_page_that_came_in_the_clear_changes_nothing(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    station.app.state.services = dataclasses.replace(station.services, secure=True)
+    assert (await browser.post("/logout")).status_code == 403
+    ours = {"origin": ORIGIN.replace("http:", "https:")}
+    assert (await browser.post("/logout", headers=ours)).status_code == 204
+
+
+async def test_a_login_goes_on_at_the_other_station_with_a_ticket_and_once(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    ticket = (await browser.post("/hand-over")).json()["ticket"]
+    async with station.client() as there:
+        there.headers["origin"] = ORIGIN
+        shown = {"ticket": ticket}
+        answer = await there.post("/login/hand-over", json=shown, headers={"origin": "http://x"})
+        assert answer.status_code == 403
+        assert (await there.post("/login/hand-over", json=shown)).json()["username"] == "commander"
+        assert (await there.get("/me")).json()["role"] == "commander"
+        assert (await there.post("/login/hand-over", json=shown)).status_code == 401
+    async with station.client(Role.COMMANDER) as program:  # its token is known there anyhow
+        assert (await program.post("/hand-over")).status_code == 403
 
 
 async def test_a_token_reaches_only_what_it_is_for(

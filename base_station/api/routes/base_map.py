@@ -7,14 +7,14 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel
 
-from base_station.api.forms import Id
+from base_station.api.forms import MOST_UPLOADED_BYTES, Id
 from base_station.api.photos import clean_map
 from base_station.api.problems import Problem
-from base_station.api.security import Administrator, Viewer
+from base_station.api.security import Administrator, AfterLogin, Viewer
 from base_station.api.services import Station
 from base_station.site.base_map import Corners, Crs, corners_of
 
-router = APIRouter(tags=["site"])
+router = APIRouter(tags=["site"], route_class=AfterLogin)
 
 LatLon = tuple[float, float]
 
@@ -34,7 +34,7 @@ def get_base_map(station: Station, _: Viewer) -> BaseMap | None:
     return None if found is None else _view(*found)
 
 
-@router.put("/site/base-map")
+@router.put("/site/base-map", max_body_size=MOST_UPLOADED_BYTES)
 def set_base_map(
     image: Annotated[bytes, Body(media_type="image/png")],
     world: Annotated[list[float], Query(min_length=6, max_length=6)],
@@ -45,7 +45,8 @@ def set_base_map(
     """PNG, JPEG or WebP, written anew without its metadata; ``world``: the numbers of its world
     file, in the order of its lines.
     """
-    webp, image_hash, (width_px, height_px), smaller = clean_map(image)
+    with station.darkroom:
+        webp, image_hash, (width_px, height_px), smaller = clean_map(image)
     a, d, b, e, c, f = world
     half = 0.5 * (smaller - 1.0)  # the middle of a larger pixel
     moved = [*(smaller * value for value in (a, d, b, e)), c + half * (a + b), f + half * (d + e)]

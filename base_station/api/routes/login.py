@@ -1,4 +1,4 @@
-"""Logging in and out, and who one is."""
+"""Logging in and out, who one is, and going on at the other station."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pydantic import BaseModel, StringConstraints
 from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import COOKIE, Throttle, Viewer
-from base_station.api.services import Station
-from base_station.db.accounts import SESSION_S, Principal
+from base_station.api.services import Services, Station
+from base_station.db.accounts import HAND_OVER_S, SESSION_S, Principal
 
 router = APIRouter(tags=["login"])
 
@@ -30,6 +30,17 @@ def _me(principal: Principal) -> Me:
     return Me(username=principal.username, role=principal.role.word)
 
 
+class Ticket(BaseModel):
+    """For the other station's console; whoever has it goes on there as who asked for it."""
+
+    ticket: str
+    lasts_s: int
+
+
+class ShownTicket(Form):
+    ticket: Annotated[str, StringConstraints(max_length=256)]
+
+
 @router.post("/login")
 def log_in(
     credentials: Credentials,
@@ -46,18 +57,53 @@ def log_in(
         station.records.audit(credentials.username, "LoginRefused", address)
         raise Problem(401, "Name or password is wrong.")
     station.records.audit(principal.username, "LoggedIn", address)
+    _give_cookie(request, response, station, secret)
+    return _me(principal)
+
+
+@router.post("/login/hand-over")
+def go_on(
+    shown: ShownTicket, request: Request, response: Response, station: Station, throttle: Throttle
+) -> Me:
+    """Log in with a ticket of the other station, once."""
+    address = request.client.host if request.client else ""
+    throttle.check(address, "")
+    secret = station.accounts.take_over(shown.ticket)
+    principal = None if secret is None else station.accounts.of_session(secret)
+    if secret is None or principal is None:
+        raise Problem(401, "This ticket is of no use (any more); log in.")
+    station.records.audit(principal.username, "WentOn", address)
+    _give_cookie(request, response, station, secret)
+    return _me(principal)
+
+
+def _give_cookie(request: Request, response: Response, station: Services, secret: str) -> None:
+    """In the place of the session that the browser had, which is over."""
+    before = request.cookies.get(COOKIE)
+    if before is not None:
+        station.accounts.log_out(before)
     response.set_cookie(
         COOKIE, secret, max_age=SESSION_S, httponly=True, secure=station.secure, samesite="strict"
     )
-    return _me(principal)
 
 
 @router.post("/logout", status_code=204)
 def log_out(request: Request, response: Response, station: Station) -> None:
     secret = request.cookies.get(COOKIE)
-    if secret is not None:
+    principal = None if secret is None else station.accounts.of_session(secret)
+    if secret is not None and principal is not None:
         station.accounts.log_out(secret)
+        station.records.audit(principal.username, "LoggedOut", "")
     response.delete_cookie(COOKIE, httponly=True, secure=station.secure, samesite="strict")
+
+
+@router.post("/hand-over")
+def hand_over(request: Request, station: Station, _: Viewer) -> Ticket:
+    """Consoles ask now and then, so that nobody need log in again when this station dies."""
+    ticket = station.accounts.hand_over(request.cookies.get(COOKIE, ""))
+    if ticket is None:
+        raise Problem(403, "A ticket is for who has logged in with a browser; a token holds there.")
+    return Ticket(ticket=ticket, lasts_s=HAND_OVER_S)
 
 
 @router.get("/me")

@@ -7,15 +7,15 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Response
 from pydantic import BaseModel
 
-from base_station.api.forms import Form, Id, Name, Word
+from base_station.api.forms import MOST_UPLOADED_BYTES, Form, Id, Name, Word
 from base_station.api.photos import clean_photo
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.db import models
 from shared.messages.station import Assign
 
-router = APIRouter(tags=["people"])
+router = APIRouter(tags=["people"], route_class=AfterLogin)
 
 _NO_PERSON = "There is no such person."
 
@@ -83,7 +83,7 @@ def remove_person(person_id: Id, station: Station, who: Commander) -> None:
     station.records.audit(who.username, "RemovedPerson", person_id)
 
 
-@router.put("/people/{person_id}/photo", status_code=204)
+@router.put("/people/{person_id}/photo", status_code=204, max_body_size=MOST_UPLOADED_BYTES)
 def set_photo(
     person_id: Id,
     photo: Annotated[bytes, Body(media_type="image/jpeg")],
@@ -93,7 +93,8 @@ def set_photo(
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
     if station.roster.person(person_id) is None:
         raise Problem(404, _NO_PERSON)
-    jpeg, photo_hash = clean_photo(photo)
+    with station.darkroom:
+        jpeg, photo_hash = clean_photo(photo)
     person = station.roster.set_photo(person_id, jpeg, photo_hash)
     if person is None:
         raise Problem(404, _NO_PERSON)

@@ -49,11 +49,13 @@ def list_replays(station: Station, _: Viewer) -> list[Replay]:
 
 
 @router.post("/replays", status_code=201)
-def start_replay(new: NewReplay, station: Station, _: Viewer, request: Request) -> Replay:
+def start_replay(new: NewReplay, station: Station, who: Viewer, request: Request) -> Replay:
     """It plays from its beginning; it ends by itself when nobody looks at it any more."""
     loop: asyncio.AbstractEventLoop = request.app.state.loop
     incident = incident_or_404(station, new.incident_id)
-    return _replay(station.replays.open(incident, new.speed, loop))
+    opened = station.replays.open(incident, new.speed, loop)
+    station.records.audit(who.username, "StartedReplay", new.incident_id)
+    return _replay(opened)
 
 
 @router.get("/replays/{replay_id}")

@@ -9,15 +9,15 @@ import msgspec
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
-from base_station.api.forms import Form
+from base_station.api.forms import MOST_UPLOADED_BYTES, Form
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Station
 from base_station.site.plan import read_plan
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 
-router = APIRouter(tags=["site"])
+router = APIRouter(tags=["site"], route_class=AfterLogin)
 
 
 class AnchorForm(Form):
@@ -62,7 +62,7 @@ def get_plan(station: Station, _: Viewer) -> Response:
     return Response(geojson, media_type="application/geo+json")
 
 
-@router.put("/site/plan", status_code=204)
+@router.put("/site/plan", status_code=204, max_body_size=MOST_UPLOADED_BYTES)
 def set_plan(plan: dict[str, Any], station: Station, who: Commander) -> None:
     """GeoJSON in site metres; the documentation of messages shows one."""
     try:

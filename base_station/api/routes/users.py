@@ -92,7 +92,7 @@ def change_own_password(
 ) -> None:
     """Ends all sessions of the user, this one too."""
     throttle.check("own password", who.username)
-    if station.accounts.log_in(who.username, change.old_password) is None:
+    if not station.accounts.is_right(who.username, change.old_password):
         raise Problem(403, "The old password is wrong.")
     station.accounts.change_user(who.username, change.new_password, None)
     station.records.audit(who.username, "ChangedOwnPassword", "")

@@ -1,0 +1,279 @@
+"""Every route of the API: who may, with which token, and that what changes something is audited."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import io
+from collections.abc import AsyncIterator, Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest_asyncio
+from fastapi.routing import APIRoute, APIWebSocketRoute
+from PIL import Image
+
+from base_station.api.routes import ROUTERS
+from base_station.api.security import Scope
+from base_station.api.wire import StandbyView
+from base_station.db.accounts import Role
+from base_station.db.records import Window
+from base_station.recordings.desk import RecordingDesk
+from shared.clock import ManualClock
+from shared.messages import EventKind, Header, UnitEvent
+from tests.station import ORIGIN, PASSWORD, DeskStation
+from tests.waiting import until
+
+V, C, A = Role
+NOBODY = None  # needs no login
+LEAST: dict[str, dict[str, Role | None]] = {
+    "login": {"POST /login": NOBODY, "POST /login/hand-over": NOBODY, "POST /logout": NOBODY,
+              "POST /hand-over": V, "GET /me": V},
+    "users": {"GET /users": A, "POST /users": A, "PUT /users/{username}": A,
+              "DELETE /users/{username}": A, "DELETE /users/{username}/sessions": A,
+              "POST /me/password": V},
+    "tokens": {"GET /tokens": V, "POST /tokens": V, "DELETE /tokens/{token_id}": V},
+    "people": {"GET /people": V, "POST /people": C, "GET /people/{person_id}": V,
+               "PUT /people/{person_id}": C, "DELETE /people/{person_id}": C,
+               "GET /people/{person_id}/photo": V, "PUT /people/{person_id}/photo": C},
+    "units": {"GET /units": V, "POST /units": C, "PUT /units/{unit_id}": C,
+              "PUT /units/{unit_id}/start": C, "PUT /reference-barometer": C},
+    "assignments": {"GET /assignments": V, "POST /assignments": C,
+                    "DELETE /assignments/{unit_id}": C},
+    "incidents": {"GET /incidents": V, "POST /incidents": C, "GET /incidents/{incident_id}": V,
+                  "POST /incidents/{incident_id}/close": C,
+                  "GET /incidents/{incident_id}/alarms": V,
+                  "GET /incidents/{incident_id}/assessment": V},
+    "tracks": {"GET /units/{unit_id}/track": V, "GET /incidents/{incident_id}/tracks": V,
+               "GET /incidents/{incident_id}/trails": V},
+    "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
+               "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
+    "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,
+                 "POST /commands/{command_id}/confirm": C},
+    "accountability": {"GET /accountability": V, "POST /check-ins": C,
+                       "PUT /incidents/{incident_id}/accountability": C,
+                       "PUT /units/{unit_id}/rest": C},
+    "site": {"GET /site/anchor": V, "PUT /site/anchor": C, "GET /site/plan": V,
+             "PUT /site/plan": C, "GET /site/base-map": V, "PUT /site/base-map": A,
+             "DELETE /site/base-map": A, "GET /site/base-map/{image_hash}": V},
+    "pins": {"GET /pins": V, "POST /pins": C, "POST /pins/start": C, "POST /pins/meeting": C,
+             "PUT /pins/{pin_id}": C, "DELETE /pins/{pin_id}": C, "GET /beacons": V,
+             "PUT /beacons/{beacon_id}": C, "DELETE /beacons/{beacon_id}": C},
+    "replays": {"GET /replays": V, "POST /replays": V, "GET /replays/{replay_id}": V,
+                "POST /replays/{replay_id}": V, "DELETE /replays/{replay_id}": V},
+    "recordings": {"GET /recordings": V, "POST /recordings": C,
+                   "DELETE /recordings/{fetch_id}": C},
+    "exports": {"GET /export-formats": V,
+                "GET /incidents/{incident_id}/export/{format_name}": V},
+    "forgetting": {"GET /forgettings": A, "POST /people/{person_id}/forget": A,
+                   "POST /incidents/{incident_id}/forget": A},
+    "health": {"GET /health": V},
+    "audit": {"GET /audit": A},
+    "standby": {"GET /standby": V, "GET /standby/leads": NOBODY, "POST /standby/take-over": C},
+}  # fmt: skip
+SOCKETS = {"/live", "/replays/{replay_id}/live"}
+# What leaves no entry: it changes nothing but what one looks at oneself.
+LOOKING_ON = {"POST /hand-over", "POST /replays/{replay_id}", "DELETE /replays/{replay_id}"}
+PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": []}
+Do = Callable[..., Awaitable[Any]]
+
+
+class Standing:
+    def view(self) -> StandbyView:
+        return StandbyView("a", "active", ORIGIN, "b", "standby", "", in_step=True)
+
+    def refusal(self) -> None:
+        return None
+
+    def take_over(self) -> None:
+        pass
+
+
+@pytest_asyncio.fixture
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    with RecordingDesk(lambda *_: None, tmp_path / "recordings", clock) as desk:
+        services = dataclasses.replace(station.services, recordings=desk, standing=Standing())
+        station.services = station.app.state.services = services
+        yield station
+    station.close()
+
+
+def concrete(path: str) -> str:
+    return path.replace("{format_name}", "csv").replace("{", "").replace("}", "")
+
+
+def test_the_tables_name_every_route_and_socket() -> None:
+    known = {
+        f"{method} {route.path}"
+        for router in ROUTERS
+        for route in router.routes
+        if isinstance(route, APIRoute)
+        for method in route.methods or ()
+    }
+    assert known == {route for routes in LEAST.values() for route in routes}
+    assert {
+        route.path
+        for router in ROUTERS
+        for route in router.routes
+        if isinstance(route, APIWebSocketRoute)
+    } == SOCKETS
+
+
+async def test_each_route_is_for_its_role_and_those_above_alone(station: DeskStation) -> None:
+    for role in (None, *Role):
+        async with station.client(role) as client:
+            for route, least in (one for routes in LEAST.values() for one in routes.items()):
+                method, path = route.split()
+                answer = await client.request(method, concrete(path))
+                if least is None:
+                    continue
+                if role is None:
+                    assert answer.status_code == 401, route
+                elif role < least:
+                    assert answer.status_code == 403, (route, role)
+                    assert "needs the role" in answer.json()["detail"], (route, role)
+                elif route != "POST /hand-over":  # which is for browsers
+                    assert answer.status_code not in (401, 403), (route, role)
+
+
+async def test_a_token_for_another_part_opens_no_route(station: DeskStation) -> None:
+    accounts = station.services.accounts
+    for tag, routes in LEAST.items():
+        others = {scope.value for scope in Scope} - {tag}
+        _, secret = accounts.add_token("administrator", "t", Role.ADMINISTRATOR, None, others)
+        async with station.client() as program:
+            program.headers["authorization"] = f"Bearer {secret}"
+            for route, least in routes.items():
+                method, path = route.split()
+                answer = await program.request(method, concrete(path))
+                if least is not None and tag != "login":
+                    assert answer.status_code == 403, route
+                    assert "This token is for" in answer.json()["detail"], route
+
+
+class Story:
+    """Somebody who does everything once, and looks what the audit says of it."""
+
+    def __init__(self, station: DeskStation, client: httpx.AsyncClient, clock: ManualClock) -> None:
+        self._station = station
+        self._clock = clock
+        self._client = client
+        self.done: set[str] = set()
+
+    async def do(self, route: str, body: object = None, query: str = "", **names: str) -> Any:
+        before = len(self._authors())
+        self._clock.advance(1.0)
+        method, path = route.split()
+        for name, value in names.items():
+            path = path.replace(f"{{{name}}}", value)
+        content: Any = {"content": body} if isinstance(body, bytes) else {"json": body}
+        answer = await self._client.request(method, path + query, **content)
+        assert answer.status_code < 300, (route, answer.text)
+        self.done.add(route)
+        if route not in LOOKING_ON:
+            until(lambda: len(self._authors()) > before, f"an entry of {route}", patience_s=5.0)
+            assert set(self._authors()[before:]) == {"administrator"}, route
+        return answer.json() if answer.content else None
+
+    def _authors(self) -> list[str]:
+        self._station.services.settle()
+        entries = self._station.services.records.audit_entries(2**62, 10_000)
+        return [entry.by for entry in sorted(entries, key=lambda one: one.number)]
+
+
+async def test_whatever_changes_something_is_in_the_audit(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    async with station.client() as client:
+        client.headers["origin"] = ORIGIN
+        story = Story(station, client, clock)
+        do = story.do
+        await do("POST /login", {"username": "administrator", "password": PASSWORD})
+        await act_on_accounts(do)
+        await act_on_an_incident(do, station)
+        await do("POST /standby/take-over")
+        ticket = (await do("POST /hand-over"))["ticket"]
+        await do("POST /login/hand-over", {"ticket": ticket})
+        changed = {"old_password": PASSWORD, "new_password": f"{PASSWORD} 2"}
+        await do("POST /me/password", changed)
+        await do("POST /login", {"username": "administrator", "password": f"{PASSWORD} 2"})
+        await do("POST /logout")
+    changing = {r for routes in LEAST.values() for r in routes if not r.startswith("GET")}
+    assert changing - story.done == {
+        # They need a log: test_served_past.py and test_forgetting.py look for their entries.
+        "POST /replays",
+        "POST /replays/{replay_id}",
+        "DELETE /replays/{replay_id}",
+        "POST /incidents/{incident_id}/forget",
+    }
+
+
+async def act_on_accounts(do: Do) -> None:
+    await do("POST /users", {"username": "mia", "password": PASSWORD, "role": "viewer"})
+    await do("PUT /users/{username}", {"role": "commander"}, username="mia")
+    await do("DELETE /users/{username}/sessions", username="mia")
+    await do("DELETE /users/{username}", username="mia")
+    token = await do("POST /tokens", {"name": "cot", "role": "viewer"})
+    await do("DELETE /tokens/{token_id}", token_id=token["token_id"])
+
+
+async def act_on_an_incident(do: Do, station: DeskStation) -> None:
+    unit, other = {"unit_id": "FF-01"}, {"unit_id": "FF-02"}
+    await do("POST /units", unit)
+    await do("POST /units", other)
+    await do("PUT /units/{unit_id}", {"label": "one"}, **unit)
+    person = (await do("POST /people", {"name": "Ada"}))["person_id"]
+    await do("PUT /people/{person_id}", {"name": "Bea"}, person_id=person)
+    await do("PUT /people/{person_id}/photo", picture(64), person_id=person)
+    await act_on_the_site(do)
+    incident = (await do("POST /incidents", {"name": "Fire"}))["incident_id"]
+    await do("POST /assignments", unit | {"person_id": person})
+    await do("PUT /units/{unit_id}/start", {"north_m": 1.0, "east_m": 2.0}, **unit)
+    await do("PUT /reference-barometer", other)
+    times = {"par_interval_s": 900.0, "work_limit_s": 1800.0}
+    await do("PUT /incidents/{incident_id}/accountability", times, incident_id=incident)
+    await do("PUT /units/{unit_id}/rest", {"resting": True}, **unit)
+    await do("POST /check-ins", {"target": {"everyone": True}})
+    told = await do("POST /commands", {"kind": "text", "text": "out", "target": unit})
+    await do("POST /commands/{command_id}/confirm", unit, command_id=told["command_id"])
+    await act_on_pins(do)
+    station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
+    station.services.settle()
+    (alarm, *_) = station.services.records.alarms(Window(0, 2**62))
+    await do("POST /alarms/{alarm_id}/acknowledge", alarm_id=alarm.alarm_id)
+    await do("POST /alarms/{alarm_id}/resolve", {}, alarm_id=alarm.alarm_id)
+    pull = await do("POST /recordings", unit | {"from_ms": 1_000, "to_ms": 2_000})
+    await do("DELETE /recordings/{fetch_id}", fetch_id=pull["fetch_id"])
+    await do("DELETE /assignments/{unit_id}", **unit)
+    await do("POST /incidents/{incident_id}/close", incident_id=incident)
+    await do("POST /people/{person_id}/forget", {"name": "Bea"}, person_id=person)
+    gone = (await do("POST /people", {"name": "Cy"}))["person_id"]
+    await do("DELETE /people/{person_id}", person_id=gone)
+
+
+async def act_on_the_site(do: Do) -> None:
+    await do("PUT /site/anchor", {"lat_deg": 48.0, "lon_deg": 11.0})
+    await do("PUT /site/plan", PLAN)
+    world = "?world=1e-5&world=0&world=0&world=-1e-5&world=11&world=48"
+    await do("PUT /site/base-map", picture(64), world)
+    await do("DELETE /site/base-map")
+
+
+async def act_on_pins(do: Do) -> None:
+    here = {"unit_id": "FF-01", "north_m": 1.0, "east_m": 2.0}
+    pin = (await do("POST /pins", here))["pin_id"]
+    await do("PUT /pins/{pin_id}", here | {"east_m": 3.0}, pin_id=pin)
+    await do("DELETE /pins/{pin_id}", pin_id=pin)
+    await do("POST /pins/start", {"unit_ids": ["FF-01"], "north_m": 1.0, "east_m": 2.0})
+    await do("POST /pins/meeting", {"unit_id": "FF-01", "other_unit_id": "FF-02"})
+    await do("PUT /beacons/{beacon_id}", {"north_m": 1.0, "east_m": 2.0}, beacon_id="b1")
+    await do("DELETE /beacons/{beacon_id}", beacon_id="b1")
+
+
+def picture(side_px: int) -> bytes:
+    written = io.BytesIO()
+    Image.new("RGB", (side_px, side_px)).save(written, "PNG")
+    return written.getvalue()

@@ -1,0 +1,64 @@
+"""Connections of whoever asks nothing: they end, and take nobody else's."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+
+import pytest
+import pytest_asyncio
+from starlette.responses import PlainTextResponse
+
+from base_station import server
+from base_station.server import ConsoleServer, bind
+
+GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
+Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
+
+
+@pytest_asyncio.fixture
+async def port(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[int]:
+    monkeypatch.setattr(server, "_ASK_WITHIN_S", 0.3)
+    monkeypatch.setattr(server, "_MOST_OF_ONE", 5)
+    listening = bind("127.0.0.1", 0)
+    serving = ConsoleServer(PlainTextResponse("here"), listening)
+    task = asyncio.create_task(serving.serve())
+    await serving.wait_started()
+    yield listening.getsockname()[1]
+    serving.stop()
+    await task
+
+
+async def connect(port: int) -> Stream:
+    return await asyncio.open_connection("127.0.0.1", port)
+
+
+async def answer_of(stream: Stream) -> bytes:
+    return (await stream[0].readuntil(b"here"))[:15]
+
+
+async def test_who_asks_nothing_or_half_a_question_is_let_go(port: int) -> None:
+    nothing, half, slow = [await connect(port) for _ in range(3)]
+    half[1].write(GET)
+    slow[1].write(GET + b"\r\n")
+    assert await answer_of(slow) == b"HTTP/1.1 200 OK"
+    slow[1].write(GET)  # half a second question on a connection that was good
+    for stream in (nothing, half, slow):
+        async with asyncio.timeout(5.0):
+            assert await stream[0].read() == b""
+        stream[1].close()
+
+
+async def test_one_address_has_only_so_many(port: int) -> None:
+    streams = [await connect(port) for _ in range(8)]
+    for _, writer in streams:
+        writer.write(GET + b"\r\n")
+    answers = await asyncio.gather(*map(answer_of, streams), return_exceptions=True)
+    assert sum(isinstance(one, bytes) for one in answers) == 5
+    for _, writer in streams:
+        writer.close()
+    await asyncio.sleep(0.1)
+    stream = await connect(port)
+    stream[1].write(GET + b"\r\n")
+    assert await answer_of(stream) == b"HTTP/1.1 200 OK"
+    stream[1].close()
