@@ -53,6 +53,7 @@ class ReplaySession:
         self._playing = True
         self._at_ns = window.start_ns
         self._seek_ns: int | None = window.start_ns
+        self._seeking = False
         self._news = threading.Event()
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
@@ -95,6 +96,7 @@ class ReplaySession:
                 at_ms=self._at_ns // NS_PER_MS,
                 speed=self._speed,
                 playing=self._playing,
+                seeking=self._seeking,
             )
 
     def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
@@ -117,8 +119,7 @@ class ReplaySession:
             before_ns = now_ns
             if self._seek_ns is not None:
                 continue  # a picture now would be of another time than asked for
-            while self._asked:
-                self._asked.popleft()(self._picture.snapshot(self.view()))
+            self._answer()
             self._news.wait(DELTA_S if self._playing else PAUSED_S)
             if not self._playing:
                 before_ns = self._clock.monotonic_ns()
@@ -129,13 +130,28 @@ class ReplaySession:
             seek_ns, self._seek_ns = self._seek_ns, None
         if seek_ns is None:
             return
+        told_ns = self._clock.monotonic_ns()
         for _ in self._playback.seek(seek_ns):
             if self._closed.is_set() or self._seek_ns is not None:
                 return
+            if self._clock.monotonic_ns() - told_ns >= PAUSED_S * NS_PER_S:
+                told_ns = self._clock.monotonic_ns()
+                self._tell_of_seeking()
         with self._lock:
-            self._at_ns = seek_ns
+            self._at_ns, self._seeking = seek_ns, False
         self._picture.show(self._playback.pipeline)
         self._picture.reset(self.view())
+
+    def _tell_of_seeking(self) -> None:
+        """A long way: consoles see that somebody is there, and where it goes."""
+        with self._lock:
+            self._seeking = True
+        self._picture.flush(replay=self.view())
+        self._answer()
+
+    def _answer(self) -> None:
+        while self._asked:
+            self._asked.popleft()(self._picture.snapshot(self.view()))
 
     def _move(self, elapsed_ns: int) -> None:
         """Let as much of the past go by as the clock and the speed say."""

@@ -104,6 +104,23 @@ def test_a_seek_is_a_new_picture_for_everybody(session: ReplaySession, screen: S
     assert north_m(screen.resets[-1]) == pytest.approx(49.0)
 
 
+def test_on_a_long_way_it_says_where_it_goes(
+    session: ReplaySession, screen: Screen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A console that hears nothing for long believes its link dead."""
+    until(lambda: len(screen.resets) == 1)
+    monkeypatch.setattr("base_station.past.replay.PAUSED_S", 0.0)
+    monkeypatch.setattr("base_station.past.playback.BURST", 1)
+    session.seek(START_NS + 100 * NS_PER_S)
+    until(lambda: len(screen.resets) == 2)
+    under_way = [delta.replay for delta in screen.deltas if delta.replay and delta.replay.seeking]
+    assert len(under_way) > 10
+    assert {replay.at_ms for replay in under_way} == {START_NS // 10**6 + 100_000}
+    arrived = screen.resets[-1].replay
+    assert arrived is not None
+    assert not arrived.seeking
+
+
 def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Screen) -> None:
     session.set_speed(1000.0)
     until(lambda: not session.view().playing)

@@ -219,6 +219,7 @@ export interface ReplayView {
   at_ms: number;
   speed: number;
   playing: boolean;
+  seeking: boolean; // on the way to `at_ms`; what is shown is of another time
 }
 
 export type TrailPoint = [t_ms: number, north_m: number, east_m: number, floor: number | null];

@@ -43,7 +43,7 @@ export class Session {
     this.state = state;
     if (state === null) return;
     const { replay } = state;
-    const speed = replay === null ? 1 : replay.playing ? replay.speed : 0;
+    const speed = replay === null ? 1 : replay.playing && !replay.seeking ? replay.speed : 0;
     this.clock.set(state.now_ms, performance.now(), speed);
     batch(() => {
       if (this.picture.link.peek().kind !== "up") this.picture.link.value = { kind: "up" };

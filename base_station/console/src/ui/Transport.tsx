@@ -23,7 +23,6 @@ export function Transport({ replay, state }: Props) {
   const change = (what: api.ReplayChange) => void attempt(api.changeReplay(replay.id, what));
   const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });
   const jump = (ms: number | null) => (ms === null ? undefined : () => seek(ms));
-  const restart = at >= end ? { at_ms: start } : {};
   return (
     <div class="transport">
       <Step icon="back" word="Alarm before" shown="Alarm" go={jump(previousAlarmMs(alarms, at))} />
@@ -31,13 +30,15 @@ export function Transport({ replay, state }: Props) {
       <Step
         icon={playing ? "pause" : "play"}
         word={playing ? "Pause" : "Play"}
-        go={() => change(playing ? { playing: false } : { ...restart, playing: true })}
+        go={() => change({ playing: !playing })}
       />
       <Step icon="forth" word="On 10 s" shown="10 s" go={jump(at + STEP_MS)} />
       <Step icon="forth" word="Next alarm" shown="Alarm" go={jump(nextAlarmMs(alarms, at))} />
-      <time>{clockTime(at)}</time>
       <SeekBar state={state} alarms={alarms} seek={seek} />
-      <span class="passed">
+      <span class="going" role="status">
+        {state.seeking ? `Going to ${clockTime(at)} …` : ""}
+      </span>
+      <span>
         {countdown(at - start)} of {countdown(end - start)}
       </span>
       <GoTo alarms={alarms} seek={seek} />
