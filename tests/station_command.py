@@ -1,4 +1,4 @@
-"""``muster base ...`` as a process of its own, and units that speak to it."""
+"""``muster base ...`` and ``muster edge run`` as processes, and units that speak to a station."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ PATIENCE_S = 60.0
 # As ``shared.command_line.main`` does it, without the entry points of an installed program.
 RUN = """
 import sys
-from base_station.cli import app
+from {package}.cli import app
 from shared.errors import MusterError
 try:
-    app(prog_name="muster base")
+    app()
 except MusterError as error:
     print(error, file=sys.stderr)
     sys.exit(2)
@@ -49,11 +49,13 @@ def free_port() -> int:
 class Command:
     """One run of ``muster base``; it is killed where a test leaves it running."""
 
+    package = "base_station"
+
     def __init__(self, output: Path, *arguments: str, stdin: str = "") -> None:
         self._output = output
         with output.open("wb") as written:
             self.process = subprocess.Popen(
-                [sys.executable, "-c", RUN, *arguments],
+                [sys.executable, "-c", RUN.format(package=self.package), *arguments],
                 stdin=subprocess.PIPE,
                 stdout=written,
                 stderr=subprocess.STDOUT,
@@ -91,6 +93,15 @@ class Command:
     def kill(self) -> None:
         self.process.kill()
         self.process.wait()
+
+
+class Agent(Command):
+    """One run of ``muster edge run``."""
+
+    package = "edge"
+
+    def __init__(self, output: Path, *flags: str) -> None:
+        super().__init__(output, "run", *flags)
 
 
 class Browser:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import random
 import sqlite3
-import subprocess
-import sys
 import time
 from collections import Counter
 from contextlib import closing
@@ -17,34 +15,30 @@ import pytest
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log
-from tests.station_command import Browser, Command, free_port
+from tests.station_command import Agent, Browser, Command, free_port
 from tests.waiting import until
 
 UNIT = "anna"
 COMPILING_S = 200.0  # the first agent on a machine compiles its tracker
-RUN = "from edge.cli import app; app()"
 Message = tuple[int, int]  # boot id, sequence number
 
 
-class Agent:
+class Wearable:
     """``muster edge run`` with a simulated wearer; it goes on in the same folder."""
 
     def __init__(self, folder: Path, bus: str) -> None:
         self._journal = folder / UNIT / "journal.sqlite"
-        self._arguments = ["run", "--unit", UNIT, "--source", "simulated:search-ground-floor"]
-        self._arguments += ["--connect", bus, "--data", str(folder)]
+        self._flags = ["--unit", UNIT, "--source", "simulated:search-ground-floor"]
+        self._flags += ["--connect", bus, "--data", str(folder)]
         self._output = folder.with_suffix(".txt")
-        self._process: subprocess.Popen[bytes] | None = None
+        self._agent: Agent | None = None
 
     def start(self) -> None:
-        with self._output.open("ab") as output:
-            command = [sys.executable, "-c", RUN, *self._arguments]
-            self._process = subprocess.Popen(command, stdout=output, stderr=output)
+        self._agent = Agent(self._output, *self._flags)
 
     def kill(self) -> None:
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
+        if self._agent is not None:
+            self._agent.kill()
 
     def journalled(self) -> set[Message]:
         """What the agent has ever said, by its journal."""
@@ -78,14 +72,14 @@ def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> 
     data, bus = tmp_path / "station", f"tcp/127.0.0.1:{free_port()}"
     serve = ["serve", "--data", str(data), "--listen", bus, "--insecure"]
     serve += ["--http", f"127.0.0.1:{free_port()}"]
-    agent = Agent(tmp_path / "agent", bus)
+    wearable = Wearable(tmp_path / "agent", bus)
     try:
         for count in (20, 40):
             with Command(tmp_path / f"station-{count}.txt", *serve) as station:
                 with Browser(station.wait_ready(), data) as browser:
                     browser.call("POST", "/units", json={"unit_id": UNIT})
-                agent.kill()  # nothing the first time
-                agent.start()
+                wearable.kill()  # nothing the first time
+                wearable.start()
                 until(partial(has_logged, data, count), "the unit is heard", COMPILING_S)
                 time.sleep(chance.random())
                 station.kill()
@@ -93,11 +87,11 @@ def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> 
 
         with Command(tmp_path / "station-last.txt", *serve) as station:
             station.wait_ready()
-            said = agent.journalled()
+            said = wearable.journalled()
             assert len({boot_id for boot_id, _ in said}) == 2
             until(lambda: said <= logged(data)[0].keys(), "the log has all")
             messages, fetched = logged(data)
             assert fetched > 0
             assert [message for message, count in messages.items() if count != 1] == []
     finally:
-        agent.kill()
+        wearable.kill()

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import signal
-import socket
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -30,9 +27,9 @@ from shared.messages import (
     Position,
     UnitEvent,
 )
+from tests.station_command import Agent, free_port
 from tests.waiting import until
 
-RUN = "from edge.cli import app; app(prog_name='edge')"
 WALK = "simulated:search-ground-floor"
 
 
@@ -78,9 +75,7 @@ def compiled() -> None:
 
 @pytest.fixture
 def port() -> int:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return int(found.getsockname()[1])
+    return free_port()
 
 
 @pytest.fixture
@@ -91,28 +86,25 @@ def station(port: int) -> Iterator[Station]:
 
 
 @pytest.fixture
-def start(port: int, tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
-    agents: list[subprocess.Popen[str]] = []
+def start(port: int, tmp_path: Path) -> Iterator[Callable[..., Agent]]:
+    agents: list[Agent] = []
 
-    def start_agent(source: str = WALK, *flags: str) -> subprocess.Popen[str]:
-        arguments = ("--unit", "u1", "--source", source, "--data", str(tmp_path / "data"))
-        command = [sys.executable, "-c", RUN, "run", *arguments, *flags]
-        command += ["--connect", f"tcp/127.0.0.1:{port}"]
-        agents.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+    def start_agent(source: str = WALK, *flags: str) -> Agent:
+        arguments = ("--unit", "u1", "--source", source, "--data", str(tmp_path / "data"), *flags)
+        output = tmp_path / f"agent-{len(agents)}.txt"
+        agents.append(Agent(output, *arguments, "--connect", f"tcp/127.0.0.1:{port}"))
         return agents[-1]
 
     yield start_agent
     for agent in agents:
-        if agent.poll() is None:
-            agent.kill()
-        print(agent.communicate()[1])  # shown beside a failure
+        agent.kill()
+        print(agent.said())  # shown beside a failure
 
 
 def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
     first = start()
     until(lambda: len(station.of(Position)) >= 10)
     first.kill()
-    first.wait()
     until(lambda: station.alive == [True, False])
     old_boot = station.messages[0].header.boot_id
     received = {seq: raw for (_, seq), raw in station.raw.items()}
@@ -127,15 +119,13 @@ def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
     kept = station.journal(old_boot, boots[0].last_seq)
     assert list(kept) == list(range(1, boots[0].last_seq + 1))
     assert all(kept[seq] == raw for seq, raw in received.items())
-    second.terminate()
-    assert second.wait(20) == 0
+    assert second.stop() == 0
 
 
 def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, start):
     agent = start()
-    assert agent.stderr is not None
-    assert "not secured" in agent.stderr.readline()
-    assert "no link: 127.0.0.1 is there but nothing listens" in agent.stderr.readline()
+    until(lambda: "no link: 127.0.0.1 is there but nothing listens" in agent.said(), "the reason")
+    assert "not secured" in agent.said()
     station = Station(port)
     try:
         until(lambda: station.of(Position))
@@ -143,8 +133,8 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
         assert first_heard > 1
         boot_id = station.messages[0].header.boot_id
         assert list(station.journal(boot_id, first_heard)) == list(range(1, first_heard + 1))
-        agent.send_signal(signal.SIGINT)
-        assert agent.wait(20) == 0
+        agent.process.send_signal(signal.SIGINT)
+        assert agent.wait() == 0
         until(lambda: station.of(UnitEvent))
         last = station.of(UnitEvent)[-1]
         assert isinstance(last, UnitEvent)
@@ -177,7 +167,6 @@ def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
     station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
     until(lambda: len(station.of(CommandReply)) == 2)
     first.kill()
-    first.wait()
     start(WALK, "--speed", "5")
     until(lambda: station.alive == [True, False, True])
     station.bus.publish(COMMAND.key("u1"), encode(par), Qos.ALERT)
@@ -208,7 +197,7 @@ def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
 
 def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
     agent = start("simulated:straight", "--speed", "20")
-    assert agent.wait(60) == 0
+    assert agent.wait() == 0
     until(lambda: len(station.of(UnitEvent)) >= 2)
     kinds = [event.kind for event in station.of(UnitEvent) if isinstance(event, UnitEvent)]
     assert kinds[-2:] == [EventKind.SOURCE_ENDED, EventKind.STOPPED]
@@ -216,9 +205,7 @@ def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
 
 def test_a_second_agent_with_the_same_folder_is_refused(start):
     first = start()
-    assert first.stderr is not None
-    first.stderr.readline()  # it runs
+    until(lambda: "no link" in first.said(), "the first runs")
     second = start()
-    _, said = second.communicate(timeout=30)
-    assert second.returncode != 0
-    assert "another agent is using" in said
+    assert second.wait() == 2
+    assert "another agent is using" in second.said()

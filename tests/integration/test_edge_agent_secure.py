@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import socket
-import subprocess
-import sys
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import partial
@@ -22,9 +18,8 @@ from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, clock_key
 from shared.clock import SystemClock
 from shared.codec import decode
 from shared.enrolment import Holder
+from tests.station_command import Agent, free_port
 from tests.waiting import until
-
-RUN = "from edge.cli import app; app(prog_name='edge')"
 
 
 class Site:
@@ -75,9 +70,7 @@ def compiled() -> None:
 
 @pytest.fixture
 def port() -> int:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return int(found.getsockname()[1])
+    return free_port()
 
 
 @pytest.fixture
@@ -87,46 +80,20 @@ def site(tmp_path: Path, port: int) -> Iterator[Site]:
         yield Site(tmp_path / "station", stack, port)
 
 
-class Agent:
-    """An agent as a process; what it says is read as it comes."""
-
-    def __init__(self, *flags: str) -> None:
-        command = [sys.executable, "-c", RUN, "run", "--source", "simulated:straight", *flags]
-        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        self.said = ""
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self.process.stderr is not None
-        for line in self.process.stderr:
-            self.said += line
-
-    def end(self) -> int:
-        self.process.terminate()
-        try:
-            code = self.process.wait(30)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            code = self.process.wait()
-        self._reader.join()
-        assert self.process.stderr is not None
-        self.process.stderr.close()
-        return code
-
-
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[..., Agent]]:
     agents: list[Agent] = []
 
-    def start_agent(*flags: str) -> Agent:
-        agents.append(Agent("--data", str(tmp_path / "units"), *flags))
+    def start_agent(*flags: str, source: str = "simulated:straight") -> Agent:
+        output = tmp_path / f"agent-{len(agents)}.txt"
+        folder = str(tmp_path / "units")
+        agents.append(Agent(output, "--source", source, "--data", folder, *flags))
         return agents[-1]
 
     yield start_agent
     for agent in agents:
-        agent.end()
-        print(agent.said)  # shown beside a failure
+        agent.kill()
+        print(agent.said())  # shown beside a failure
 
 
 def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
@@ -137,9 +104,9 @@ def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
     until(lambda: site.alive == [True], "the liveliness token")
     assert list(site.bus.query(f"{ROOT}/u1/journal/index", b"", 10.0))
     until(lambda: site.utc_std_s > 0.0, "the station's time, in its headers")
-    until(lambda: "linked to the station" in agent.said, "the agent's word")
-    assert "not secured" not in agent.said
-    assert agent.end() == 0
+    until(lambda: "linked to the station" in agent.said(), "the agent's word")
+    assert "not secured" not in agent.said()
+    assert agent.stop() == 0
 
 
 def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tmp_path, port):
@@ -149,8 +116,8 @@ def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tm
     other.create("Other", hosts=[], connect=[f"tls/127.0.0.1:{port}"])
     other.enroll("u1").write(tmp_path / "foreign.toml")
     agent = start("--enrolment", str(tmp_path / "foreign.toml"))
-    until(lambda: "no link:" in agent.said, "the reason")
-    assert "is not the one that enrolled this unit" in agent.said
+    until(lambda: "no link:" in agent.said(), "the reason")
+    assert "is not the one that enrolled this unit" in agent.said()
     assert not site.positions
 
 
@@ -163,30 +130,30 @@ def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tm
 )
 def test_flags_that_contradict_the_enrolment_are_refused(site, start, flags, said):
     agent = start("--enrolment", str(site.enrolment), *flags)
-    assert agent.process.wait(30) != 0
-    until(lambda: said in agent.said, said)
+    assert agent.wait() == 2
+    assert said in agent.said()
 
 
 def test_a_secure_station_needs_an_enrolment(start):
     agent = start("--unit", "u1", "--connect", "tls/127.0.0.1:1")
-    assert agent.process.wait(30) != 0
-    until(lambda: "needs the unit's enrolment" in agent.said, "the reason")
+    assert agent.wait() == 2
+    assert "needs the unit's enrolment" in agent.said()
 
 
 def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, start, tmp_path):
     file = tmp_path / "u1@tracker.toml"
     site.pki.enroll("u1", Holder.TRACKER).write(file)
     site.open()
-    tracker = start("--enrolment", str(file), "--source", "bus:u1")
-    until(lambda: "waiting for the raw stream of u1" in tracker.said, "the agent")
+    tracker = start("--enrolment", str(file), source="bus:u1")
+    until(lambda: "waiting for the raw stream of u1" in tracker.said(), "the agent")
     for boots in (1, 2):
         unit = start("--enrolment", str(site.enrolment), "--tracker", "none")
         until(partial(site.has_heard_boots, boots), "positions of this run")
-        assert unit.end() == 0
-    assert "u1 has started again" in tracker.said
+        assert unit.stop() == 0
+    assert "u1 has started again" in tracker.said()
     assert set(site.positions) == {POSITION.key(tracker_id("u1"))}
     assert list(site.bus.query(f"{ROOT}/{tracker_id('u1')}/journal/index", b"", 10.0))
-    assert tracker.end() == 0
+    assert tracker.stop() == 0
 
 
 @pytest.mark.parametrize(
@@ -202,12 +169,12 @@ def test_an_enrolment_is_good_for_what_it_was_made_for_only(
 ):
     file = tmp_path / "u2.toml"
     site.pki.enroll("u2", holder).write(file)
-    agent = start("--enrolment", str(file), "--source", source)
-    assert agent.process.wait(30) != 0
-    until(lambda: said in " ".join(agent.said.split()), said)
+    agent = start("--enrolment", str(file), source=source)
+    assert agent.wait() == 2
+    assert said in " ".join(agent.said().split())
 
 
 def test_an_agent_that_waits_for_its_unit_ends_when_told(start, port):
-    agent = start("--source", "bus:u1", "--connect", f"tcp/127.0.0.1:{port}")
-    until(lambda: "trying again every second" in agent.said, "the agent")
-    assert agent.end() == 0
+    agent = start("--connect", f"tcp/127.0.0.1:{port}", source="bus:u1")
+    until(lambda: "trying again every second" in agent.said(), "the agent")
+    assert agent.stop() == 0

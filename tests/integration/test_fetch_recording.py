@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -17,11 +15,10 @@ from edge.sources.black_box import BlackBoxSource
 from edge.warm_up import compile_trackers
 from shared.errors import UserError
 from shared.mcap_log import segment_paths
-from tests.station_command import Browser, Command, free_port
+from tests.station_command import Agent, Browser, Command, free_port
 from tests.waiting import until
 
 UNIT = "anna"
-RUN = "from edge.cli import app; app()"
 
 
 class Running:
@@ -38,14 +35,11 @@ class Running:
         station = stack.enter_context(Command(folder / "station.txt", "serve", *where, *http))
         self.browser = stack.enter_context(Browser(station.wait_ready(), self.data))
         self.browser.call("POST", "/units", json={"unit_id": UNIT})
-        agent = ["run", "--unit", UNIT, "--source", "simulated:straight", "--connect", self.bus]
-        agent += ["--data", str(folder / "units")]
-        command = [sys.executable, "-c", RUN, *agent]
-        with (folder / "agent.txt").open("wb") as said:
-            process = stack.enter_context(subprocess.Popen(command, stdout=said, stderr=said))
-        stack.callback(process.kill)
+        flags = ["--unit", UNIT, "--source", "simulated:straight", "--connect", self.bus]
+        flags += ["--data", str(folder / "units")]
+        self.agent = stack.enter_context(Agent(folder / "agent.txt", *flags))
         self.began_ms = round(time.time() * 1000) - 60_000
-        until(self._is_linked, "the unit is linked")
+        until(lambda: "linked to the station" in self.agent.said(), "the unit is linked")
         until(lambda: self._recorded_bytes() > 20_000, "the unit has recorded")
 
     def fetch(self, *arguments: str) -> tuple[int, str]:
@@ -56,9 +50,6 @@ class Running:
 
     def pulled(self) -> list[Path]:
         return [boot for boot in (self.data / "recordings" / UNIT).glob("2*") if boot.is_dir()]
-
-    def _is_linked(self) -> bool:
-        return "linked to the station" in (self.folder / "agent.txt").read_text()
 
     def _recorded_bytes(self) -> int:
         return sum(one.stat().st_size for one in (self.folder / "units").rglob("*.mcap"))

@@ -1,0 +1,42 @@
+"""What systemd hears of a station and of an agent that run, as processes."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.station_command import Agent, Command
+
+PATIENCE_S = 60.0
+
+
+@pytest.fixture
+def heard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
+    """Gives what was said next; the socket is in the environment of what is started."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listening:
+        listening.bind(str(tmp_path / "notify"))
+        listening.settimeout(PATIENCE_S)
+        monkeypatch.setenv("NOTIFY_SOCKET", str(tmp_path / "notify"))
+        yield lambda: listening.recv(100).decode("ascii")
+
+
+def test_a_station_says_that_it_is_ready_and_goes_on_saying_that_it_works(
+    heard: Callable[[], str], serve: Callable[..., Command]
+) -> None:
+    station = serve()
+    said = {heard()}
+    while "READY=1" not in said:
+        said.add(heard())
+    station.wait_ready()
+    assert [heard() for _ in range(3)] == ["WATCHDOG=1"] * 3
+    assert station.stop() == 0
+
+
+def test_an_agent_says_so_without_a_station(heard: Callable[[], str], tmp_path: Path) -> None:
+    flags = ("--unit", "FF-01", "--source", "simulated:straight", "--data", str(tmp_path))
+    with Agent(tmp_path / "said.txt", *flags) as agent:
+        assert [heard() for _ in range(3)] == ["READY=1", "WATCHDOG=1", "WATCHDOG=1"]
+        assert agent.stop() == 0
