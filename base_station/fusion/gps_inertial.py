@@ -16,7 +16,7 @@ import numpy as np
 from base_station.fusion.fixes.sky import COMMON_S
 from base_station.fusion.fixes.trust import FixTrust
 from base_station.fusion.kernels import Placed
-from base_station.fusion.knowledge import Knowledge, estimate_of
+from base_station.fusion.knowledge import quality_of
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.parameters import Parameters
@@ -213,9 +213,9 @@ class GpsInertialFuser:
             return None
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        height = self._height.down_m, self._height.variance_m2
         heading_rad = last.heading_rad if last else 0.0
         placed = self._horizontal.placed_before(0.0, 0.0)
+        height = self._height.down_m, self._height.variance_m2
         return self._estimate_at(t_mono_ns, heading_rad, placed, height)
 
     def remember(self, position: Position) -> None:
@@ -252,17 +252,24 @@ class GpsInertialFuser:
         height: tuple[float, float],
     ) -> Estimate:
         """``height`` with its variance."""
-        last, fix_ns = self._memory.last, self._memory.fix_t_mono_ns
-        knowledge = Knowledge(
+        memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
+        tracker = memory.last.quality if memory.last is not None else Quality.GOOD
+        quality, reason = quality_of(self._kind, placed, tracker, assumed=memory.assumed)
+        return Estimate(
             t_mono_ns=t_mono_ns,
-            placed=placed,
-            height=height,
-            own_heading_rad=own_heading_rad,
-            tracker=last.quality if last is not None else Quality.GOOD,
-            assumed=self._memory.assumed,
+            north_m=placed.north_m,
+            east_m=placed.east_m,
+            down_m=height[0],
+            std_north_m=placed.std_north_m,
+            std_east_m=placed.std_east_m,
+            std_down_m=math.sqrt(height[1]),
+            correlation_ne=placed.correlation_ne,
+            heading_rad=(placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
+            heading_std_rad=placed.turn_std_rad,
+            quality=quality,
+            quality_reason=reason,
             since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
         )
-        return estimate_of(self._kind, knowledge)
 
     def _walk(self, stretch: Stretch, own_std_m: float) -> None:
         kind = self._kind

@@ -66,15 +66,15 @@ class HeightFilter:
 
     @property
     def down_m(self) -> float:
-        return float(self._filter.x[0, 0])
+        return self._filter.x.item(0)
 
     @property
     def variance_m2(self) -> float:
-        return float(self._filter.P[0, 0]) + float(self._path[kernels.DOUBT_M2])
+        return self._filter.P.item(0) + self._path.item(kernels.DOUBT_M2)
 
     @property
     def walked_level(self) -> bool:
-        return bool(self._path[kernels.LEVEL_M] > self._kind.level_walk_m)
+        return self._path.item(kernels.LEVEL_M) > self._kind.level_walk_m
 
     def begin(self, down_m: float, std_m: float) -> None:
         """Known anew; the barometer's shift is to be found again."""
@@ -137,7 +137,7 @@ class HeightFilter:
             kind.air_std_m**2,
             _GATE_STD**2,
         )
-        lifted_m = self._rides.feel(air, float(self._path[kernels.RODE_M]))
+        lifted_m = self._rides.feel(air, self._path.item(kernels.RODE_M))
         if lifted_m:  # in the height or in the barometer's shift: their sum is known
             self._filter.P += lifted_m**2 * _EITHER
 
