@@ -44,8 +44,9 @@ class PlayedStation:
 
     def change(self, **what: object) -> None:
         """Something happens: a delta goes out."""
-        delta = Delta(seq=self._picture.seq + 1, now_ms=self._picture.now_ms, **what)  # type: ignore[arg-type]
-        self._picture = msgspec.structs.replace(self._picture, seq=delta.seq, **what)
+        said = {"seq": self._picture.seq + 1, "now_ms": self._picture.now_ms, **what}
+        delta = Delta(**said)  # type: ignore[arg-type]
+        self._picture = msgspec.structs.replace(self._picture, **said)
         for socket in self._sockets:
             socket.send(msgspec.json.encode(delta).decode())
 

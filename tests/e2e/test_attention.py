@@ -126,3 +126,13 @@ def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
     assert sent.value.post_data_json == {"at_ms": scenes.PAST_ALARMS[0]["raised_ms"] - 5000}
     expect(bar.get_by_role("button", name="Next alarm")).to_be_disabled()
     expect(page.get_by_role("button", name="Evacuate")).to_have_count(0)
+
+
+def test_a_jump_in_the_past_begins_the_list_anew(stage: Stage) -> None:
+    """Live, whoever gets better keeps the place for a while."""
+    page, station = stage.open(scenes.past())
+    expect(page.locator(".card").first).to_contain_text("Jonas Bergman")
+    well = tuple(scenes.unit(index) for index in range(5))
+    station.change(units=well, alarms=(), now_ms=scenes.NOW_MS - 20 * scenes.MINUTE_MS)
+    jonas = page.locator(".card", has_text="Jonas Bergman")
+    expect(jonas).to_have_class(re.compile("normal"), timeout=2000)

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { openAlarms } from "../src/live/alarms";
-import { arrange, urgencyOf, type Place } from "../src/live/urgency";
+import { arrange, isJump, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
 
@@ -71,4 +71,10 @@ describe("openAlarms", () => {
       "battery",
     ]);
   });
+});
+
+it("a jump in the past is one, and time that goes by is none", () => {
+  expect(isJump(60_000, 59_000)).toBe(true);
+  expect(isJump(60_000, 66_000)).toBe(true);
+  expect(isJump(60_000, 60_500)).toBe(false);
 });

@@ -27,6 +27,14 @@ export interface Place {
   calmSinceMs: number | null;
 }
 
+/** Between two looks more than this went by, or less than nothing: somebody jumped in the past, and
+ * where everybody stood before means nothing. */
+const JUMP_MS = 5_000;
+
+export function isJump(beforeMs: number, nowMs: number): boolean {
+  return nowMs < beforeMs || nowMs - beforeMs > JUMP_MS;
+}
+
 /** The list after a change.  Whoever gets worse moves up at once; whoever gets better keeps the
  * place for a while; and while `held` (somebody points at the list) only the worse ones move. */
 export function arrange(

@@ -1,6 +1,7 @@
 import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import { useRef } from "preact/hooks";
 import type { Picture } from "../live/picture";
-import { arrange, samePlaces, type Place } from "../live/urgency";
+import { arrange, isJump, samePlaces, type Place } from "../live/urgency";
 import { Card } from "./Card";
 import { CommandBar } from "./CommandBar";
 
@@ -11,17 +12,15 @@ const MANY = 6;
 export function People({ picture }: { picture: Picture }) {
   const held = useSignal(false);
   const places = useSignal<readonly Place[]>([]);
+  const seenMs = useRef(0);
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
   useSignalEffect(() => {
     void [picture.unitIds.value, picture.alarms.value, second.value, held.value];
     untracked(() => {
-      const next = arrange(
-        places.value,
-        picture.allUnits(),
-        picture.alarms.value,
-        picture.nowMs.value,
-        held.value,
-      );
+      const nowMs = picture.nowMs.value;
+      const before = isJump(seenMs.current, nowMs) ? [] : places.value;
+      seenMs.current = nowMs;
+      const next = arrange(before, picture.allUnits(), picture.alarms.value, nowMs, held.value);
       if (!samePlaces(next, places.value)) places.value = next;
     });
   });
