@@ -47,6 +47,8 @@ class Recognition(msgspec.Struct):
         ways are no stairs and walls.
         """
         climb, leg = self.climb, self.leg
+        if climb is None and leg is None:
+            return learnt
         self.climb = self.leg = None
         if not (inside and horizontal.is_plain):
             return learnt
