@@ -137,7 +137,7 @@ class ForgettingDesk:
             if not wishes:
                 self._changed.wait()
             elif not self._work_on_one(wishes):
-                self._closed.wait(_AGAIN_S)
+                self._changed.wait(_AGAIN_S)
 
     def _work_on_one(self, wishes: list[Forgetting]) -> bool:
         """The first that need not wait; False where it is to be tried again later."""
