@@ -84,18 +84,21 @@ class Spool:
         return max(0, self.last_seq - self._acknowledged_seq)
 
     def append(self, messages: Sequence[Journaled]) -> None:
-        """Put messages on disk, all or none; returns when they are safe."""
+        """Put messages on disk, all or none; returns when they are safe.
+
+        Room is made before: what is safe must not be said to have failed, or it is given again.
+        """
         rows = [
             (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
              each.payload)
             for each in messages
         ]  # fmt: skip
         with _in_words(self._path), self._lock:
+            if self._bytes_used() > self._limit_bytes:
+                self._make_room()
             with self._writer:
                 self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
             self.last_seq = max(self.last_seq, *(each.seq for each in messages))
-            if self._bytes_used() > self._limit_bytes:
-                self._make_room()
 
     def read(
         self, boot_id: int, from_seq: int, to_seq: int, worths: Sequence[int] = EVERYTHING

@@ -186,7 +186,7 @@ class Fetch:
                 self._pace.note(self._clock.monotonic_ns() - asked_ns)
                 if piece.gone:
                     return False
-                if piece.offset == offset and _is_intact(piece):
+                if piece.offset == offset and len(piece.data) <= length and _is_intact(piece):
                     written.write(piece.data)
                     written.flush()
             os.fsync(written.fileno())

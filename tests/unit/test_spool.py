@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import sqlite3
 from pathlib import Path
 
 import pytest
@@ -70,14 +71,15 @@ def test_room_is_made_from_the_least_worth_and_oldest(tmp_path):
     channels = itertools.cycle((IMU, POSITION, IMU, IMU, STATUS, EVENT))
     for start in range(1, 3001, 50):
         spool.append([entry(seq, next(channels), 800) for seq in range(start, start + 50)])
-    kept = [(each.seq, each.suffix) for each in spool.read(spool.boot_id, 1, 3000)]
+    spool.append([entry(3001, EVENT)])  # room is made before
+    kept = [(each.seq, each.suffix) for each in spool.read(spool.boot_id, 1, 3001)]
     by_suffix = {suffix: [seq for seq, of in kept if of == suffix] for _, suffix in kept}
     assert IMU.suffix not in by_suffix  # all raw data went before any position
     assert STATUS.suffix not in by_suffix
-    assert len(by_suffix[EVENT.suffix]) == 500
+    assert len(by_suffix[EVENT.suffix]) == 501
     assert 100 < len(by_suffix[POSITION.suffix]) < 500
     assert by_suffix[POSITION.suffix] == list(range(2, 3001, 6))[-len(by_suffix[POSITION.suffix]) :]
-    assert spool.rows_freed == 3000 - len(kept)
+    assert spool.rows_freed == 3001 - len(kept)
     assert spool.first_seq == kept[0][0]
     assert sum(path.stat().st_size for path in tmp_path.iterdir()) < 8 * MB
     spool.close()
@@ -106,6 +108,25 @@ def test_a_full_disk_refuses_whole_groups_and_recovers(tmp_path):
     spool._writer.execute("PRAGMA max_page_count = 1000000")
     spool.append([entry(seq, size=4000) for seq in range(2, 20)])
     assert seqs(spool, spool.boot_id) == list(range(1, 20))
+    spool.close()
+
+
+def test_a_disk_that_lets_no_room_be_made_is_written_again_when_it_does(tmp_path, monkeypatch):
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    spool.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
+
+    def refuse() -> None:
+        raise sqlite3.OperationalError("disk I/O error")
+
+    unsaved = [entry(1501)]
+    with monkeypatch.context() as broken:
+        broken.setattr(spool, "_make_room", refuse)
+        for seq in range(1502, 1505):  # as the outbox does: what failed is given again
+            with pytest.raises(StoreError, match="I/O"):
+                spool.append(unsaved)
+            unsaved.append(entry(seq))
+    spool.append(unsaved)
+    assert seqs(spool, spool.boot_id, 1501) == [1501, 1502, 1503, 1504]
     spool.close()
 
 
