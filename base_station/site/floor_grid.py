@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from base_station.site.crossing import cross_moved
 from base_station.site.plan import Plan, Ring
 
 Floats = NDArray[np.float64]
@@ -63,6 +64,14 @@ class FloorGrid:
         north = self._rows(from_m[:, 0] + parts * way_m[:, 0])
         east = self._columns(from_m[:, 1] + parts * way_m[:, 1])
         return np.asarray(walls[north, east].any(axis=0))
+
+    def crossed_moved(self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats) -> Flags:
+        """The same of each way moved by each of its moves (n, g, 2): (n, g)."""
+        corner = np.array([self._north_m, self._east_m])
+        cut = np.empty(moves_m.shape[:2], dtype=np.uint8)
+        begins, ways = (from_m - corner) / CELL_M, (to_m - from_m) / CELL_M
+        cross_moved(self._walls[floor], begins, ways, moves_m / CELL_M, LOOK_M / CELL_M, cut)
+        return cut.astype(np.bool_)
 
     def has_stairs(self, floor: int) -> bool:
         return floor in self._stairs

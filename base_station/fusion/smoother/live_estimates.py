@@ -17,10 +17,10 @@ from base_station.fusion.smoother.chain import (
     STATES,
     Belief,
     Chain,
-    add_places,
     place_of,
 )
 from base_station.fusion.smoother.equations import Equations
+from base_station.fusion.smoother.path_equations import add_places
 from base_station.fusion.smoother.port import PlaceSeen
 
 Floats = NDArray[np.float64]

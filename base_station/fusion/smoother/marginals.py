@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.linalg import splu
 
 Floats = NDArray[np.float64]
@@ -47,12 +47,17 @@ def chain_covariances(
 
 
 def shared_spreads(
-    information: csc_matrix, chains: Mapping[str, slice], first: int, states: int
+    information: csr_matrix,
+    chains: Mapping[str, slice],
+    first: int,
+    states: int,
+    plus: int | None = None,
 ) -> dict[str, Floats]:
     """What unknowns that all chains share, from column ``first`` on, add to the covariances of
-    each chain's knots: (k, states, states).
+    each chain's knots: (k, states, states).  ``plus``: the first of two shared unknowns that are
+    added to the first two of every knot.
     """
-    leans = {}  # of the chain's unknowns on the shared ones
+    leans: dict[str, Floats] = {}  # of the chain's unknowns on the shared ones
     whole = information[first:, first:].toarray()
     for name, own in chains.items():
         beside = information[own, first:].toarray()
@@ -61,6 +66,9 @@ def shared_spreads(
     root = np.linalg.cholesky(np.linalg.inv(0.5 * (whole + whole.T)))
     spreads = {}
     for name, lean in leans.items():
+        if plus is not None:
+            lean[0::states, plus - first] -= 1.0
+            lean[1::states, plus + 1 - first] -= 1.0
         parts = (lean @ root).reshape(-1, states, len(root))
         spreads[name] = parts @ parts.transpose(0, 2, 1)
     return spreads

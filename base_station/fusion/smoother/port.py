@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.path.history import PathArrays
 from base_station.fusion.port import Present, Start
+from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +53,7 @@ class UnitEvidence:
     start: Start | None  # of the own frame that begins at ``start_ns``
     start_ns: int = 0
     places: Sequence[PlaceSeen] = ()  # in the order in which they came to be known
+    grid: FloorGrid | None = None  # walls of the plan
 
 
 @dataclass(frozen=True)

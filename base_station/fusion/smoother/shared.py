@@ -24,6 +24,7 @@ Term = tuple[Ints, Floats | float]
 
 AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
 START_PART = 0.65  # of a start's variance: what was said is off by that for all who begin there
+PLAN_STD_M = 0.3  # by which plans lie aside, each axis
 SKY_S = 600.0  # from one knot of the common error to the next
 
 
@@ -48,13 +49,15 @@ class Shared:
             self._sky_t_ns = np.arange(begin, end + step_ns, step_ns, dtype=np.int64)
             best_m = min(u.path.fix_std_m.min() for u in units.values() if len(u.path.fix_t_ns))
             self.sky_std_m = float(np.sqrt(COMMON_PART) * best_m)
-        self.end = self._sky + 2 * len(self._sky_t_ns)
+        self.plan = self._sky + 2 * len(self._sky_t_ns)
+        self.end = self.plan + 2
         self._x = np.zeros(self.end - first)  # as last believed
 
     def add_priors(self, equations: Equations) -> None:
         equations.add(AXIS_STD_RAD, 0.0, (np.array([self.axis]), 1.0))
         for (_, _, std_m), column in self._starts.items():
             equations.add(np.sqrt(START_PART) * std_m, 0.0, (np.array([column, column + 1]), 1.0))
+        equations.add(PLAN_STD_M, 0.0, (np.array([self.plan, self.plan + 1]), 1.0))
         knots = len(self._sky_t_ns)
         if not knots:
             return
@@ -79,12 +82,17 @@ class Shared:
         knot = np.clip(np.searchsorted(self._sky_t_ns, t_ns, side="right") - 1, 0, last)
         part = (t_ns - self._sky_t_ns[knot]) / (SKY_S * NS_PER_S)
         columns = self._sky + 2 * knot
-        behind = np.minimum(columns + 2, self.end - 2)
+        behind = np.minimum(columns + 2, self.plan - 2)
         return (columns, 1.0 - part), (behind, part)
 
     def take(self, x: Floats) -> None:
         """Believe a solution."""
         self._x = x[self.axis :]
+
+    @property
+    def plan_m(self) -> Floats:
+        """How far north and east (2,) of where it should be the plan lies, as it is believed."""
+        return self._x[-2:]
 
     def sky_m(self, t_ns: Ints) -> Floats:
         """The common error (n, 2), as it is believed."""

@@ -1,0 +1,168 @@
+"""The one least-squares problem of all trails, and how far it is solved.
+
+Each unit's own path is a chain of knots; whatever is known of it hangs on that.  The first
+solution is linear whatever the headings are; where it tells a heading, turn and drift are solved
+again about it, with less weight for what does not fit (Gauss-Newton with a Cauchy kernel; Grisetti
+et al. 2010, A tutorial on graph-based SLAM).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.smoother.agreement import Expected
+from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise, place_of
+from base_station.fusion.smoother.equations import Equations, NormalEquations
+from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
+from base_station.fusion.smoother.links import Link, Places, add_link, told_by_links
+from base_station.fusion.smoother.live_estimates import add_shown
+from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
+from base_station.fusion.smoother.path_equations import add_fixes, add_path, add_places, add_seen
+from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence
+from base_station.fusion.smoother.shared import Shared
+from base_station.fusion.smoother.walls import Words
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+TURNS = 10  # Gauss-Newton steps at most
+SETTLED_M = 0.02  # no knot moved further: done
+ALIGNED_RAD = 0.5  # standard deviation from which a heading is told by the evidence
+
+
+class Graph:
+    """What hangs on the chains beside path, start and fixes may be changed; then ``relax``."""
+
+    def __init__(self, units: Mapping[str, UnitEvidence], chains: dict[str, Chain]) -> None:
+        self.chains = chains
+        self.places: dict[str, list[PlaceSeen]] = {unit_id: [] for unit_id in units}
+        self.shown: dict[str, Ints] = {}  # rows where the live estimate is heeded
+        self.words: dict[str, Words] = {}  # of walls
+        self.links: list[Link] = []
+        self.beliefs = {one: Belief.none(len(chain)) for one, chain in chains.items()}
+        self._columns: dict[str, slice] = {}
+        first = 0
+        for unit_id, chain in chains.items():
+            self._columns[unit_id] = slice(first, first + STATES * len(chain))
+            first = self._columns[unit_id].stop
+        self.shared = Shared(first, units)
+        self._legs = {unit_id: Legs.of(chain) for unit_id, chain in chains.items()}
+        self._axis_rad: float | None = None
+        self._normal: NormalEquations
+
+    def relax(self, noise: WalkNoise) -> None:
+        """Solve from the beginning, again and again about the last, until nothing moves."""
+        self.beliefs = {one: Belief.none(len(chain)) for one, chain in self.chains.items()}
+        self._axis_rad = None
+        self.step(noise)
+        self._align()
+        for _ in range(TURNS):
+            if self._axis_rad is None:
+                self._axis_rad = axis_of(self._legs, self.beliefs)
+            if self.step(noise) < SETTLED_M:
+                break
+
+    def step(self, noise: WalkNoise) -> float:
+        """Solve once about what is believed; gives how far the furthest knot moved."""
+        self._normal = self._equations(noise)
+        x, moved_m = self._normal.solve(), 0.0
+        if self._axis_rad is not None:
+            self._axis_rad += float(x[self.shared.axis])
+        self.shared.take(x)
+        for unit_id, columns in self._columns.items():
+            belief, now = self.beliefs[unit_id], x[columns].reshape(-1, STATES)
+            moved_m = max(moved_m, float(np.abs(now[:, :2] - belief.x[:, :2]).max()))
+            belief.x = now
+        return moved_m
+
+    def _equations(self, noise: WalkNoise, *, with_links: bool = True) -> NormalEquations:
+        equations, shared = Equations(self.shared.end), self.shared
+        shared.add_priors(equations)
+        for unit_id, chain in self.chains.items():
+            base, belief = self._columns[unit_id].start, self.beliefs[unit_id]
+            add_path(equations, base, chain, belief, shared, noise)
+            add_fixes(equations, base, chain, belief, shared, noise)
+            add_seen(equations, base, chain, self.places[unit_id])
+            if self._axis_rad is not None:
+                axis = self._axis_rad, shared.axis
+                add_legs(equations, base, self._legs[unit_id], belief, axis)
+            if unit_id in self.shown:
+                add_shown(equations, base, chain, belief, self.shown[unit_id])
+            if unit_id in self.words:
+                self.words[unit_id].add(equations, base, shared.plan)
+        for link in self.links if with_links else ():
+            add_link(equations, link, self._linked)
+        return equations.normal()
+
+    def _align(self) -> None:
+        """See of which stretches the evidence tells the heading."""
+        middles = [
+            (unit_id, segment, (segment.start + segment.stop) // 2)
+            for unit_id, chain in self.chains.items()
+            for segment in chain.segments()
+        ]
+        rows = Equations(self.shared.end)
+        for unit_id, _, middle in middles:
+            column = np.array([self._columns[unit_id].start + STATES * middle])
+            rows.add(1.0, 0.0, (column + 2, 1.0))
+            rows.add(1.0, 0.0, (column + 3, 1.0))
+        spread = self._normal.spread_of(rows.matrix())
+        for number, (unit_id, segment, middle) in enumerate(middles):
+            belief = self.beliefs[unit_id]
+            turn = belief.x[middle, 2:4]
+            across = np.array([-turn[1], turn[0]]) / max(float(turn @ turn), 1e-9)
+            pair = slice(2 * number, 2 * number + 2)
+            told = float(across @ spread[pair, pair] @ across) < ALIGNED_RAD**2
+            belief.aligned[segment] = told and 0.5 < float(np.hypot(*turn)) < 2.0
+
+    # ---- what the solution says
+
+    def expected(self, unit_id: str, places: Sequence[PlaceSeen]) -> Expected:
+        """What the solution as it is expects of places that it does not know."""
+        chain = self.chains[unit_id]
+        knot, since = chain.at(np.array([place.t_ns for place in places], dtype=np.int64))
+        rows = Equations(self.shared.end)
+        for one in range(len(places)):
+            column = np.array([self._columns[unit_id].start + STATES * knot[one]])
+            add_places(rows, column, since[one : one + 1], np.zeros((1, 2)), np.ones(1))
+        return Expected(
+            mean_m=place_of(self.beliefs[unit_id].x[knot], since).ravel(),
+            covariance_m2=self._normal.spread_of(rows.matrix()),
+            seen_m=np.array([(place.north_m, place.east_m) for place in places]).ravel(),
+            noise_m2=np.array([place.std_m for place in places]) ** 2,
+        )
+
+    def residuals_m(self, unit_id: str, places: Sequence[PlaceSeen]) -> Floats:
+        """Between the trail and places."""
+        knot, since = self.chains[unit_id].at(np.array([p.t_ns for p in places], dtype=np.int64))
+        seen = np.array([(place.north_m, place.east_m) for place in places])
+        apart = place_of(self.beliefs[unit_id].x[knot], since) - seen
+        distances: Floats = np.hypot(apart[:, 0], apart[:, 1])
+        return distances
+
+    def apart_m(self, link: Link) -> float:
+        return self._linked.apart_m(link)
+
+    def spreads(self, noise: WalkNoise, *, on_plan: bool = False) -> dict[str, Floats]:
+        """Covariances of all knots (k, 5, 5) by unit; ``on_plan``: of where they lie on the plan,
+        which may lie aside itself.
+        """
+        information = self._equations(noise, with_links=False).information
+        blocks = {one: information[own, own].tocsc() for one, own in self._columns.items()}
+        plus = self.shared.plan if on_plan else None
+        shared = shared_spreads(information, self._columns, self.shared.axis, STATES, plus)
+        spreads = {one: chain_covariances(block, STATES) for one, block in blocks.items()}
+        if self.links:
+            told = told_by_links(self.links, self._linked, spreads)
+            spreads = {
+                one: chain_covariances(block, STATES, told[one]) for one, block in blocks.items()
+            }
+        return {one: spreads[one] + shared[one] for one in spreads}
+
+    @property
+    def _linked(self) -> Places:
+        bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
+        return Places(self.chains, bases, self.beliefs)

@@ -1,0 +1,203 @@
+"""Walls of a plan, as what each piece of a path says of where it was walked.
+
+A piece of some metres is laid where the solution without its own word has it, and all about there:
+wherever a wall would have stood in the way it is hardly believed.  What is left is taken for
+normal, and what that adds is the piece's word, as an equation of the one problem (expectation
+propagation: Minka 2001).  The words are found anew about each solution, until nothing moves.
+
+A plan lies some decimetres aside, for everybody alike: places are those of the plan here, and how
+far off it lies is an unknown that all units share.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.path.history import BREAK, RESTART
+from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
+from base_station.fusion.smoother.equations import Equations
+from base_station.site.floor_grid import FloorGrid
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+THROUGH_WALL = 0.02  # what is left of a place's weight: plans lack doors
+OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
+CLIMBS = 0.25  # rise over way from which a path climbs
+UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
+LOOKS = 11  # places each way, within
+WIDE = 2.5  # standard deviations
+SHARPEST_M = 0.01  # nothing is told better
+LEAST_PART = 0.05  # of what is known of a piece has to be others' word
+DAMPED = 0.6  # of a new word is taken
+
+
+def _looks() -> tuple[Floats, Floats]:
+    """Places (g, 2) of unit variance, and what each weighs (g,)."""
+    line = np.linspace(-WIDE, WIDE, LOOKS)
+    weights = np.exp(-0.5 * line**2)
+    weights /= weights.sum()
+    line /= math.sqrt(float(weights @ line**2))
+    north, east = np.meshgrid(line, line, indexing="ij")
+    return np.column_stack((north.ravel(), east.ravel())), np.outer(weights, weights).ravel()
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Of one unit's path, between knots that join."""
+
+    grid: FloorGrid
+    knot: Ints  # (p,) behind which each begins
+    since_m: Floats  # (p, 2) own path from the knot to its middle
+    piece: Ints  # (s,) of each step, in order
+    from_m: Floats  # (s, 2) own path from the piece's middle to the step's ends
+    to_m: Floats
+    floor: Ints  # (s,)
+    climbs: NDArray[np.bool_]  # (s,)
+
+    @staticmethod
+    def of(chain: Chain, grid: FloorGrid) -> Pieces:
+        path = chain.path
+        rows = np.arange(1, len(path))
+        floors = _floors(grid, path.down_m)[1:]
+        steps = np.diff(path.own_m, axis=0)
+        way = np.hypot(steps[:, 0], steps[:, 1])
+        joins = (path.flags[1:] & (BREAK | RESTART)) == 0
+        known = np.isin(floors, [floor for floor in set(floors.tolist()) if grid.knows(floor)])
+        use = joins & known & (way < UNSEEN_M) & (way > 0.05)
+        knot = np.searchsorted(chain.knots, rows, side="left") - 1  # of the step's interval
+        knots, piece = np.unique(knot[use], return_inverse=True)
+        middles = 0.5 * (chain.own_m[knots] + chain.own_m[np.minimum(knots + 1, len(chain) - 1)])
+        rise = np.abs(np.diff(path.down_m))
+        return Pieces(
+            grid=grid,
+            knot=knots,
+            since_m=middles - chain.own_m[knots],
+            piece=piece,
+            from_m=path.own_m[:-1][use] - middles[piece],
+            to_m=path.own_m[1:][use] - middles[piece],
+            floor=floors[use],
+            climbs=(rise > CLIMBS * way)[use],
+        )
+
+    def __len__(self) -> int:
+        return len(self.knot)
+
+    def logs_at(self, belief: Belief, place_m: Floats) -> Floats:
+        """How likely each piece is at each of some places of its middle (p, g, 2): logarithms."""
+        turn = belief.x[self.knot, 2:4][self.piece]
+        from_m, to_m = _turned(turn, self.from_m), _turned(turn, self.to_m)
+        logs = np.zeros(place_m.shape[:2])
+        for floor in np.unique(self.floor).tolist():
+            on = np.flatnonzero(self.floor == floor)
+            middles = place_m[self.piece[on]]
+            cut = self.grid.crossed_moved(floor, from_m[on], to_m[on], middles)
+            np.add.at(logs, self.piece[on], math.log(THROUGH_WALL) * cut)
+            up = on[self.climbs[on]]
+            if len(up) and self.grid.has_stairs(floor):
+                ends = (place_m[self.piece[up]] + to_m[up][:, None]).reshape(-1, 2)
+                off = ~self.grid.on_stairs(floor, ends).reshape(len(up), -1)
+                np.add.at(logs, self.piece[up], math.log(OFF_STAIRS) * off)
+        return logs
+
+
+class Words:
+    """What each piece says of the place of its middle on the plan, as information."""
+
+    def __init__(self, pieces: Pieces) -> None:
+        self.pieces = pieces
+        self.lost = 0.0  # log weight a piece: how much walls stood in the way
+        self._information = np.zeros((len(pieces), 2, 2))
+        self._told = np.zeros((len(pieces), 2))  # information times place
+
+    def renew(self, belief: Belief, off_m: Floats, spreads: Floats) -> None:
+        """``off_m`` (2,): how far the plan lies off; ``spreads`` (k, 5, 5): of the knots as they
+        lie on the plan.
+        """
+        rest, told = self._without(belief, off_m, spreads)
+        spread = np.linalg.inv(rest)
+        place = _times(spread, told)
+        looks, weights = _looks()
+        apart = np.einsum("pij,gj->pgi", np.linalg.cholesky(spread), looks)
+        likely = weights * np.exp(self.pieces.logs_at(belief, place[:, None] + apart))
+        passed = likely.sum(axis=1)
+        likely /= passed[:, None]
+        shift = np.einsum("pg,pgi->pi", likely, apart)
+        off = apart - shift[:, None]
+        left = np.einsum("pg,pgi,pgj->pij", likely, off, off) + SHARPEST_M**2 * np.eye(2)
+        information = _at_least_nothing(np.linalg.inv(left) - rest)
+        now = _times(rest + information, place + shift) - told
+        self._information += DAMPED * (information - self._information)
+        self._told += DAMPED * (now - self._told)
+        self.lost = float(-np.log(passed).mean())
+
+    def _without(self, belief: Belief, off_m: Floats, spreads: Floats) -> tuple[Floats, Floats]:
+        """What is known of each middle but for its own word: information (p, 2, 2), and times
+        place (p, 2).
+        """
+        pieces = self.pieces
+        to_place = np.zeros((len(pieces), 2, STATES))
+        north, east = pieces.since_m.T
+        to_place[:, 0, 0] = to_place[:, 1, 1] = 1.0
+        to_place[:, 0, 2], to_place[:, 0, 3] = north, -east
+        to_place[:, 1, 2], to_place[:, 1, 3] = east, north
+        place = place_of(belief.x[pieces.knot], pieces.since_m) + off_m
+        whole = np.linalg.inv(to_place @ spreads[pieces.knot] @ to_place.transpose(0, 2, 1))
+        rest = whole - self._information
+        # Numbers too near each other to be told apart: the word is as good as all there is.
+        lost = np.linalg.eigvalsh(rest)[:, 0] < LEAST_PART * np.linalg.eigvalsh(whole)[:, 0]
+        rest[lost] = whole[lost]
+        return rest, _times(whole, place) - np.where(lost[:, None], 0.0, self._told)
+
+    def add(self, equations: Equations, base: int, plan: int) -> None:
+        """``plan``: the column by which the plan lies north of where it should."""
+        values, vectors = np.linalg.eigh(self._information)
+        north, east = self.pieces.since_m.T
+        columns = base + STATES * self.pieces.knot
+        for one in (0, 1):
+            used = values[:, one] > 1e-3
+            if not used.any():
+                continue
+            to_n, to_e = vectors[used, 0, one], vectors[used, 1, one]
+            value = values[used, one]
+            right = (to_n * self._told[used, 0] + to_e * self._told[used, 1]) / value
+            n, e, column = north[used], east[used], columns[used]
+            shared = np.full(len(column), plan)
+            equations.add(
+                1.0 / np.sqrt(value), right,
+                (column, to_n), (column + 1, to_e),
+                (column + 2, to_n * n + to_e * e), (column + 3, to_e * n - to_n * e),
+                (shared, to_n), (shared + 1, to_e),
+            )  # fmt: skip
+
+
+def _floors(grid: FloorGrid, down_m: Floats) -> Ints:
+    """Storey by storey of the plan, -1 where it has none."""
+    floors, held = [], None
+    for height_m in down_m.tolist():
+        held = grid.plan.floor_at(height_m, held)
+        floors.append(-(2**31) if held is None else held)
+    return np.array(floors, dtype=np.int64)
+
+
+def _turned(turn: Floats, vectors: Floats) -> Floats:
+    c, s = turn.T
+    return np.column_stack(
+        (c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1])
+    )
+
+
+def _times(matrices: NDArray[Any], vectors: Floats) -> Floats:
+    """(p, n, n) and (p, n): (p, n)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
+
+
+def _at_least_nothing(information: Floats) -> Floats:
+    """Without what would make a place less sure."""
+    values, vectors = np.linalg.eigh(information)
+    return np.asarray((vectors * np.maximum(values, 0.0)[:, None]) @ vectors.transpose(0, 2, 1))
