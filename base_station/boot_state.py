@@ -12,7 +12,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Header
 from shared.sequence_set import SequenceSet
 
-CLOCK_DRIFT = 1e-4  # a unit's clock against the station's, at most
+CLOCK_DRIFT_PART = 10_000  # a unit's clock drifts by at most so small a part of the time
 PROMPT_NS = 5 * NS_PER_S  # a message may be so much slower than the fastest and is of now
 BACKDATED_NS = 60 * NS_PER_S  # by a unit that knows the station's time
 CLOCK_SET_NS = 60 * NS_PER_S  # no link delays all messages by so much: the station's clock was set
@@ -67,17 +67,14 @@ class BootState(msgspec.Struct):
         that bound the unit's own estimate is better.  Gives the bound of now.
         """
         offset_ns = t_ns - header.t_mono_ns
-        drifted_ns = self.fastest_ns + round((t_ns - self.fastest_t_ns) * CLOCK_DRIFT)
+        drifted_ns = self.fastest_ns + (t_ns - self.fastest_t_ns) // CLOCK_DRIFT_PART
         self.late = self.late + 1 if offset_ns > drifted_ns + CLOCK_SET_NS else 0
         was_set = self.late >= CLOCK_SET_MESSAGES
-        if self.fastest_t_ns == 0 or offset_ns < drifted_ns or was_set:
+        if offset_ns < drifted_ns or self.fastest_t_ns == 0 or was_set:
             self.fastest_ns, self.fastest_t_ns, self.late = offset_ns, t_ns, 0
             drifted_ns = offset_ns
         self.clock_std_s = header.utc_std_s
-        said_ns = header.t_utc_ns - header.t_mono_ns
-        slack_ns = SAID_SLACK_NS + round(3.0 * header.utc_std_s * NS_PER_S)
-        usable = header.utc_std_s > 0.0 and -slack_ns <= drifted_ns - said_ns <= SLOWEST_NS
-        self.said_ns = said_ns if usable else None
+        self.said_ns = _said_ns(header, drifted_ns) if header.utc_std_s > 0.0 else None
         return drifted_ns
 
     def together_ns(self, other: BootState) -> int:
@@ -85,3 +82,10 @@ class BootState(msgspec.Struct):
         return min(self.there_to_ns, other.there_to_ns) - max(
             self.there_from_ns, other.there_from_ns
         )
+
+
+def _said_ns(header: Header, drifted_ns: int) -> int | None:
+    """The offset as the unit estimates it, where that can be."""
+    said_ns = header.t_utc_ns - header.t_mono_ns
+    slack_ns = SAID_SLACK_NS + round(3.0 * header.utc_std_s * NS_PER_S)
+    return said_ns if -slack_ns <= drifted_ns - said_ns <= SLOWEST_NS else None

@@ -6,9 +6,6 @@ a station starts again from a checkpoint instead of from the beginning of the lo
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from typing import Literal
-
 import msgspec
 
 from base_station.assessment.tally import TrustTally
@@ -20,16 +17,17 @@ from base_station.fusion.path.history import PathHistory
 from base_station.fusion.vertical.weather import Barometers
 from base_station.pins.late import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.sender import STALE_AFTER_S, Link, Sender
 from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
 from base_station.site.storeys import Storey
-from shared.channels import GPS, NO_TRACKER, Channel
+from base_station.trail import TrailStep, extend_trail, fill_trail
+from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import (
     AlarmState,
     FusedPosition,
-    Header,
     Heartbeat,
     Position,
     Status,
@@ -38,20 +36,9 @@ from shared.messages import (
 )
 from shared.messages.station import TakeOver
 
-STALE_AFTER_S = 10.0
-LOST_AFTER_S = 30.0
 FORGOTTEN = "(forgotten)"  # in place of what was said of a person
 PAR_INTERVAL_S = 20 * 60.0  # departments use 10 to 30 minutes
 WORK_LIMIT_S = 40 * 60.0
-TRAIL_POINTS = 900  # a unit's trail in the console; the log has all of it
-TRAIL_STEP_M = 0.5
-TRAIL_STEP_NS = NS_PER_S
-TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
-BOOTS = 16  # runs of a unit's program that are told from each other
-TOGETHER_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
-
-Link = Literal["live", "stale", "lost", "never"]
-News = Literal["new", "old", "repeat"]  # old: a later message of the channel came before it
 
 
 class Person(msgspec.Struct, frozen=True):
@@ -82,28 +69,17 @@ class Duty(msgspec.Struct):
     rest_due_ns: int | None = None
 
 
-class TrailStep(msgspec.Struct, frozen=True, array_like=True):
-    t_ns: int
-    north_m: float
-    east_m: float
-    floor: int | None
-
-
 class Fault(msgspec.Struct, frozen=True):
     t_ns: int
     text: str
 
 
-class UnitState(msgspec.Struct):
+class UnitState(Sender):
     """Times are station times of receipt unless a name says otherwise; None: never."""
 
-    unit_id: str
     label: str = ""
     registered: bool = False
     person: Person | None = None
-    boots: list[BootState] = msgspec.field(default_factory=list)  # the running one last
-    heard_ns: int | None = None
-    latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
     link: Link = "never"
     status: Status | None = None
     status_ns: int = 0
@@ -124,14 +100,11 @@ class UnitState(msgspec.Struct):
     mayday_cancelled_ns: int | None = None
     fall_ns: int | None = None
     fault: Fault | None = None
-    stopped_ns: int | None = None  # said goodbye in an orderly way
     inside_since_ns: int | None = None
     reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
     duty: Duty | None = None  # somebody wears it and an incident is open
     off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
-    duplicates: int = 0
-    out_of_order: int = 0
     not_used: dict[str, int] = msgspec.field(default_factory=dict)  # fixes, path jumps; by reason
 
     @property
@@ -167,100 +140,22 @@ class UnitState(msgspec.Struct):
             floors_climbed=agent.status.floors_climbed,
         )
 
-    def link_at(self, t_ns: int) -> Link:
-        if self.heard_ns is None:
-            return "never"
-        silent_s = (t_ns - self.heard_ns) / NS_PER_S
-        if silent_s >= LOST_AFTER_S:
-            return "lost"
-        return "stale" if silent_s >= STALE_AFTER_S else "live"
-
-    def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
-        """Note that a message came, and say what it is worth."""
-        boot = self._boot(header.boot_id)
-        if not boot.seen.add(header.seq):
-            self.duplicates += 1
-            return "repeat"
-        self.heard_ns = t_ns
-        if channel is not GPS:  # a receiver may be wrong about when its fix was valid
-            running = self.boots[-1]
-            silent = t_ns - running.there_to_ns >= STALE_AFTER_S * NS_PER_S
-            if boot.note(t_ns, header) and boot is not running and silent:
-                self._let_run(boot)
-        latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
-        if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
-            self.out_of_order += 1
-            return "old"
-        self.latest_mono_ns[channel.name] = header.t_mono_ns
-        self.stopped_ns = None
-        return "new"
-
-    def has(self, header: Header) -> bool:
-        """Whether this message came already, live or out of the journal."""
-        boot = self._known_boot(header.boot_id)
-        return boot is not None and header.seq in boot.seen
-
-    def take_back(self, header: Header) -> None:
-        """The log did not take it: it is missing like what never came."""
-        boot = self._known_boot(header.boot_id)
-        if boot is not None:
-            boot.seen.discard(header.seq)
-
-    def recall(self, header: Header) -> News:
-        """Note that a message came out of the unit's journal; it says nothing of the present."""
-        boot = self._known_boot(header.boot_id)
-        if boot is None:
-            boot = BootState(header.boot_id)
-            self.boots = [boot, *self.boots[1 - BOOTS :]]
-        if not boot.seen.add(header.seq):
-            self.duplicates += 1
-            return "repeat"
-        return "old"
-
-    @property
-    def twin(self) -> BootState | None:
-        """The run of another machine that was there together with the one that is shown."""
-        if not self.boots:
-            return None
-        *others, running = self.boots
-        twins = [one for one in others if one.together_ns(running) >= TOGETHER_NS]
-        return max(twins, key=lambda one: one.there_to_ns, default=None)
-
-    def _boot(self, boot_id: int) -> BootState:
-        """The boot of a live message; one not heard of before is the one that runs now."""
-        boot = self._known_boot(boot_id)
-        if boot is None:
-            boot = BootState(boot_id)
-            self._let_run(boot)
-        return boot
-
-    def _let_run(self, boot: BootState) -> None:
-        """The live state follows this one from now on."""
-        others = [one for one in self.boots if one is not boot]
-        self.boots = [*others[1 - BOOTS :], boot]
-        self.latest_mono_ns.clear()
-
-    def _known_boot(self, boot_id: int) -> BootState | None:
-        if self.boots and self.boots[-1].boot_id == boot_id:
-            return self.boots[-1]
-        return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)
-
     def extend_trail(self, fused: FusedPosition) -> bool:
         """Add a point where the wearer moved, at most one a second; True where one was added."""
-        return _extend(self.trail, fused)
+        return extend_trail(self.trail, fused)
 
     def fill_trail(self, fused: FusedPosition) -> bool:
         """Put a point that came late in its place, where none is near in time."""
-        return _fill(self.trail, fused)
+        return fill_trail(self.trail, fused)
 
     def extend_plain_trail(self, fused: FusedPosition) -> None:
         """Where the wearer would be shown without any pin."""
         if self.plain_trail is not None:
-            _extend(self.plain_trail, fused)
+            extend_trail(self.plain_trail, fused)
 
     def fill_plain_trail(self, fused: FusedPosition) -> None:
         if self.plain_trail is not None:
-            _fill(self.plain_trail, fused)
+            fill_trail(self.plain_trail, fused)
 
     def show_solved_trail(self, trail: list[TrailStep]) -> None:
         """The past was solved with pins; what would be without is kept beside it."""
@@ -274,32 +169,6 @@ class UnitState(msgspec.Struct):
             return False
         self.trail, self.plain_trail = self.plain_trail, None
         return True
-
-
-def _extend(trail: list[TrailStep], fused: FusedPosition) -> bool:
-    if trail:
-        last = trail[-1]
-        age_ns = fused.t_meas_ns - last.t_ns
-        moved_m2 = (fused.north_m - last.north_m) ** 2 + (fused.east_m - last.east_m) ** 2
-        moved = moved_m2 >= TRAIL_STEP_M**2 or fused.floor != last.floor
-        if age_ns < (TRAIL_STEP_NS if moved else TRAIL_REST_NS):
-            return False
-    trail.append(TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
-    if len(trail) > TRAIL_POINTS:
-        del trail[0]
-    return True
-
-
-def _fill(trail: list[TrailStep], fused: FusedPosition) -> bool:
-    place = bisect_left(trail, fused.t_meas_ns, key=lambda step: step.t_ns)
-    near = trail[max(place - 1, 0) : place + 1]
-    if len(trail) >= TRAIL_POINTS and place == 0:
-        return False
-    if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in near):
-        return False
-    trail.insert(place, TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor))
-    del trail[:-TRAIL_POINTS]
-    return True
 
 
 class Alarm(msgspec.Struct):

@@ -17,9 +17,10 @@ from base_station.api.wire import (
 )
 from base_station.assessment.trust import conflicts_of, trust_of
 from base_station.live.sinks import PhotoUrls
-from base_station.live_state import Alarm, Duty, Person, StationState, TrailStep, UnitState
+from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
 from base_station.site.plan import Ring
 from base_station.site.roaming import RADII_95, roamed_m
+from base_station.trail import TrailStep
 from shared.clock import NS_PER_S
 from shared.messages import Activity, FusedPosition, Heartbeat, Status
 from shared.quality import Quality

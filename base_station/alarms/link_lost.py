@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from base_station.alarms.port import INFORMATION, SOON, Clear, Finding, Verdict
-from base_station.live_state import LOST_AFTER_S, STALE_AFTER_S, UnitState
+from base_station.live_state import UnitState
+from base_station.sender import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
 from shared.messages import Message
 

@@ -22,16 +22,29 @@ from base_station.fusion.smoother.port import (
     UnitEvidence,
     Verdict,
 )
-from base_station.live_state import TRAIL_POINTS, StationState, TrailStep
+from base_station.live_state import StationState
 from base_station.pins.book import units_of
 from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
 from base_station.site.storeys import floor_at, storey_of
+from base_station.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
 SUREST_M = 0.05  # nobody knows a place better
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
+
+
+@dataclass(frozen=True)
+class Past:
+    """What solves it."""
+
+    smoother: Smoother
+    grid: FloorGrid | None  # the plan's walls
+
+    def solve(self, unit_id: str, history: PathHistory, places: Sequence[PlaceSeen]) -> Solution:
+        return self.smoother.solve({unit_id: _evidence(history, places, self.grid)})
 
 
 @dataclass(frozen=True)
@@ -52,9 +65,7 @@ def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
     return sorted(wanted)
 
 
-def solve_pins(
-    state: StationState, smoother: Smoother, unit_ids: Sequence[str]
-) -> dict[str, Repinned]:
+def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict[str, Repinned]:
     """Solve the past of these units, and judge their pins."""
     results: dict[str, Repinned] = {}
     verdicts: dict[str, list[PinVerdict]] = {}
@@ -63,11 +74,10 @@ def solve_pins(
         pins = [pin for pin in state.pins.values() if unit_id in units_of(pin)]
         solution: Solution | None = None
         if history is not None and history.begin_ns is not None:
-            places, waiting = _places(state, smoother, unit_id, history, pins)
+            places, waiting = _places(state, past, unit_id, history, pins)
             _await(history, pins, waiting)
             if places:
-                evidence = _evidence(history, places)
-                solution = smoother.solve({unit_id: evidence})
+                solution = past.solve(unit_id, history, places)
         else:
             waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
         for pin_id, why in waiting.items():
@@ -102,8 +112,10 @@ def trail_of(state: StationState, points: PathArrays, path: SmoothedPath) -> lis
     ]
 
 
-def evidence_of_all(state: StationState) -> Mapping[str, UnitEvidence]:
-    """Everything that is known of every unit that has a path, but for meetings."""
+def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str, UnitEvidence]:
+    """Everything that is known of every unit that has a path, but for meetings; ``grid``: the
+    plan's walls.
+    """
     found = {}
     for unit_id, history in sorted(state.paths.items()):
         if history.begin_ns is not None:
@@ -114,7 +126,7 @@ def evidence_of_all(state: StationState) -> Mapping[str, UnitEvidence]:
                 if pin.kind != "meeting"
                 and not isinstance(place := _place(state, history, pin), str)
             ]
-            found[unit_id] = _evidence(history, places)
+            found[unit_id] = _evidence(history, places, grid)
     return found
 
 
@@ -167,7 +179,7 @@ def floors_along(state: StationState, points: PathArrays, path: SmoothedPath) ->
 
 def _places(
     state: StationState,
-    smoother: Smoother,
+    past: Past,
     unit_id: str,
     history: PathHistory,
     pins: Sequence[Pin],
@@ -177,7 +189,7 @@ def _places(
     waiting: dict[str, str] = {}
     for pin in pins:
         if pin.kind == "meeting":
-            place = _met(state, smoother, unit_id, history, pin)
+            place = _met(state, past, unit_id, history, pin)
         else:
             place = _place(state, history, pin)
         if isinstance(place, str):
@@ -211,7 +223,7 @@ def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | s
 
 
 def _met(
-    state: StationState, smoother: Smoother, unit_id: str, history: PathHistory, pin: Pin
+    state: StationState, past: Past, unit_id: str, history: PathHistory, pin: Pin
 ) -> PlaceSeen | str:
     """Where the other one was then, by its own evidence."""
     t_ns = _time_of(history, pin)
@@ -231,7 +243,7 @@ def _met(
         and one.kind != "meeting"
         and not isinstance(place := _place(state, other, one), str)
     ]
-    path = smoother.solve({other_id: _evidence(other, places)}).paths[other_id]
+    path = past.solve(other_id, other, places).paths[other_id]
     row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
     spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
     if spread_m > MEETING_MOST_M:
@@ -264,8 +276,10 @@ def _await(history: PathHistory, pins: Sequence[Pin], waiting: Mapping[str, str]
     history.awaited_ns = min(times, default=None)
 
 
-def _evidence(history: PathHistory, places: Sequence[PlaceSeen]) -> UnitEvidence:
-    return UnitEvidence(history.arrays(), history.start, history.start_ns, places)
+def _evidence(
+    history: PathHistory, places: Sequence[PlaceSeen], grid: FloorGrid | None
+) -> UnitEvidence:
+    return UnitEvidence(history.arrays(), history.start, history.start_ns, places, grid)
 
 
 def _judged(state: StationState, verdict: Verdict) -> PinVerdict:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.live_state import StationState, TrailStep
+from base_station.live_state import StationState
 from base_station.pins.book import reframe_pins
+from base_station.trail import TrailStep
 from shared.geo import rotate
 
 

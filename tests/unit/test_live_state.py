@@ -9,7 +9,8 @@ import msgspec
 import pytest
 
 from base_station.api.wire import ClockView
-from base_station.live_state import TRAIL_POINTS, UnitState
+from base_station.live_state import UnitState
+from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
 from base_station.views import StationFacts, health_view, snapshot
 from shared.messages import EventKind, Heartbeat

@@ -1,0 +1,113 @@
+"""One that speaks to the station, a unit or the agent that tracks for one: which of its messages
+are there, whether it is heard, and which run of its program is the one that is shown.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+from base_station.boot_state import BootState
+from shared.channels import GPS, Channel
+from shared.clock import NS_PER_S
+from shared.messages import Header
+
+STALE_AFTER_S = 10.0
+LOST_AFTER_S = 30.0
+BOOTS = 16  # runs of a unit's program that are told from each other
+TOGETHER_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
+
+Link = Literal["live", "stale", "lost", "never"]
+News = Literal["new", "old", "repeat"]  # old: a later message of the channel came before it
+
+
+class Sender(msgspec.Struct):
+    """Times are station times of receipt; None: never."""
+
+    unit_id: str
+    boots: list[BootState] = msgspec.field(default_factory=list)  # the running one last
+    heard_ns: int | None = None
+    latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
+    stopped_ns: int | None = None  # said goodbye in an orderly way
+    duplicates: int = 0
+    out_of_order: int = 0
+
+    def link_at(self, t_ns: int) -> Link:
+        if self.heard_ns is None:
+            return "never"
+        silent_s = (t_ns - self.heard_ns) / NS_PER_S
+        if silent_s >= LOST_AFTER_S:
+            return "lost"
+        return "stale" if silent_s >= STALE_AFTER_S else "live"
+
+    def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
+        """Note that a message came, and say what it is worth."""
+        boot = self._boot(header.boot_id)
+        if not boot.seen.add(header.seq):
+            self.duplicates += 1
+            return "repeat"
+        self.heard_ns = t_ns
+        if channel is not GPS:  # a receiver may be wrong about when its fix was valid
+            running = self.boots[-1]
+            if boot.note(t_ns, header) and boot is not running:
+                silent_ns = t_ns - running.there_to_ns
+                if silent_ns >= STALE_AFTER_S * NS_PER_S:
+                    self._let_run(boot)
+        latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
+        if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
+            self.out_of_order += 1
+            return "old"
+        self.latest_mono_ns[channel.name] = header.t_mono_ns
+        self.stopped_ns = None
+        return "new"
+
+    def has(self, header: Header) -> bool:
+        """Whether this message came already, live or out of the journal."""
+        boot = self._known_boot(header.boot_id)
+        return boot is not None and header.seq in boot.seen
+
+    def take_back(self, header: Header) -> None:
+        """The log did not take it: it is missing like what never came."""
+        boot = self._known_boot(header.boot_id)
+        if boot is not None:
+            boot.seen.discard(header.seq)
+
+    def recall(self, header: Header) -> News:
+        """Note that a message came out of the unit's journal; it says nothing of the present."""
+        boot = self._known_boot(header.boot_id)
+        if boot is None:
+            boot = BootState(header.boot_id)
+            self.boots = [boot, *self.boots[1 - BOOTS :]]
+        if not boot.seen.add(header.seq):
+            self.duplicates += 1
+            return "repeat"
+        return "old"
+
+    @property
+    def twin(self) -> BootState | None:
+        """The run of another machine that was there together with the one that is shown."""
+        if len(self.boots) < 2:
+            return None
+        *others, running = self.boots
+        twins = [one for one in others if one.together_ns(running) >= TOGETHER_NS]
+        return max(twins, key=lambda one: one.there_to_ns, default=None)
+
+    def _boot(self, boot_id: int) -> BootState:
+        """The boot of a live message; one not heard of before is the one that runs now."""
+        boot = self._known_boot(boot_id)
+        if boot is None:
+            boot = BootState(boot_id)
+            self._let_run(boot)
+        return boot
+
+    def _let_run(self, boot: BootState) -> None:
+        """The live state follows this one from now on."""
+        others = [one for one in self.boots if one is not boot]
+        self.boots = [*others[1 - BOOTS :], boot]
+        self.latest_mono_ns.clear()
+
+    def _known_boot(self, boot_id: int) -> BootState | None:
+        if self.boots and self.boots[-1].boot_id == boot_id:
+            return self.boots[-1]
+        return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)
