@@ -2,9 +2,11 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import * as api from "../api";
+import { actionWord, detailWords } from "../audit";
 import { clockTime, dateAndTime } from "../words";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
+import { useLoaded } from "./useLoaded";
 
 const PAGE = 100;
 
@@ -12,6 +14,8 @@ const PAGE = 100;
 export function AuditDialog() {
   const entries = useSignal<readonly api.AuditEntry[]>([]);
   const ended = useSignal(false);
+  const [people] = useLoaded(api.people);
+  const names = new Map((people.value ?? []).map((person) => [person.person_id, person.name]));
   const more = () => {
     const before = entries.peek().at(-1)?.t_ms;
     void attempt(api.audit(before, PAGE)).then((page) => {
@@ -32,8 +36,8 @@ export function AuditDialog() {
                 {dateAndTime(entry.t_ms).slice(0, 10)} {clockTime(entry.t_ms)}
               </td>
               <td>{entry.by}</td>
-              <th scope="row">{spaced(entry.action)}</th>
-              <td class="detail">{said(entry.detail)}</td>
+              <th scope="row">{actionWord(entry.action)}</th>
+              <td class="detail">{detailWords(entry.detail, names)}</td>
             </tr>
           ))}
         </tbody>
@@ -45,20 +49,4 @@ export function AuditDialog() {
       )}
     </Dialog>
   );
-}
-
-/** "AcknowledgeAlarm" as "Acknowledge alarm". */
-function spaced(action: string): string {
-  const words = action.replaceAll(/(?<=[a-z])(?=[A-Z])/g, " ").toLowerCase();
-  return words.charAt(0).toUpperCase() + words.slice(1);
-}
-
-/** What was sent with an action, without what was left empty. */
-function said(detail: string): string {
-  if (!detail.startsWith("{")) return detail;
-  const values = Object.entries(JSON.parse(detail) as Record<string, unknown>);
-  return values
-    .filter(([, value]) => value !== "" && value !== false && value !== 0 && value !== null)
-    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${String(value)}`)
-    .join(", ");
 }

@@ -1,0 +1,71 @@
+/** What people did, from the audit log as the station keeps it, in words and usual units.  Pure. */
+import { dateAndTime, duration } from "./words";
+
+/** By number, as the station's messages have them (shared/messages/command.py). */
+const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm"];
+/** Says nothing to a person. */
+const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "term"]);
+const DEGREES = 180 / Math.PI;
+
+/** "AcknowledgeAlarm" as "Acknowledge alarm". */
+export function actionWord(action: string): string {
+  const words = action.replaceAll(/(?<=[a-z])(?=[A-Z])/g, " ").toLowerCase();
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** What was sent with an action, without what was left empty; `names` are people's, by id. */
+export function detailWords(detail: string, names: ReadonlyMap<string, string>): string {
+  if (!detail.startsWith("{")) return withNames(detail, names);
+  const values = Object.entries(JSON.parse(detail) as Record<string, unknown>);
+  return values
+    .map(([name, value]) => said(name, value))
+    .filter((words) => words !== "")
+    .join(", ");
+}
+
+/** People stand there by id, with the name that was given then where one was. */
+function withNames(detail: string, names: ReadonlyMap<string, string>): string {
+  const [id = "", ...given] = detail.split(" ");
+  const name = names.get(id);
+  if (name === undefined) return detail;
+  return given.length === 0 ? name : given.join(" ");
+}
+
+function said(name: string, value: unknown): string {
+  if (WITHOUT_MEANING.has(name) || value === "" || value === null || value === 0) return "";
+  if (name === "resting") return value === true ? "to rest" : "back to work";
+  if (typeof value === "boolean") return value ? spaced(name) : "";
+  if (name === "kind" && typeof value === "number") return COMMANDS[value] ?? String(value);
+  if (typeof value === "number") return quantity(name, value);
+  const words = Array.isArray(value) ? value.join(" ") : String(value);
+  return name === "unit_id" || name === "unit_ids" ? words : `${spaced(name)}: ${words}`;
+}
+
+/** A number with the unit that its name ends with. */
+function quantity(name: string, value: number): string {
+  const [, what = name, unit = ""] = /^(.*)_(m|s|ns|deg|rad|hz)$/.exec(name) ?? [];
+  switch (unit) {
+    case "m":
+      return `${spaced(what)} ${rounded(value)} m`;
+    case "s":
+      return `${spaced(what)} ${duration(1000 * value)}`;
+    case "ns":
+      return `${spaced(what)} ${dateAndTime(value / 1e6)}`;
+    case "deg":
+      return `${spaced(what)} ${value}°`;
+    case "rad":
+      return `${spaced(what)} ${rounded(value * DEGREES)}°`;
+    case "hz":
+      return `${spaced(what)} ${value} a second`;
+    default:
+      return `${spaced(name)} ${value}`;
+  }
+}
+
+function rounded(value: number): string {
+  return String(Math.round(10 * value) / 10);
+}
+
+function spaced(name: string): string {
+  return name.replaceAll("_", " ").replace(/\bstd\b/, "±").replace(/^(.*) ±$/, "± of $1");
+}

@@ -1,0 +1,40 @@
+import { describe, expect, it } from "vitest";
+import { actionWord, detailWords } from "../src/audit";
+
+const NAMES = new Map([["26ab024f9849922c", "Elena Rossi"]]);
+
+function words(detail: object | string): string {
+  return detailWords(typeof detail === "string" ? detail : JSON.stringify(detail), NAMES);
+}
+
+describe("the audit log", () => {
+  it("says what was done as a sentence begins", () => {
+    expect(actionWord("AcknowledgeAlarm")).toBe("Acknowledge alarm");
+  });
+
+  it.each([
+    [
+      { command_id: "08a1", kind: 2, unit_id: "", everyone: true, text: "", lasts_s: 600 },
+      "PAR, everyone, lasts 10 min 00 s",
+    ],
+    [
+      { unit_id: "FF-05", north_m: -6, east_m: 4.04, down_m: 0, std_m: 1, heading_std_rad: 0.2 },
+      "FF-05, north -6 m, east 4 m, ± 1 m, ± of heading 11.5°",
+    ],
+    [{ unit_id: "FF-01", resting: false }, "FF-01, back to work"],
+    [{ unit_ids: ["FF-01", "FF-02"], pin_id: "17" }, "FF-01 FF-02"],
+    [
+      { unit_id: "FF-05", person_id: "26ab", person_name: "Elena Rossi", crew: "Rescue 3", role: "" },
+      "FF-05, person name: Elena Rossi, crew: Rescue 3",
+    ],
+  ])("says %o in words", (detail, text) => {
+    expect(words(detail)).toBe(text);
+  });
+
+  it("says a person by name while there is one", () => {
+    expect(words("26ab024f9849922c")).toBe("Elena Rossi");
+    expect(words("26ab024f9849922c Elena Rossi")).toBe("Elena Rossi");
+    expect(words("26ab024f9849922c Lena Rossi")).toBe("Lena Rossi");
+    expect(words("mia as viewer")).toBe("mia as viewer");
+  });
+});
