@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from datetime import timedelta
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from shared.enrolment import Enrolment, Holder
+
+if TYPE_CHECKING:
+    from base_station.pki.folder import PkiFolder
 
 app = typer.Typer(
     help="The station's certificate authority: enrol units, revoke them, see who is enrolled.",
@@ -16,6 +20,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+Name = Annotated[
+    str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
+]
 Data = Annotated[Path, typer.Option(help="The station's data folder.")]
 Days = Annotated[int, typer.Option(min=1, max=3650, help="How long the certificate is valid.")]
 Operator = Annotated[
@@ -63,50 +70,38 @@ def init(
     typer.echo(f"keep a copy of {folder.path} where nobody else reads it")
 
 
-@app.command()
-def enroll(
-    name: Annotated[
-        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
-    ],
-    data: Data = _DATA,
-    operator: Operator = False,
-    tracker: Tracker = False,
-    days: Days = 365,
-    connect: Connect = None,
-    out: Out = None,
-    qr: Qr = False,
-    png: Png = None,
-) -> None:
-    """Make a certificate for a unit, as one file or QR code to carry to it."""
-    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+def _issuing(
+    issue: Callable[[PkiFolder, str, Holder, timedelta, Sequence[str]], Enrolment],
+) -> Callable[..., None]:
+    """A command that makes a certificate and hands it over."""
 
-    holder = _holder(operator=operator, tracker=tracker)
-    target = _free_target(name, holder, out, png, qr=qr)
-    enrolment = PkiFolder(data).enroll(name, holder, timedelta(days=days), connect or ())
-    _hand_over(enrolment, target, png, qr=qr)
+    def command(
+        name: Name,
+        data: Data = _DATA,
+        operator: Operator = False,
+        tracker: Tracker = False,
+        days: Days = 365,
+        connect: Connect = None,
+        out: Out = None,
+        qr: Qr = False,
+        png: Png = None,
+    ) -> None:
+        from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+
+        holder = _holder(operator=operator, tracker=tracker)
+        target = _free_target(name, holder, out, png, qr=qr)
+        valid = timedelta(days=days)
+        _hand_over(issue(PkiFolder(data), name, holder, valid, connect or ()), target, png, qr=qr)
+
+    return command
 
 
-@app.command()
-def renew(
-    name: Annotated[
-        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
-    ],
-    data: Data = _DATA,
-    operator: Operator = False,
-    tracker: Tracker = False,
-    days: Days = 365,
-    connect: Connect = None,
-    out: Out = None,
-    qr: Qr = False,
-    png: Png = None,
-) -> None:
-    """Make a new certificate for somebody enrolled; the old one works until it ends."""
-    from base_station.pki.folder import PkiFolder  # noqa: PLC0415
-
-    holder = _holder(operator=operator, tracker=tracker)
-    target = _free_target(name, holder, out, png, qr=qr)
-    enrolment = PkiFolder(data).renew(name, holder, timedelta(days=days), connect or ())
-    _hand_over(enrolment, target, png, qr=qr)
+app.command("enroll", help="Make a certificate for a unit, as one file or QR code to carry to it.")(
+    _issuing(lambda folder, *what: folder.enroll(*what))
+)
+app.command(
+    "renew", help="Make a new certificate for somebody enrolled; the old one works until it ends."
+)(_issuing(lambda folder, *what: folder.renew(*what)))
 
 
 @app.command()
@@ -170,9 +165,7 @@ def join(
 
 @app.command()
 def revoke(
-    name: Annotated[
-        str, typer.Argument(help="The unit (also with --tracker), or with --operator the person.")
-    ],
+    name: Name,
     data: Data = _DATA,
     operator: Operator = False,
     tracker: Tracker = False,
