@@ -105,7 +105,7 @@ def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
                 else:
                     walked_m.append(run.heading_walked_m)
             truths = [person.truth for person in people]
-            afterwards.note(name, truths, shown_m, kinds[name].histories, rng)
+            afterwards.note(name, truths, shown_m, kinds[name], rng)
         for person in people:
             best_m2 = bound_m2(person.truth, person.fixes, person.engine_fixes, person.building)
             live_m, then_m = (draw_errors_m(rng, one_m2) for one_m2 in best_m2)

@@ -26,6 +26,7 @@ from base_station.bench.incident_sensors import mono_ns
 from base_station.fusion.path.history import PathArrays, PathHistory
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
+from base_station.site.floor_grid import FloorGrid
 from shared.messages import Position
 
 Floats = NDArray[np.float64]
@@ -64,26 +65,41 @@ class RecordingKind:
 
     def __init__(self, kind: FuserKind) -> None:
         self._kind = kind
+        self._known = _KnownPlan()
         self.histories: list[PathHistory] = []
 
     @property
     def name(self) -> str:
         return self._kind.name
 
+    @property
+    def grid(self) -> FloorGrid | None:
+        """The plan's walls, as the fusers heard of them."""
+        return self._known.grid
+
     def restore(self, saved: bytes) -> Fuser:
         return self._kind.restore(saved)
 
     def new(self) -> Fuser:
         self.histories.append(PathHistory())
-        return cast("Fuser", _Recorded(self._kind.new(), self.histories[-1]))
+        return cast("Fuser", _Recorded(self._kind.new(), self.histories[-1], self._known))
+
+
+@dataclass
+class _KnownPlan:
+    grid: FloorGrid | None = None
 
 
 class _Recorded:
-    def __init__(self, fuser: Fuser, history: PathHistory) -> None:
-        self._fuser, self._history = fuser, history
+    def __init__(self, fuser: Fuser, history: PathHistory, known: _KnownPlan) -> None:
+        self._fuser, self._history, self._known = fuser, history, known
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._fuser, name)
+
+    def consider(self, grid: FloorGrid | None) -> None:
+        self._known.grid = grid
+        self._fuser.consider(grid)
 
     def start(self, start: Start) -> None:
         self._history.begin_with(start)
@@ -127,13 +143,15 @@ class SmoothingScores:
         way: str,
         truths: list[Truth],
         shown_m: list[Floats],
-        histories: list[PathHistory],
+        recorded: RecordingKind,
         rng: np.random.Generator,
     ) -> None:
         """One incident, person by person in the same order."""
         evidence = {
-            str(number): UnitEvidence(history.arrays(), history.start, history.start_ns)
-            for number, history in enumerate(histories)
+            str(number): UnitEvidence(
+                history.arrays(), history.start, history.start_ns, grid=recorded.grid
+            )
+            for number, history in enumerate(recorded.histories)
         }
         paths = self._smoother.smooth(evidence).paths
         for number, truth in enumerate(truths):

@@ -23,6 +23,7 @@ from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback
 from base_station.pins.pinning import evidence_of_all, floors_along, ties_of
+from base_station.site.floor_grid import FloorGrid
 from shared.clock import NS_PER_S, Clock
 from shared.quality import Quality
 
@@ -144,7 +145,7 @@ class Hindsight:
         with self._working:
             until_ns = incident.closed_ns or self._clock.utc_ns()
             state = self._state_at(until_ns, on_progress)
-            evidence = evidence_of_all(state)
+            evidence = evidence_of_all(state, FloorGrid.of(state.plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
                 solution = self._smoother.smooth(evidence, ties_of(state))

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from base_station.fusion.port import Fuser, FuserKind
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
-from base_station.pins.pinning import Repinned, solve_pins, with_partners
+from base_station.pins.pinning import Past, Repinned, solve_pins, with_partners
 from base_station.site.floor_grid import FloorGrid
 
 
@@ -46,8 +46,8 @@ class PinnedUnits:
         ``plain`` gives the fuser that knows of no pin.
         """
         known = [one for one in with_partners(state, unit_ids) if one in state.units]
-        changed = []
-        for unit_id, result in solve_pins(state, self._smoother, known).items():
+        changed, past = [], Past(self._smoother, self.grid)
+        for unit_id, result in solve_pins(state, past, known).items():
             if self._take(state.units[unit_id], result, plain):
                 changed.append(unit_id)
         return changed

@@ -19,7 +19,7 @@ def scores() -> SmoothingScores:
     kind = RecordingKind(FUSERS[0])
     shown_m = [fuse(kind, person, Timing(), with_plan=False).places_m for person in people]
     scores = SmoothingScores(SMOOTHERS[0])
-    scores.note(WITHOUT, [person.truth for person in people], shown_m, kind.histories, rng)
+    scores.note(WITHOUT, [person.truth for person in people], shown_m, kind, rng)
     return scores
 
 

@@ -153,20 +153,25 @@ class _Solving:
             sigmas = apart_m / tie.std_m
             self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
         spreads = graph.spreads(self._noise)
-        return Solution(
-            {one: self._trail(one, spreads[one]) for one in self._units}, self._verdicts
-        )
+        on_plan = graph.spreads(self._noise, on_plan=True) if graph.words else spreads
+        paths = {one: self._trail(one, spreads[one], on_plan[one]) for one in self._units}
+        return Solution(paths, self._verdicts)
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         apart_m = self._graph.residuals_m(unit_id, used)
         for place, off_m in zip(used, apart_m.tolist(), strict=True):
             self._verdicts[place.name] = Verdict(True, off_m, off_m / place.std_m)
 
-    def _trail(self, unit_id: str, spreads: Floats) -> SmoothedPath:
+    def _trail(self, unit_id: str, spreads: Floats, on_plan: Floats) -> SmoothedPath:
+        """A fuser knows walls where the plan has them, so it goes on from a place on the plan."""
         graph = self._graph
-        chain = graph.chains[unit_id]
+        chain, belief = graph.chains[unit_id], graph.beliefs[unit_id]
         least_m = shown_floor_m(chain.path, graph.shown.get(unit_id))
-        return trail_of(chain, graph.beliefs[unit_id], spreads, least_m, graph.places[unit_id])
+        now = belief.x[-1].copy(), spreads[-1]
+        if unit_id in graph.words:
+            now[0][:2] += graph.shared.plan_m
+            now = now[0], on_plan[-1]
+        return trail_of(chain, belief, spreads, least_m, graph.places[unit_id], now)
 
 
 def _refused(

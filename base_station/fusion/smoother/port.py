@@ -79,7 +79,7 @@ class SmoothedPath:
     correlation_ne: Floats
     std_down_m: Floats
     turn_rad: Floats  # heading of the own frame's north
-    present: Present  # the last point
+    present: Present  # the last point, on the plan where its walls are heeded
 
 
 @dataclass(frozen=True)

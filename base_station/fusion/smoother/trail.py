@@ -16,10 +16,15 @@ Floats = NDArray[np.float64]
 
 
 def trail_of(
-    chain: Chain, belief: Belief, spreads: Floats, least_m: Floats, places: Sequence[PlaceSeen]
+    chain: Chain,
+    belief: Belief,
+    spreads: Floats,
+    least_m: Floats,
+    places: Sequence[PlaceSeen],
+    now: tuple[Floats, Floats],
 ) -> SmoothedPath:
     """``spreads`` (k, 5, 5) of the knots; ``least_m`` (n,): no point is known better, each axis;
-    ``places`` tell heights.
+    ``places`` tell heights; ``now``: the last knot as a fuser takes it over, and its covariance.
     """
     path = chain.path
     place, turn = _between_knots(chain, belief.x)
@@ -40,7 +45,7 @@ def trail_of(
         correlation_ne=correlation * known,
         std_down_m=down_std,
         turn_rad=np.arctan2(turn[:, 1], turn[:, 0]),
-        present=Present(belief.x[-1].tolist(), spreads[-1].tolist(), *shift),
+        present=Present(now[0].tolist(), now[1].tolist(), *shift),
     )
 
 
