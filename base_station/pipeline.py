@@ -32,13 +32,13 @@ from base_station.events import (
 from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
-from base_station.live_state import Alarm, Fault, StationState, UnitState
+from base_station.live_state import Alarm, StationState, UnitState
+from base_station.noting import note
 from base_station.pins.late import take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
-from base_station.thermal import dose_of
-from shared.channels import Direction, channel_of, tracked_unit
-from shared.clock import NS_PER_S
+from base_station.sender import News, Sender
+from shared.channels import Channel, Direction, channel_of, tracked_unit
 from shared.errors import UserError
 from shared.messages import (
     STATION_ID,
@@ -57,14 +57,11 @@ from shared.messages import (
     Status,
     Temperature,
     Tick,
-    UnitDescription,
     UnitEvent,
 )
-from shared.quality import Quality
 
 _CAN_WAIT = (Status, Temperature, Heartbeat)  # said again in a second, and slow to change
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
-LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
 _COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
 
 
@@ -118,8 +115,9 @@ class StationPipeline:
         state.boot_id = state.boot_id or state.t_ns
         if isinstance(event, Received):
             message = event.message
-            if channel_of(message).direction is Direction.UP:
-                return self._hear(event.unit_id, message, event.backfilled)
+            channel = channel_of(message)
+            if channel.direction is Direction.UP:
+                return self._hear(event, channel)
             if isinstance(message, Tick):
                 return self._tick()
             if isinstance(message, OperatorAction):
@@ -166,8 +164,8 @@ class StationPipeline:
                 outputs.append(UnitTouched(effect.unit_id))
         return outputs
 
-    def _hear(self, unit_id: str, message: Message, backfilled: bool) -> list[Output]:
-        state = self.state
+    def _hear(self, event: Received, channel: Channel) -> list[Output]:
+        state, unit_id, message = self.state, event.unit_id, event.message
         state.counts.messages += 1
         tracked = tracked_unit(unit_id)
         unit = state.units.get(tracked or unit_id) or self._stranger(tracked or unit_id)
@@ -175,11 +173,8 @@ class StationPipeline:
             state.counts.units_left_out += 1
             return []
         if tracked is not None:
-            return self._hear_tracker(unit, message, backfilled)
-        if backfilled:
-            news = unit.recall(message.header)
-        else:
-            news = unit.accept(channel_of(message), message.header, state.t_ns)
+            return self._hear_tracker(unit, event, channel)
+        news = _news(unit, event, channel, state.t_ns)
         if news == "repeat":
             return []
         link, unit.link = unit.link, unit.link_at(state.t_ns)
@@ -194,17 +189,14 @@ class StationPipeline:
             outputs.extend(self._review(unit, kind))
         return outputs
 
-    def _hear_tracker(self, unit: UnitState, message: Message, backfilled: bool) -> list[Output]:
+    def _hear_tracker(self, unit: UnitState, event: Received, channel: Channel) -> list[Output]:
         """Where the wearer is, what strides tell of him, and falls, from the agent that tracks
         for the unit.  Nothing of it is a sign of life of the unit.
         """
-        state = self.state
+        state, message = self.state, event.message
         if unit.tracker is None:
             unit.tracker = UnitState(message.header.unit_id)
-        if backfilled:
-            news = unit.tracker.recall(message.header)
-        else:
-            news = unit.tracker.accept(channel_of(message), message.header, state.t_ns)
+        news = _news(unit.tracker, event, channel, state.t_ns)
         if news == "repeat" or not unit.is_tracked_remotely:
             return []
         outputs: list[Output] = []
@@ -231,33 +223,21 @@ class StationPipeline:
         return units[unit_id]
 
     def _observe(self, unit: UnitState, message: Message) -> list[Output]:
-        t_ns = self.state.t_ns
+        note(unit, message, self.state.t_ns)
         match message:
-            case Position():
-                _note_position(unit, message, t_ns)
-                if unit.registered:
-                    solved = self._positioning.follow(self.state, unit, message)
-                    return [*self._fuse(unit), *self._solved(solved, unit)]
-            case GpsFix():
-                if unit.registered and self._positioning.fix(self.state, unit, message).accepted:
+            case Position() if unit.registered:
+                solved = self._positioning.follow(self.state, unit, message)
+                return [*self._fuse(unit), *self._solved(solved, unit)]
+            case GpsFix() if unit.registered:
+                if self._positioning.fix(self.state, unit, message).accepted:
                     return self._fuse(unit)
             case Sighting():
                 changed = note_sighting(self.state, unit, message)
                 return self._repin(changed) if changed else []
-            case Status():
-                _note_status(unit, message, t_ns)
-            case Temperature():
-                _note_temperature(unit, message, t_ns)
-            case UnitDescription():
-                unit.description = message
-            case Heartbeat():
-                unit.heartbeat = message
-            case UnitEvent():
-                _note_event(unit, message, t_ns)
             case CommandReply():
                 return self._note_reply(unit, message)
             case _:
-                pass  # raw samples and signs of life: that they came is all that counts here
+                pass
         return []
 
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
@@ -321,50 +301,10 @@ def read_checkpoint(saved: bytes) -> Checkpoint | None:
         return None
 
 
+def _news(sender: Sender, event: Received, channel: Channel, t_ns: int) -> News:
+    header = event.message.header
+    return sender.recall(header) if event.backfilled else sender.accept(channel, header, t_ns)
+
+
 def _touched(command: SentCommand | None) -> list[Output]:
     return [] if command is None else [CommandTouched(command.command_id)]
-
-
-def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
-    unit.position, unit.position_ns = position, t_ns
-    if position.quality is Quality.GOOD:
-        unit.degraded_since_ns = None
-    elif unit.degraded_since_ns is None:
-        unit.degraded_since_ns = t_ns
-
-
-def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
-    unit.status, unit.status_ns = status, t_ns
-    pressed = unit.mayday_ns is not None and (
-        unit.mayday_cancelled_ns is None or unit.mayday_cancelled_ns < unit.mayday_ns
-    )
-    if status.mayday and not pressed:  # the press itself may have been lost on the way
-        unit.mayday_ns = t_ns
-    elif pressed and not status.mayday:
-        unit.mayday_cancelled_ns = t_ns
-
-
-def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
-    if unit.temperature is not None:
-        elapsed_s = (temperature.header.t_mono_ns - unit.temperature.header.t_mono_ns) / NS_PER_S
-        if temperature.header.boot_id == unit.temperature.header.boot_id:
-            lasted_s = min(elapsed_s, LONGEST_DOSE_STEP_S)
-            unit.heat_dose += dose_of(unit.temperature.ambient_degc, lasted_s)
-    unit.temperature, unit.temperature_ns = temperature, t_ns
-
-
-def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
-    match event.kind:
-        case EventKind.MAYDAY:
-            unit.mayday_ns = t_ns
-        case EventKind.MAYDAY_CANCELLED:
-            unit.mayday_cancelled_ns = t_ns
-        case EventKind.FALL:
-            unit.fall_ns = t_ns
-        case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
-            said = event.detail or event.kind.name.lower().replace("_", " ")
-            unit.fault = Fault(t_ns, said)
-        case EventKind.STOPPED | EventKind.SOURCE_ENDED:
-            unit.stopped_ns = t_ns
-        case _:
-            pass

@@ -1,0 +1,84 @@
+"""What a unit's own words change in what is known of it, where nothing else has to be asked."""
+
+from __future__ import annotations
+
+from base_station.live_state import Fault, UnitState
+from base_station.thermal import dose_of
+from shared.clock import NS_PER_S
+from shared.messages import (
+    EventKind,
+    Heartbeat,
+    Message,
+    Position,
+    Status,
+    Temperature,
+    UnitDescription,
+    UnitEvent,
+)
+from shared.quality import Quality
+
+LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
+
+
+def note(unit: UnitState, message: Message, t_ns: int) -> None:
+    """A unit said this; ``t_ns`` is station time."""
+    match message:
+        case Position():
+            _note_position(unit, message, t_ns)
+        case Status():
+            _note_status(unit, message, t_ns)
+        case Temperature():
+            _note_temperature(unit, message, t_ns)
+        case UnitDescription():
+            unit.description = message
+        case Heartbeat():
+            unit.heartbeat = message
+        case UnitEvent():
+            _note_event(unit, message, t_ns)
+        case _:
+            pass  # raw samples and signs of life: that they came is all that counts here
+
+
+def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
+    unit.position, unit.position_ns = position, t_ns
+    if position.quality is Quality.GOOD:
+        unit.degraded_since_ns = None
+    elif unit.degraded_since_ns is None:
+        unit.degraded_since_ns = t_ns
+
+
+def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
+    unit.status, unit.status_ns = status, t_ns
+    pressed = unit.mayday_ns is not None and (
+        unit.mayday_cancelled_ns is None or unit.mayday_cancelled_ns < unit.mayday_ns
+    )
+    if status.mayday and not pressed:  # the press itself may have been lost on the way
+        unit.mayday_ns = t_ns
+    elif pressed and not status.mayday:
+        unit.mayday_cancelled_ns = t_ns
+
+
+def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
+    if unit.temperature is not None:
+        elapsed_s = (temperature.header.t_mono_ns - unit.temperature.header.t_mono_ns) / NS_PER_S
+        if temperature.header.boot_id == unit.temperature.header.boot_id:
+            lasted_s = min(elapsed_s, LONGEST_DOSE_STEP_S)
+            unit.heat_dose += dose_of(unit.temperature.ambient_degc, lasted_s)
+    unit.temperature, unit.temperature_ns = temperature, t_ns
+
+
+def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    match event.kind:
+        case EventKind.MAYDAY:
+            unit.mayday_ns = t_ns
+        case EventKind.MAYDAY_CANCELLED:
+            unit.mayday_cancelled_ns = t_ns
+        case EventKind.FALL:
+            unit.fall_ns = t_ns
+        case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
+            said = event.detail or event.kind.name.lower().replace("_", " ")
+            unit.fault = Fault(t_ns, said)
+        case EventKind.STOPPED | EventKind.SOURCE_ENDED:
+            unit.stopped_ns = t_ns
+        case _:
+            pass
