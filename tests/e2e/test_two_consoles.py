@@ -1,4 +1,4 @@
-"""The console when its station dies: it goes to the other one, where the same people log in."""
+"""The console when its station dies: it goes to the other one, where the same people go on."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from base_station.bench.one_of_two import Place, Station
 from base_station.bench.two_stations import TwoStations
 
 PATIENCE_MS = 60_000
+COPIED_MS = 3_000  # by then the other station knows the ticket
 
 
 def log_in(page: Page, station: Station) -> None:
@@ -30,13 +31,20 @@ def test_the_console_goes_to_the_station_that_has_taken_over(
         page = chromium.new_page()
         closing.callback(page.close)
         page.goto(two.first.url)
-        log_in(page, two.first)
+        with page.expect_response("**/hand-over"):
+            log_in(page, two.first)
         expect(page.get_by_text("Mill Lane").first).to_be_visible()
+        page.wait_for_timeout(COPIED_MS)
         # Stations are hosts, which do not get each other's cookies; here they are ports of one.
         page.context.clear_cookies()
         two.first.kill()
         expect(page.get_by_role("alert")).to_contain_text("Connection to the station lost")
         page.wait_for_url(f"{two.second.url}/**", timeout=PATIENCE_MS)
+        expect(page.get_by_text("Mill Lane").first).to_be_visible()
+        assert "ticket" not in page.url
+        page.context.clear_cookies()  # who comes without a ticket logs in
+        page.goto("about:blank")
+        page.goto(f"{two.second.url}/#from=first&ticket=used")
         expect(page.get_by_role("status")).to_contain_text("The same user and password hold here")
         log_in(page, two.second)
         expect(page.get_by_text("Mill Lane").first).to_be_visible()

@@ -1,6 +1,7 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
+import { ticketOf, withoutTicket } from "./live/arrival";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
@@ -31,10 +32,13 @@ export const mayAct = computed(
   () => user.value !== null && user.value.role !== "viewer" && !isPast.value && leads.value,
 );
 
-/** Show the console of whoever is logged in; without anyone the login form stays. */
+/** Show the console of whoever is logged in, or comes from the other station with a ticket; without
+ * anyone the login form stays. */
 export async function resume(): Promise<void> {
+  const ticket = ticketOf(location.hash);
+  if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
   try {
-    begin(await api.me());
+    begin(await api.me().catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket))));
   } catch {
     user.value = null;
   }

@@ -1,22 +1,40 @@
-/** Who comes from the console of the other station is told so where they log in again: it is another
- * address, and browsers keep logins apart by address. */
+/** Who comes from the console of the other station goes on there with the ticket that the address
+ * carries.  It is another address, and browsers keep logins apart by address: without a ticket that is
+ * still good they log in again, and are told why. */
 
 const FROM = "#from=";
+const TICKET = "&ticket=";
 const LONGEST = 40;
 
-/** The other console's address, with a word for its login page. */
-export function wayFrom(station: string, url: string): string {
-  return `${url}/${FROM}${encodeURIComponent(station)}`;
+/** The other console's address, with a word for its login page; what is behind # is sent to nobody. */
+export function wayFrom(station: string, url: string, ticket = ""): string {
+  const shown = ticket === "" ? "" : TICKET + encodeURIComponent(ticket);
+  return `${url}/${FROM}${encodeURIComponent(station)}${shown}`;
 }
 
 /** What the login page says to who came that way; empty: nobody did. */
 export function arrival(hash: string): string {
   if (!hash.startsWith(FROM)) return "";
-  let station: string;
+  const [station] = hash.slice(FROM.length).split(TICKET);
+  const name = decoded(station).slice(0, LONGEST);
+  if (name === "") return "";
+  return `You come from the console of the station “${name}”. The same user and password hold here.`;
+}
+
+/** What lets go on who came that way; empty: nothing does. */
+export function ticketOf(hash: string): string {
+  return hash.startsWith(FROM) ? decoded(hash.split(TICKET)[1]) : "";
+}
+
+/** The address without the ticket, which is good once. */
+export function withoutTicket(hash: string): string {
+  return hash.startsWith(FROM) ? (hash.split(TICKET)[0] ?? "") : hash;
+}
+
+function decoded(text: string | undefined): string {
   try {
-    station = decodeURIComponent(hash.slice(FROM.length)).slice(0, LONGEST);
+    return decodeURIComponent(text ?? "");
   } catch {
     return ""; // somebody changed the address
   }
-  return `You come from the console of the station “${station}”. The same user and password hold here.`;
 }

@@ -3,7 +3,9 @@
 import type { StandbyView } from "../wire";
 import type { LinkState } from "./picture";
 import type { Session } from "./session";
+import * as api from "../api";
 import { wayFrom } from "./arrival";
+import { Tickets } from "./tickets";
 
 export const PATIENCE_MS = 4000;
 const LOOK_EVERY_MS = 1000;
@@ -29,14 +31,17 @@ export function wayOut({ link, standby, led, nowMs }: Standing): string | null {
 export function watchOver(session: Session, go: (url: string) => void): () => void {
   let led = false;
   let asking = false;
+  const tickets = new Tickets(api.handOver);
   const look = async () => {
     const { link, health } = session.picture;
     const standby = health.peek()?.standby ?? null;
     led ||= standby?.role === "active";
+    const leadsWithOther = standby?.role === "active" && standby.other_url !== "";
+    if (leadsWithOther && link.peek().kind === "up") void tickets.renew(performance.now());
     const url = wayOut({ link: link.peek(), standby, led, nowMs: performance.now() });
     if (url === null || asking) return;
     asking = true;
-    if (await leads(url)) go(wayFrom(standby?.station ?? "", url));
+    if (await leads(url)) go(wayFrom(standby?.station ?? "", url, tickets.latest));
     asking = false;
   };
   const timer = window.setInterval(() => void look(), LOOK_EVERY_MS);
