@@ -7,14 +7,19 @@ order a, d, b, e), and x and y of the middle of the upper left pixel (c, f).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Literal
+from collections.abc import Callable, Sequence
 
 import msgspec
 
+from base_station.site.utm import lat_lon_of, zone_of
 from shared.errors import ConfigError
 
-Crs = Literal["EPSG:4326", "EPSG:3857"]
+DEGREES, WEB_MAPS = "EPSG:4326", "EPSG:3857"
+GRIDS = (
+    f"degrees of longitude and latitude ({DEGREES}), metres of the web's maps ({WEB_MAPS}), or "
+    "metres of a UTM zone (EPSG:258 and the zone in Europe, else EPSG:326 and the zone, and 327 in "
+    "the south)"
+)
 EARTH_M = 6_378_137.0  # of the sphere of EPSG:3857
 SMALLEST_M, LARGEST_M = 20.0, 5000.0  # beyond it a straight picture of a round Earth is off
 FURTHEST_LAT_DEG = 85.0
@@ -30,24 +35,23 @@ class Corners(msgspec.Struct, frozen=True):
     lower_left: LatLon
 
 
-def corners_of(world: Sequence[float], crs: Crs, width_px: int, height_px: int) -> Corners:
+def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) -> Corners:
     """Raises ConfigError, which says what a world file must be."""
+    lat_lon = _grid(crs)
     if len(world) != 6 or not all(math.isfinite(value) for value in world):
         raise ConfigError("a world file has six numbers, one a line")
     a, d, b, e, c, f = world
 
     def at(column: float, row: float) -> LatLon:
         column, row = column - 0.5, row - 0.5
-        return _lat_lon(a * column + b * row + c, d * column + e * row + f, crs)
+        return lat_lon(a * column + b * row + c, d * column + e * row + f)
 
     corners = Corners(at(0, 0), at(width_px, 0), at(0, height_px))
     lats = [corner[0] for corner in (corners.upper_left, corners.upper_right, corners.lower_left)]
     lons = [corner[1] for corner in (corners.upper_left, corners.upper_right, corners.lower_left)]
-    if max(map(abs, lats)) > FURTHEST_LAT_DEG or max(map(abs, lons)) > 180.0:
-        raise ConfigError(
-            "the world file's numbers lie nowhere on the Earth; they must be degrees of longitude "
-            "and latitude (EPSG:4326) or metres of the web's maps (EPSG:3857)"
-        )
+    on_earth = all(abs(lat) <= FURTHEST_LAT_DEG for lat in lats)
+    if not (on_earth and all(abs(lon) <= 180.0 for lon in lons)):
+        raise ConfigError(f"as {crs} the world file's numbers lie nowhere on the Earth")
     sides_m = [
         _apart_m(corners.upper_left, other) for other in (corners.upper_right, corners.lower_left)
     ]
@@ -61,11 +65,21 @@ def corners_of(world: Sequence[float], crs: Crs, width_px: int, height_px: int) 
     return corners
 
 
-def _lat_lon(x: float, y: float, crs: Crs) -> LatLon:
-    if crs == "EPSG:4326":
-        return y, x
-    lat_rad = math.atan(math.sinh(min(max(y / EARTH_M, -10.0), 10.0)))
-    return math.degrees(lat_rad), math.degrees(x / EARTH_M)
+def _grid(crs: str) -> Callable[[float, float], LatLon]:
+    """What makes degrees of a world file's x and y."""
+    if crs == DEGREES:
+        return lambda x, y: (y, x)
+    if crs == WEB_MAPS:
+        return _of_web_maps
+    zone = zone_of(crs)
+    if zone is None:
+        raise ConfigError(f"{crs} is none of the grids that a world file can be in: {GRIDS}")
+    return lambda x, y: lat_lon_of(zone, x, y)
+
+
+def _of_web_maps(x_m: float, y_m: float) -> LatLon:
+    lat_rad = math.atan(math.sinh(min(max(y_m / EARTH_M, -10.0), 10.0)))
+    return math.degrees(lat_rad), math.degrees(x_m / EARTH_M)
 
 
 def _apart_m(one: LatLon, other: LatLon) -> float:

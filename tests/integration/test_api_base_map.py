@@ -111,6 +111,18 @@ async def test_only_an_administrator_gives_the_map(station: DeskStation) -> None
         assert (await commander.get("/site/base-map")).status_code == 200
 
 
+async def test_a_surveys_picture_lies_in_a_utm_zone(station: DeskStation) -> None:
+    world = (0.2, 0.0, 0.0, -0.2, 500_000.1, 5_761_038.1)  # on the meridian, 9 degrees east
+    async with station.client(Role.ADMINISTRATOR) as admin:
+        answer = await admin.put(address(world, "EPSG:25832"), content=picture(), headers=PNG)
+        assert answer.status_code == 200, answer.text
+        assert answer.json()["upper_left"] == pytest.approx([52.0, 9.0], abs=1e-5)
+        for crs in ("EPSG:31467", "UTM 32"):
+            answer = await admin.put(address(world, crs), content=picture(), headers=PNG)
+            assert answer.status_code == 422
+            assert "UTM zone" in answer.json()["detail"]
+
+
 def test_metres_of_the_webs_maps_are_the_same_place() -> None:
     x, y = 445_277.963, 6_800_125.454  # 4 degrees east, 52 degrees north
     corners = corners_of((1.0, 0.0, 0.0, -1.0, x, y), "EPSG:3857", 200, 100)

@@ -12,7 +12,7 @@ from base_station.api.photos import clean_map
 from base_station.api.problems import Problem
 from base_station.api.security import Administrator, AfterLogin, Viewer
 from base_station.api.services import Station
-from base_station.site.base_map import Corners, Crs, corners_of
+from base_station.site.base_map import DEGREES, Corners, corners_of
 
 router = APIRouter(tags=["site"], route_class=AfterLogin)
 
@@ -40,10 +40,10 @@ def set_base_map(
     world: Annotated[list[float], Query(min_length=6, max_length=6)],
     station: Station,
     who: Administrator,
-    crs: Crs = "EPSG:4326",
+    crs: Annotated[str, Query(max_length=20)] = DEGREES,
 ) -> BaseMap:
     """PNG, JPEG or WebP, written anew without its metadata; ``world``: the numbers of its world
-    file, in the order of its lines.
+    file, in the order of its lines; ``crs``: the grid that they are in, by its EPSG number.
     """
     with station.darkroom:
         webp, image_hash, (width_px, height_px), smaller = clean_map(image)

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { anchorThrough, siteOf } from "../src/plan/anchor";
-import { cornersOf, earthAt, worldOf, type BaseMap } from "../src/plan/baseMap";
+import { cornersOf, crsOf, earthAt, worldOf, type BaseMap } from "../src/plan/baseMap";
 
 const MAP: BaseMap = {
   image_url: "/api/v1/site/base-map/x",
@@ -15,6 +15,12 @@ describe("the base map", () => {
     expect(worldOf("1 2 3")).toBeNull();
     expect(worldOf("<html>")).toBeNull();
     expect(worldOf("1 2 3 4 5 six")).toBeNull();
+  });
+
+  it("takes the grid as given, else as the numbers say", () => {
+    expect(crsOf("25832", [0.2, 0, 0, -0.2, 500_000, 5_761_000])).toBe("EPSG:25832");
+    expect(crsOf("", [1, 0, 0, -1, 445_278, 6_800_125])).toBe("EPSG:3857");
+    expect(crsOf("", [1e-5, 0, 0, -1e-5, 4, 52])).toBe("EPSG:4326");
   });
 
   it("knows where a click on it lies", () => {

@@ -30,6 +30,13 @@ export function worldOf(text: string): number[] | null {
   return numbers.length === 6 && numbers.every(Number.isFinite) ? numbers : null;
 }
 
+/** The grid of a world file: as given by its number, else degrees where they can be, else metres of
+ * the web's maps. */
+export function crsOf(epsg: string, world: readonly number[]): string {
+  if (epsg !== "") return `EPSG:${epsg}`;
+  return world.slice(4).some((value) => Math.abs(value) > 180) ? "EPSG:3857" : "EPSG:4326";
+}
+
 /** Where a part of the picture, from the left and from the top, lies on the Earth. */
 export function earthAt(map: BaseMap, across: number, down: number): LatLon {
   const along = (axis: 0 | 1) =>

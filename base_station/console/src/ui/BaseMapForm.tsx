@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { ApiError, removeBaseMap, setBaseMap } from "../api";
-import { baseMap, worldOf } from "../plan/baseMap";
+import { baseMap, crsOf, worldOf } from "../plan/baseMap";
 import { attempt, user } from "../sessions";
 import { ConfirmButton } from "./ConfirmButton";
 
@@ -8,6 +8,7 @@ import { ConfirmButton } from "./ConfirmButton";
 export function BaseMapForm() {
   const image = useSignal<File | null>(null);
   const world = useSignal<File | null>(null);
+  const epsg = useSignal("");
   if (user.value?.role !== "administrator") {
     return <p class="quiet">{baseMap.value === null ? "There is none." : "There is one."}</p>;
   }
@@ -15,8 +16,7 @@ export function BaseMapForm() {
     if (image.value === null || world.value === null) return;
     const numbers = worldOf(await world.value.text());
     if (numbers === null) throw new ApiError("A world file has six numbers, one a line.", 0);
-    const crs = numbers.slice(4).some((value) => Math.abs(value) > 180) ? "EPSG:3857" : "EPSG:4326";
-    baseMap.value = await setBaseMap(image.value, numbers, crs);
+    baseMap.value = await setBaseMap(image.value, numbers, crsOf(epsg.value, numbers));
   };
   return (
     <div class="row">
@@ -29,11 +29,21 @@ export function BaseMapForm() {
         />
       </label>
       <label>
-        World file (.pgw, .jgw or .wld; degrees, or metres of the web’s maps)
+        World file (.pgw, .jgw, .tfw or .wld)
         <input
           type="file"
-          accept=".pgw,.jgw,.wld,text/plain"
+          accept=".pgw,.jgw,.tfw,.wld,text/plain"
           onChange={(event) => (world.value = event.currentTarget.files?.[0] ?? null)}
+        />
+      </label>
+      <label>
+        EPSG number (empty: degrees or web map)
+        <input
+          inputMode="numeric"
+          pattern="[0-9]*"
+          maxLength={6}
+          placeholder="25832"
+          onInput={(event) => (epsg.value = event.currentTarget.value.trim())}
         />
       </label>
       <button
