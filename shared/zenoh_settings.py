@@ -13,6 +13,8 @@ from shared.tls import TlsIdentity
 _LEASE_MS = 3000
 _KEEP_ALIVES_A_LEASE = 4
 _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
+# What is larger is not taken. A unit says a kilobyte at once; two stations a plan or a picture.
+MOST_BYTES = 64 * 1024 * 1024
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
 # in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
 _ROUTER_QUEUES = {
@@ -69,6 +71,7 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
     link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
     if isinstance(endpoint, StationEndpoint):
         link["tx"]["queue"] = {"size": _ROUTER_QUEUES}
+        link["rx"] = {"max_message_size": MOST_BYTES}
     if endpoint.tls is not None:
         link["protocols"] = ["tls"]
         link["tls"] = _tls_settings(endpoint.tls, _tls_roles(endpoint))

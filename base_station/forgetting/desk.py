@@ -13,16 +13,15 @@ import secrets
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from threading import Event, Lock, Thread
+from threading import Event, Thread
 
 import msgspec
 
 from base_station.forgetting.forgetter import Forgetter
-from base_station.pki.files import write_atomically
-from shared.errors import ConfigError, MusterError, StoreError, UserError
+from base_station.wishes import Wishes
+from shared.errors import MusterError, UserError
 
 _log = logging.getLogger(__name__)
-_KEPT = 20  # of those that are over
 _AGAIN_S = 10.0  # after a failure of disk or store, or while there is an obstacle
 
 
@@ -74,11 +73,9 @@ class ForgettingDesk:
         forgotten.
         """
         self._forgetter = forgetter
-        self._kept = kept
+        self._wishes = Wishes(kept, Forgetting)
         self._obstacle = obstacle
         self._on_done = on_done
-        self._lock = Lock()
-        self._all: list[Forgetting] = _read(kept)
         self._changed = Event()
         self._closed = Event()
         self._thread = Thread(target=self._run, name="forgetting", daemon=True)
@@ -97,28 +94,18 @@ class ForgettingDesk:
 
         Raises StoreError where the disk does not take it.
         """
-        with self._lock:
-            for one in self._all:
-                if not one.state.is_over and (one.kind, one.subject_id) == (kind, subject_id):
-                    return msgspec.structs.replace(one)
-            wish = Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told)
-            under_way = [one for one in self._all if not one.state.is_over]
-            over = [one for one in self._all if one.state.is_over]
-            before, self._all = self._all, [*over[1 - _KEPT :], *under_way, wish]
-            try:
-                self._save()
-            except ConfigError as error:
-                self._all = before
-                raise StoreError(
-                    f"the wish cannot be kept, so nothing is forgotten: {error}"
-                ) from error
+
+        def wish(under_way: list[Forgetting]) -> Forgetting:
+            same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
+            return next(same, Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told))
+
+        added = self._wishes.add(wish)
         self._changed.set()
-        return msgspec.structs.replace(wish)
+        return added
 
     def all(self) -> tuple[Forgetting, ...]:
         """The last that are over, and those under way."""
-        with self._lock:
-            return tuple(msgspec.structs.replace(one) for one in self._all)
+        return self._wishes.all()
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console, while something is under way."""
@@ -132,8 +119,7 @@ class ForgettingDesk:
     def _run(self) -> None:
         while not self._closed.is_set():
             self._changed.clear()
-            with self._lock:
-                wishes = [one for one in self._all if not one.state.is_over]
+            wishes = self._wishes.under_way()
             if not wishes:
                 self._changed.wait()
             elif not self._work_on_one(wishes):
@@ -153,45 +139,29 @@ class ForgettingDesk:
         again = wish.began
         self._note(wish, state=ForgettingState.WORKING, problem="", began=True)
         forget = self._forgetter.person if wish.kind == "person" else self._forgetter.incident
+        done: dict[str, object] = {}
         try:
-            done = forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share))
-            self._note(wish, records=done.records, files=done.files)
+            what = forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share))
+            done = {"records": what.records, "files": what.files}
         except _Ended:
             return False
         except UserError as error:
-            self._note(wish, problem=str(error))
+            done = {"problem": str(error)}
             if not (again or wish.told):  # else nothing was left to be done
-                self._note(wish, state=ForgettingState.FAILED)
+                self._note(wish, state=ForgettingState.FAILED, **done)
                 return True
         except (MusterError, OSError) as error:
             _log.warning("forgetting waits: %s", error)
             self._note(wish, problem=f"it is tried again: {error}")
             return False
         self._on_done(msgspec.structs.replace(wish))
-        self._note(wish, state=ForgettingState.DONE, share=1.0)
+        self._note(wish, state=ForgettingState.DONE, share=1.0, **done)
         return True
 
     def _go_on(self, wish: Forgetting, share: float) -> None:
         if self._closed.is_set():
             raise _Ended
-        with self._lock:
-            wish.share = share
+        self._wishes.note(wish, save=False, share=share)
 
     def _note(self, wish: Forgetting, **now: object) -> None:
-        with self._lock:
-            for name, value in now.items():
-                setattr(wish, name, value)
-            try:
-                self._save()
-            except ConfigError as error:  # at worst it is done once more
-                _log.warning("%s", error)
-
-    def _save(self) -> None:
-        write_atomically(self._kept, msgspec.json.encode(self._all))
-
-
-def _read(path: Path) -> list[Forgetting]:
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=list[Forgetting])
-    except (OSError, msgspec.DecodeError):
-        return []
+        self._wishes.note(wish, save=True, **now)

@@ -5,17 +5,17 @@ from __future__ import annotations
 import secrets
 from collections.abc import Collection
 from pathlib import Path
-from threading import Event, Lock, Thread
+from threading import Event, Thread
 
 import msgspec
 
 from base_station.api.wire import RecordingView
 from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
+from base_station.wishes import Wishes
 from shared.clock import Clock
-from shared.errors import MusterError, UserError
+from shared.errors import MusterError, StoreError, UserError
 
 _LIST = "wanted.json"
-_KEPT = 20  # of those that are over
 _MOST = 20  # under way at once
 _REST_S = 0.5  # when no unit answers
 
@@ -39,8 +39,7 @@ class RecordingDesk:
         self._ask = ask
         self._folder = folder
         self._clock = clock
-        self._lock = Lock()
-        self._pulls: list[Pull] = _read(folder / _LIST)
+        self._pulls = Wishes(folder / _LIST, Pull)
         self._running: dict[str, Fetch] = {}
         self._changed = Event()
         self._closed = Event()
@@ -58,48 +57,41 @@ class RecordingDesk:
             fetch.close()
 
     def add(self, by: str, wanted: Wanted) -> Pull:
-        """Pull it, and go on until it is there; UserError where that makes no sense."""
+        """Pull it, and go on until it is there.
+
+        Raises UserError where that makes no sense, StoreError where the disk takes nothing.
+        """
         if wanted.to_ns <= wanted.from_ns:
             raise UserError("the window ends before it begins; turn the two times round")
-        with self._lock:
-            under_way = [one for one in self._pulls if not one.state.is_over]
-            if any(one.wanted.unit_id == wanted.unit_id for one in under_way):
-                raise UserError(
-                    f"a recording of {wanted.unit_id} is being pulled already; wait for it, or "
-                    "stop it"
-                )
-            if len(under_way) >= _MOST:
-                raise UserError(f"{_MOST} recordings are being pulled; wait for one, or stop one")
-            pull = Pull(secrets.token_hex(4), by, wanted)
-            over = [one for one in self._pulls if one.state.is_over]
-            self._pulls = [*over[1 - _KEPT :], *under_way, pull]
-            self._save()
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(f"{self._folder} cannot be made: {error.strerror}") from error
+        pull = self._pulls.add(lambda under_way: _new_pull(by, wanted, under_way))
         self._changed.set()
-        return msgspec.structs.replace(pull)
+        return pull
 
     def stop(self, fetch_id: str) -> bool:
         """Give it up; what has come is kept.  False where there is no such pull under way."""
-        with self._lock:
-            for pull in self._pulls:
-                if pull.fetch_id == fetch_id and not pull.state.is_over:
-                    pull.state, pull.problem = FetchState.FAILED, "stopped by a person"
-                    self._save()
-                    return True
+        for pull in self._pulls.under_way():
+            if pull.fetch_id == fetch_id:
+                return self._pulls.note(
+                    pull, save=True, state=FetchState.FAILED, problem="stopped by a person"
+                )
         return False
 
     def forget(self, unit_ids: Collection[str]) -> None:
         """Nothing more of what these units kept is to come; who wore them is forgotten."""
-        with self._lock:
-            for pull in self._pulls:
-                if pull.wanted.unit_id in unit_ids:
-                    pull.state, pull.problem = FetchState.FAILED, "deleted: its wearer is forgotten"
-            self._save()
+        self._pulls.note_each(
+            lambda pull: pull.wanted.unit_id in unit_ids,
+            state=FetchState.FAILED,
+            problem="deleted: its wearer is forgotten",
+        )
         self._changed.set()
 
     def pulls(self) -> tuple[Pull, ...]:
         """Those under way and the last that are over."""
-        with self._lock:
-            return tuple(msgspec.structs.replace(pull) for pull in self._pulls)
+        return self._pulls.all()
 
     def views(self) -> tuple[RecordingView, ...]:
         """As consoles see them."""
@@ -118,8 +110,7 @@ class RecordingDesk:
     def _run(self) -> None:
         while not self._closed.is_set():
             self._changed.clear()
-            with self._lock:
-                pulls = [pull for pull in self._pulls if not pull.state.is_over]
+            pulls = self._pulls.under_way()
             self._let_go({pull.fetch_id for pull in pulls})
             answered = False
             for pull in pulls:
@@ -141,39 +132,29 @@ class RecordingDesk:
                 fetch = Fetch(self._ask, self._folder, pull.wanted, self._clock)
                 self._running[pull.fetch_id] = fetch
         except MusterError as error:  # another program pulls from this unit
-            self._note(pull, FetchState.WAITING, str(error))
+            self._pulls.note(pull, save=False, problem=str(error))
             return False
         fetch.step()
-        with self._lock:
-            pull.total_bytes, pull.done_bytes = fetch.total_bytes, fetch.done_bytes
-        self._note(pull, fetch.state, fetch.problem)
+        self._pulls.note(
+            pull,
+            save=fetch.state.is_over,
+            state=fetch.state,
+            problem=fetch.problem,
+            total_bytes=fetch.total_bytes,
+            done_bytes=fetch.done_bytes,
+        )
         return fetch.state is not FetchState.WAITING
 
     def _let_go(self, under_way: set[str]) -> None:
         for fetch_id in self._running.keys() - under_way:
             self._running.pop(fetch_id).close()
 
-    def _note(self, pull: Pull, state: FetchState, problem: str) -> None:
-        with self._lock:
-            if pull.state.is_over:  # stopped meanwhile
-                return
-            pull.state, pull.problem = state, problem
-            if state.is_over:
-                self._save()
 
-    def _save(self) -> None:
-        """So that a station that is started again goes on; a disk that fails loses only that."""
-        making = self._folder / (_LIST + ".part")
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            making.write_bytes(msgspec.json.encode(self._pulls))
-            making.replace(self._folder / _LIST)
-        except OSError:
-            making.unlink(missing_ok=True)
-
-
-def _read(path: Path) -> list[Pull]:
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=list[Pull])
-    except (OSError, msgspec.DecodeError):
-        return []
+def _new_pull(by: str, wanted: Wanted, under_way: list[Pull]) -> Pull:
+    if any(one.wanted.unit_id == wanted.unit_id for one in under_way):
+        raise UserError(
+            f"a recording of {wanted.unit_id} is being pulled already; wait for it, or stop it"
+        )
+    if len(under_way) >= _MOST:
+        raise UserError(f"{_MOST} recordings are being pulled; wait for one, or stop one")
+    return Pull(secrets.token_hex(4), by, wanted)

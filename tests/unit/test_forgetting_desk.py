@@ -142,6 +142,6 @@ def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path
 
 def test_a_wish_that_cannot_be_kept_is_refused(tmp_path: Path) -> None:
     one = desk(Worker(), tmp_path / "missing")
-    with pytest.raises(StoreError, match="nothing is forgotten"):
+    with pytest.raises(StoreError, match="nothing is done"):
         one.add("ada", "person", "p-1")
     assert one.all() == ()

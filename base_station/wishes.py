@@ -1,0 +1,106 @@
+"""What people asked for and a desk works at: in a file until it is done, with how far it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from threading import RLock
+from typing import Generic, Protocol, TypeVar
+
+import msgspec
+
+from base_station.pki.files import write_atomically
+from shared.errors import ConfigError, StoreError
+
+_KEPT = 20  # of those that are over
+
+
+class WishState(Protocol):
+    @property
+    def is_over(self) -> bool: ...
+
+
+class Wish(Protocol):
+    """A msgspec.Struct."""
+
+    @property
+    def state(self) -> WishState: ...
+
+
+W = TypeVar("W", bound=Wish)
+
+
+class Wishes(Generic[W]):
+    """In the order of asking.  Thread-safe."""
+
+    def __init__(self, path: Path, kind: type[W]) -> None:
+        """What is no list of wishes is taken for an empty one."""
+        self._path = path
+        self._lock = RLock()
+        self._all: list[W] = []
+        with suppress(OSError, msgspec.DecodeError):
+            self._all = msgspec.json.decode(path.read_bytes(), type=list[kind])  # type: ignore[valid-type]
+
+    def all(self) -> tuple[W, ...]:
+        """Copies: of those under way and the last that are over."""
+        with self._lock:
+            return tuple(map(_copy, self._all))
+
+    def under_way(self) -> list[W]:
+        """Themselves: change them with ``note``."""
+        with self._lock:
+            return [one for one in self._all if not one.state.is_over]
+
+    def add(self, make: Callable[[list[W]], W]) -> W:
+        """A copy of what ``make`` gives, which is on the disk when this returns.  It is told what
+        is under way, may give one of those, and may raise.
+
+        Raises StoreError where the disk does not take it.
+        """
+        with self._lock:
+            under_way = self.under_way()
+            wish = make(under_way)
+            if not any(wish is one for one in under_way):
+                over = [one for one in self._all if one.state.is_over]
+                before, self._all = self._all, [*over[1 - _KEPT :], *under_way, wish]
+                try:
+                    self._save()
+                except ConfigError as error:
+                    self._all = before
+                    raise StoreError(f"the wish cannot be kept, so nothing is done: {error}") from error
+            return _copy(wish)
+
+    def note(self, wish: W, *, save: bool, **now: object) -> bool:
+        """How it stands now; False where it was over before, and stays as it is.
+
+        Whether a disk that fails keeps it does not matter: at worst it is done once more.
+        """
+        with self._lock:
+            if wish.state.is_over:
+                return False
+            for name, value in now.items():
+                setattr(wish, name, value)
+            if save:
+                self._try_to_save()
+            return True
+
+    def note_each(self, which: Callable[[W], bool], **now: object) -> None:
+        """Of those that are over, too."""
+        with self._lock:
+            for wish in filter(which, self._all):
+                for name, value in now.items():
+                    setattr(wish, name, value)
+            self._try_to_save()
+
+    def _try_to_save(self) -> None:
+        with suppress(ConfigError):
+            self._save()
+
+    def _save(self) -> None:
+        write_atomically(self._path, msgspec.json.encode(self._all))
+
+
+def _copy(wish: W) -> W:
+    copied: W = msgspec.structs.replace(wish)  # type: ignore[type-var]
+    return copied
