@@ -6,11 +6,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Protocol
 
+from base_station.bench.station import free_port
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
-from tests.station_command import free_port
 from tests.waiting import until
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import socket
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
+from base_station.bench.station import free_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
@@ -22,9 +22,7 @@ class Site:
     """A router with the rules of an authority, and the station as its client."""
 
     def __init__(self, data: Path, stack: ExitStack) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.address = f"127.0.0.1:{port}"
         self.unnamed_address = f"127.0.0.2:{port}"  # its certificate does not stand for it
         self.pki = PkiFolder(data)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import secrets
 import signal
-import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import Any
 
 import httpx
 
+from base_station.bench.station import free_port as free_port  # noqa: PLC0414
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import channel_of
 from shared.clock import SystemClock
@@ -32,18 +31,6 @@ except MusterError as error:
     print(error, file=sys.stderr)
     sys.exit(2)
 """
-
-
-def free_port() -> int:
-    """Below those that the system gives out, so that nobody is given it before it is used."""
-    while True:
-        port = secrets.choice(range(12_000, 32_000))
-        with socket.socket() as probe:
-            try:
-                probe.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-            return port
 
 
 class Command:

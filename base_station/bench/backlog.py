@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,22 +16,22 @@ from rich.progress import Progress
 from rich.table import Table
 
 from base_station import collector
-from base_station.bench.bus import Latency, latency_of
+from base_station.bench.bus_report import Latency, latency_of
 from base_station.bench.console import Console, latencies_ms
 from base_station.bench.station import Membership, PlainTcp, StationProcess, station_process
 from base_station.bench.units import BenchUnit, Wearer, speak_in_turn, unit_names
+from base_station.bench.waiting import PATIENCE_S, wait_until
 from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import CHANNELS, ROOT, Direction, Qos, backfilled_key, channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
-from shared.errors import BusError, StoreError
+from shared.errors import StoreError
 from shared.mcap_log import read_log
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 
 _BACKLOG_UNIT = "bench-backlog"
 _MESSAGES_HZ = 7.0
-_PATIENCE_S = 60.0
 _FETCH_HZ = 10_000.0  # to reach
 _TIMES_SLOWER = 2.0  # to reach, of live data
 _WARM_S = 4.0
@@ -81,9 +81,9 @@ def measure(
         others = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
         for name in [*names, _BACKLOG_UNIT]:
             station.api.post("/units", {"unit_id": name})
-        _wait_until(lambda: all(unit.is_heard for unit in others), "the station to listen")
+        wait_until("the station listens", lambda: all(unit.is_heard for unit in others))
         watching = Console(station.api, closing)
-        if not watching.wait_ready(_PATIENCE_S):
+        if not watching.wait_ready(PATIENCE_S):
             raise StoreError("the station to be measured shows nothing at its console")
         return _fetch(
             station,
@@ -169,7 +169,7 @@ class _Backlog:
 
     def appear(self) -> None:
         """Say the last message live: the station sees that all before it are missing."""
-        _wait_until(lambda: self._bus.is_heard(self._last[0]), "the station to listen")
+        wait_until("the station listens", lambda: self._bus.is_heard(self._last[0]))
         self._bus.publish(*self._last, Qos.LIVE)
 
     def _replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
@@ -220,14 +220,6 @@ def _latency_between(
         for unit in units
     }
     return latency_of(latencies_ms(sent, console.shown))
-
-
-def _wait_until(condition: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + _PATIENCE_S
-    while not condition():
-        if time.monotonic() > deadline:
-            raise BusError(f"waited in vain for {what}")
-        time.sleep(0.05)
 
 
 def _table(report: BackfillReport) -> Table:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from typing import NamedTuple
 
+from base_station.bench.waiting import paced
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 
@@ -46,14 +47,9 @@ def measure_steady(
     bus = _linked(address)
     far_end.send("begin")
     far_end.recv()
-    began = time.perf_counter()
-    count = round(rate_hz * seconds)
-    for number in range(count):
-        wait_s = began + number / rate_hz - time.perf_counter()
-        if wait_s > 0.0:
-            time.sleep(wait_s)
+    for _ in paced(rate_hz, seconds):
         bus.publish(_KEY, _stamped(), Qos.LIVE)
-    return _figures(bus, far_end, count)
+    return _figures(bus, far_end, round(rate_hz * seconds))
 
 
 def measure_flood(address: str, far_end: Connection, seconds: float) -> BareFigures:

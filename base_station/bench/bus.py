@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
 
-import numpy as np
 import psutil
 import typer
 from rich.console import Console as Terminal
 from rich.progress import Progress
-from rich.table import Table
 
 from base_station.bench.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
+from base_station.bench.bus_report import BusReport, latency_of, table_of
 from base_station.bench.console import Console, latencies_ms
 from base_station.bench.onlookers import Onlookers, Seen
 from base_station.bench.recording import recording_hz
@@ -29,62 +27,14 @@ from base_station.bench.station import (
     station_process,
 )
 from base_station.bench.units import BenchUnit, speak_in_turn, unit_names
-from base_station.drive import DELTA_NS
+from base_station.bench.waiting import PATIENCE_S, wait_until
 from shared.bench_figures import FiguresFile, write_figures
-from shared.clock import NS_PER_S
-from shared.errors import BusError, StoreError
+from shared.errors import StoreError
 
-_PATIENCE_S = 60.0
 _SETTLE_S = 2.0
 _STEADY_S = 5.0
 _FLOOD_S = 2.0
-_LATENCY_P99_MS = 300.0  # to reach
-_CPU_SHARE = 1.0  # to reach
 _RECORDED = 200_000  # messages
-_RECORDING_HZ = 150_000  # to reach
-
-
-@dataclass(frozen=True, slots=True)
-class Latency:
-    """Milliseconds."""
-
-    count: int
-    p50_ms: float
-    p99_ms: float
-    max_ms: float
-
-
-@dataclass(frozen=True, slots=True)
-class BusReport:
-    """One run."""
-
-    units: int
-    consoles: int
-    rate_wanted_hz: float
-    rate_hz: float
-    seconds: float
-    sent: int
-    stepped: int
-    recorded: int
-    lost: int
-    repeated: int
-    positions_sent: int
-    positions_shown: int
-    latency: Latency
-    track_points_due: int
-    track_points: int
-    cpu_share: float  # of one core
-    memory_mb: float
-    console_gaps: int
-    console_kbit_s: float
-    onlookers: Seen
-    slow: Seen
-    problems: tuple[str, ...]
-    bare_latency: Latency
-    bare_lost: int
-    bare_flood_hz: float
-    recording_hz: float  # a second of processor time
-    cores: int
 
 
 def bench_bus(
@@ -108,7 +58,7 @@ def bench_bus(
         report = measure(
             units, rate, seconds, consoles, progress, beside=(onlookers, slow), plain=plain
         )
-    Terminal().print(_table(report))
+    Terminal().print(table_of(report))
     for problem in report.problems:
         Terminal().print(f"the station says: {problem}")
     write_figures(json_file, report)
@@ -169,9 +119,9 @@ def _run_station(
 ) -> BusReport:
     for unit in units:
         station.api.post("/units", {"unit_id": unit.unit_id})
-    _wait_heard(units)
+    wait_until("the station listens", lambda: all(unit.is_heard for unit in units))
     watching = [Console(station.api, closing) for _ in range(console_count)]
-    if not all(console.wait_ready(_PATIENCE_S) for console in watching):
+    if not all(console.wait_ready(PATIENCE_S) for console in watching):
         raise StoreError("the station to be measured shows nothing at its consoles")
     onlookers = Onlookers(station.api, *beside)
     for unit in units:
@@ -240,62 +190,3 @@ def _report(
         recording_hz=recording_hz(_RECORDED),
         cores=psutil.cpu_count() or 1,
     )
-
-
-def _wait_heard(units: list[BenchUnit]) -> None:
-    deadline = time.monotonic() + _PATIENCE_S
-    while not all(unit.is_heard for unit in units):
-        if time.monotonic() > deadline:
-            raise BusError("the station to be measured does not listen to all units")
-        time.sleep(0.05)
-
-
-def latency_of(values_ms: list[float] | tuple[float, ...]) -> Latency:
-    if not values_ms:
-        return Latency(0, float("nan"), float("nan"), float("nan"))
-    p50, p99, highest = np.percentile(values_ms, (50.0, 99.0, 100.0))
-    return Latency(len(values_ms), float(p50), float(p99), float(highest))
-
-
-def _table(report: BusReport) -> Table:
-    table = Table(
-        title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores",
-        caption=f"A console is told every {DELTA_NS / NS_PER_S:g} s, of alarms sooner.",
-    )
-    for title in ("", "measured", "to reach"):
-        table.add_column(title, justify="left" if title == "" else "right")
-    bare, live = report.bare_latency, report.latency
-    rows = [
-        ("messages a second", f"{report.rate_hz:,.0f}", f"{report.rate_wanted_hz:,.0f}"),
-        ("sent", f"{report.sent:,}", ""),
-        ("in the log", f"{report.recorded:,}", f"{report.sent:,}"),
-        ("lost", f"{report.lost:,}", "0"),
-        ("twice in the log", f"{report.repeated:,}", "0"),
-        ("stepped", f"{report.stepped:,}", f"{report.sent:,}"),
-        ("track points in SQL", f"{report.track_points:,}", f"{report.track_points_due:,}"),
-        ("positions at a console", f"{report.positions_shown:,}", f"{report.positions_sent:,}"),
-        ("sensor to WebSocket p50", f"{live.p50_ms:.1f} ms", ""),
-        ("sensor to WebSocket p99", f"{live.p99_ms:.1f} ms", f"{_LATENCY_P99_MS:.0f} ms"),
-        ("sensor to WebSocket max", f"{live.max_ms:.1f} ms", ""),
-        ("station, of one core", f"{report.cpu_share:.0%}", f"{_CPU_SHARE:.0%}"),
-        ("station, memory", f"{report.memory_mb:.0f} MB", ""),
-        ("to each console", f"{report.console_kbit_s:,.0f} kbit/s", ""),
-        ("bare Zenoh p50, p99", f"{bare.p50_ms:.2f}, {bare.p99_ms:.2f} ms", ""),
-        ("bare Zenoh lost", f"{report.bare_lost:,}", ""),
-        ("bare Zenoh flood of 200 B", f"{report.bare_flood_hz:,.0f} /s", ""),
-        ("recording alone, of one core", f"{report.recording_hz:,.0f} /s", f"{_RECORDING_HZ:,} /s"),
-    ]
-    rows += _onlookers("onlookers", report.onlookers) + _onlookers("slow consoles", report.slow)
-    for row in rows:
-        table.add_row(*row)
-    return table
-
-
-def _onlookers(name: str, seen: Seen) -> list[tuple[str, str, str]]:
-    if seen.onlookers == 0:
-        return []
-    return [
-        (name, f"{seen.onlookers:,}", ""),
-        (f"{name}: messages to the last of them", f"{seen.least_messages:,}", ""),
-        (f"{name}: snapshots, cut off", f"{seen.snapshots:,}, {seen.cut_off:,}", ""),
-    ]

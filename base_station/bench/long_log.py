@@ -19,8 +19,9 @@ from websockets.sync.client import connect
 
 from base_station.bench.compressed import compressed_station
 from base_station.bench.one_of_two import Place, Station
-from base_station.bench.two_stations import TwoStations, wait_until
+from base_station.bench.two_stations import TwoStations
 from base_station.bench.units import unit_names
+from base_station.bench.waiting import wait_until
 from base_station.standby.places import is_event
 from shared.errors import StoreError
 from shared.mcap_log import read_log, segment_paths

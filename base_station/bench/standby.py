@@ -18,7 +18,8 @@ from rich.table import Table
 from base_station.bench.long_log import measure_long_log, table_of
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.one_of_two import Place
-from base_station.bench.two_stations import TwoStations, wait_until
+from base_station.bench.two_stations import TwoStations
+from base_station.bench.waiting import wait_until
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import BusError, StoreError
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import signal
 import socket
 import sqlite3
@@ -158,10 +159,15 @@ def station_process(
 
 
 def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
+    """Below those that the system gives out, so that nobody is given it before it is used."""
+    while True:
+        port = secrets.choice(range(12_000, 32_000))
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return port
 
 
 def _ready_url(process: subprocess.Popen[str], said: Path, patience_s: float) -> str:

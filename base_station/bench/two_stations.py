@@ -6,18 +6,15 @@ import json
 import sqlite3
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
 
 from base_station.bench.one_of_two import MessageId, Place, Station
 from base_station.bench.station import free_port
+from base_station.bench.waiting import wait_until
 from base_station.pki.folder import PkiFolder
 from shared.errors import StoreError
-
-_LOOK_EVERY_S = 0.1
-_START_S = 90.0
 
 
 class TwoStations:
@@ -106,16 +103,6 @@ class TwoStations:
                 fields = dict(line.split(": ", 1) for line in text.splitlines())
                 return fields["username"], fields["password"]
         raise StoreError("no station has made a first login yet")
-
-
-def wait_until(what: str, condition: Callable[[], object], patience_s: float = _START_S) -> float:
-    """The seconds that it took.  Raises StoreError where it does not come true."""
-    began_s = time.monotonic()
-    while not condition():
-        if time.monotonic() - began_s > patience_s:
-            raise StoreError(f"it did not come true within {patience_s:g} s that {what}")
-        time.sleep(_LOOK_EVERY_S)
-    return time.monotonic() - began_s
 
 
 def _write_settings(path: Path, one: Station, other: Station, *, preferred: bool) -> None:

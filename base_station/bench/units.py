@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 
+from base_station.bench.waiting import paced
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
 from shared.clock import NS_PER_S, Clock, SystemClock
@@ -150,13 +151,9 @@ def speak_in_turn(
     units: Sequence[BenchUnit], rate_hz: float, seconds: float, on_second: Callable[[], None]
 ) -> float:
     """All units one after the other, ``rate_hz`` messages a second together; the rate reached."""
-    began = time.perf_counter()
-    count = round(rate_hz * seconds)
-    for number in range(count):
-        wait_s = began + number / rate_hz - time.perf_counter()
-        if wait_s > 0.0:
-            time.sleep(wait_s)
+    began_s = time.perf_counter()
+    for number in paced(rate_hz, seconds):
         units[number % len(units)].speak()
         if number % max(round(rate_hz), 1) == 0:
             on_second()
-    return count / (time.perf_counter() - began)
+    return round(rate_hz * seconds) / (time.perf_counter() - began_s)

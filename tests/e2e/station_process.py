@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.station_command import Command, free_port
+from base_station.bench.station import free_port
+from tests.station_command import Command
 
 
 class StationProcess:

@@ -12,10 +12,11 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.station import free_port
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log
-from tests.station_command import Agent, Browser, Command, free_port
+from tests.station_command import Agent, Browser, Command
 from tests.waiting import until
 
 UNIT = "anna"

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.pki.folder import PkiFolder
 from base_station.router.process import RouterProcess
 from base_station.router.router import station_endpoint
 from shared.bus_zenoh import ZenohBus
 from shared.channels import Qos
-from tests.station_command import free_port
 from tests.waiting import until
 
 ROUNDS = 10

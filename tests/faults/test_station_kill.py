@@ -7,12 +7,13 @@ import time
 from pathlib import Path
 from threading import Event, Thread
 
+from base_station.bench.station import free_port
 from shared.channels import TEMPERATURE
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.mcap_log import LogRecord, read_log
 from shared.messages import Temperature
-from tests.station_command import Browser, Command, Unit, free_port
+from tests.station_command import Browser, Command, Unit
 
 KILLS = 2
 SAFE_AFTER_NS = 1 * NS_PER_S  # flushed every half second, and a machine under test is slow

@@ -11,7 +11,8 @@ import pytest
 
 from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.one_of_two import Place, Station
-from base_station.bench.two_stations import TwoStations, wait_until
+from base_station.bench.two_stations import TwoStations
+from base_station.bench.waiting import wait_until
 from shared.errors import BusError
 
 pytestmark = pytest.mark.timeout(300)

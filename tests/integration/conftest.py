@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.station_command import Command, Unit, free_port
+from base_station.bench.station import free_port
+from tests.station_command import Command, Unit
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.station import free_port
 from edge.warm_up import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
@@ -27,7 +28,7 @@ from shared.messages import (
     Position,
     UnitEvent,
 )
-from tests.station_command import Agent, free_port
+from tests.station_command import Agent
 from tests.waiting import until
 
 WALK = "simulated:search-ground-floor"

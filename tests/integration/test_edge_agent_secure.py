@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.clock_server import ClockServer
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
@@ -18,7 +19,7 @@ from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, clock_key
 from shared.clock import SystemClock
 from shared.codec import decode
 from shared.enrolment import Holder
-from tests.station_command import Agent, free_port
+from tests.station_command import Agent
 from tests.waiting import until
 
 

@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from base_station.bench.station import free_port
 from base_station.cli import app
 from edge.sources.black_box import BlackBoxSource
 from edge.warm_up import compile_trackers
 from shared.errors import UserError
 from shared.mcap_log import segment_paths
-from tests.station_command import Agent, Browser, Command, free_port
+from tests.station_command import Agent, Browser, Command
 from tests.waiting import until
 
 UNIT = "anna"

@@ -11,6 +11,7 @@ from threading import Thread
 
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import StationEndpoint, ZenohBus
@@ -26,11 +27,8 @@ def now() -> datetime:
 
 @pytest.fixture
 def pki(tmp_path: Path) -> PkiFolder:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
     folder = PkiFolder(tmp_path)
-    folder.create("Test", hosts=[], connect=[f"tls/127.0.0.1:{port}"])
+    folder.create("Test", hosts=[], connect=[f"tls/127.0.0.1:{free_port()}"])
     return folder
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.router.router import Router
-from tests.station_command import free_port
 from tests.waiting import until
 
 LOOKS = 9  # more than a router waits before it opens again

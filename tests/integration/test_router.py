@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -15,6 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.pki.folder import PkiFolder
 from base_station.router.process import RouterProcess
 from base_station.router.router import Router, station_endpoint
@@ -29,9 +29,7 @@ KEY = POSITION.key("anna")
 
 @pytest.fixture
 def address() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"127.0.0.1:{probe.getsockname()[1]}"
+    return f"127.0.0.1:{free_port()}"
 
 
 @pytest.fixture

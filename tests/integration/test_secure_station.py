@@ -11,13 +11,14 @@ from pathlib import Path
 import httpx
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos
 from shared.codec import encode
 from shared.enrolment import Enrolment
 from shared.messages import Position
-from tests.station_command import Browser, Command, free_port
+from tests.station_command import Browser, Command
 from tests.waiting import until
 
 MakePosition = Callable[..., Position]

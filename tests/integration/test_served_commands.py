@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
+from base_station.bench.station import free_port
 from base_station.pki.folder import PkiFolder
 from edge.commands import CommandDesk
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
@@ -14,7 +15,7 @@ from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import Command as UnitCommand
 from shared.messages import CommandReply
-from tests.station_command import Browser, Command, free_port
+from tests.station_command import Browser, Command
 from tests.waiting import until
 
 U = "FF-01"

@@ -11,6 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from base_station.bench.station import free_port
 from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder
@@ -25,7 +26,7 @@ from tests.served_station import (
     walk,
     watch,
 )
-from tests.station_command import Browser, Command, Unit, free_port
+from tests.station_command import Browser, Command, Unit
 from tests.waiting import until
 
 

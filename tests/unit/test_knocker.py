@@ -8,8 +8,8 @@ import time
 
 import pytest
 
+from base_station.bench.station import free_port
 from edge.knocker import Knocker
-from tests.station_command import free_port
 
 
 @pytest.fixture

@@ -1,0 +1,31 @@
+"""Waiting for what other processes do, and saying things at a steady rate."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+
+from shared.errors import StoreError
+
+PATIENCE_S = 90.0  # of a busy machine
+_LOOK_EVERY_S = 0.05
+
+
+def wait_until(what: str, condition: Callable[[], object], patience_s: float = PATIENCE_S) -> float:
+    """The seconds that it took.  Raises StoreError where it does not come true."""
+    began_s = time.monotonic()
+    while not condition():
+        if time.monotonic() - began_s > patience_s:
+            raise StoreError(f"it did not come true within {patience_s:g} s that {what}")
+        time.sleep(_LOOK_EVERY_S)
+    return time.monotonic() - began_s
+
+
+def paced(rate_hz: float, seconds: float) -> Iterator[int]:
+    """Numbers from 0, each when it is due, and none left out where they are taken too slowly."""
+    began_s = time.perf_counter()
+    for number in range(round(rate_hz * seconds)):
+        wait_s = began_s + number / rate_hz - time.perf_counter()
+        if wait_s > 0.0:
+            time.sleep(wait_s)
+        yield number
