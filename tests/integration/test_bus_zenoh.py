@@ -5,11 +5,12 @@ from __future__ import annotations
 from contextlib import closing
 
 import pytest
+import zenoh
 
-from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus
+from base_station.bench.station import free_port
+from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 from shared.errors import BusError
-from tests.station_command import free_port
 from tests.waiting import until
 
 
@@ -48,3 +49,24 @@ def test_a_taken_port_is_said_in_words(address: str) -> None:
 def test_an_address_that_makes_no_sense_is_said_in_words() -> None:
     with pytest.raises(BusError, match="nonsense"):
         ZenohBus(StationEndpoint(("nonsense",)))
+
+
+def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(
+    address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("shared.zenoh_settings.MOST_BYTES", 1_000_000)
+    heard: list[int] = []
+    with (
+        closing(ZenohBus(StationEndpoint((address,)))) as station,
+        closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
+    ):
+        station.subscribe("muster/v1/**", lambda _, payload: heard.append(len(payload)))
+        until(lambda: rogue.is_heard("muster/v1/anna/up/status"))
+        for size in (500_000, 3_000_000, 5):
+            rogue._session.put(
+                "muster/v1/anna/up/status",
+                bytes(size),
+                congestion_control=zenoh.CongestionControl.BLOCK,
+            )
+        until(lambda: 5 in heard)
+    assert heard == [500_000, 5]
