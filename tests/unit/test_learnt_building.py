@@ -172,6 +172,31 @@ def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
     assert 0.02 < math.sqrt(variance) < 0.06
 
 
+def legs_until_an_axis(known: Axis | None) -> tuple[int, float, float]:
+    """How many it took of a heading that gets worse and drifts, and what it then is."""
+    axis, turn_rad, variance = AxisFilter(), 0.0, 0.05**2
+    for number in range(12):
+        leg = Leg(0.2 + number % 2 * math.pi / 2.0 - 0.01 * number, 5.0)
+        turn_rad, variance = axis.look(leg, 0.0, 0.05**2 + 0.04**2 * number, known)
+        if axis.axis is not None:
+            return number + 1, turn_rad - 0.01 * number, math.sqrt(variance)
+    raise AssertionError("no axis")
+
+
+def test_an_axis_is_as_good_as_the_heading_was_at_its_first_leg() -> None:
+    count, off_rad, std_rad = legs_until_an_axis(None)
+    assert math.sqrt(0.05**2 + 0.04**2 * (count - 1)) > 0.08
+    assert std_rad < 0.07
+    assert abs(off_rad) < std_rad
+
+
+def test_an_axis_that_others_know_shows_earlier_and_another_does_not() -> None:
+    by_itself, _, _ = legs_until_an_axis(None)
+    told, _, _ = legs_until_an_axis(Axis(0.2, 0.03**2))
+    other, _, _ = legs_until_an_axis(Axis(0.2 + math.pi / 4.0, 0.03**2))
+    assert told < by_itself == other
+
+
 def test_a_unit_that_is_forgotten_has_said_nothing() -> None:
     learnt = (
         LearntBuilding((FOUND,)).with_stairs(0, "FF-02", STAIRS).with_axis("FF-01", Axis(0.1, 1.0))

@@ -30,6 +30,7 @@ WINDOW = 8  # of the last legs, one after each turn, that are asked for an axis
 SHOWN = 3.0  # log odds from which they show one
 TRIALS = 2.4  # of log odds that some axis fits by chance: a quarter turn by a leg's width
 OFF = 2.5  # standard deviations by which an axis that shows may be another
+ABOUT_RAD = math.radians(8.0)  # what shows an axis tells no more of its direction
 LOST_RAD = math.radians(20.0)  # the heading's doubt then
 SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
 
@@ -39,6 +40,8 @@ class Leg(msgspec.Struct, frozen=True):
 
     direction_rad: float
     length_m: float
+    turn_rad: float = 0.0  # the heading correction believed when it was walked
+    turn_variance: float = 0.0
 
     @property
     def variance(self) -> float:
@@ -88,16 +91,23 @@ class AxisFilter(msgspec.Struct):
     turn_variance: float = 0.0
     crossed: float = 0.0  # covariance of both
 
-    def look(self, leg: Leg, turn_rad: float, variance: float) -> tuple[float, float]:
+    def look(
+        self, leg: Leg, turn_rad: float, variance: float, known: Axis | None = None
+    ) -> tuple[float, float]:
         """Heading correction and variance after a leg, given what they were before: as far as the
         leg may be one along a wall (probabilistic data association, Bar-Shalom and Tse 1975).
+        Where an axis is ``known`` to others, legs need only fit that one to show it.
         """
-        remember(self.legs, leg)
+        remember(self.legs, msgspec.structs.replace(leg, turn_rad=turn_rad, turn_variance=variance))
         del self.legs[:-WINDOW]
         shown = shown_by(self.legs)
         if self.axis is None:
             if shown is not None:
-                self._begin(Axis(turn_rad + shown.direction_rad, shown.variance), variance)
+                return self._begin(shown.direction_rad)
+            if known is not None:
+                there = Axis(known.direction_rad - turn_rad, known.variance + variance)
+                if evidence(self.legs, there) > SHOWN:
+                    return self._begin(there.direction_rad)
             return turn_rad, variance
         self._catch_up(variance)
         apart = variance - 2.0 * self.crossed + self.axis.variance
@@ -145,9 +155,24 @@ class AxisFilter(msgspec.Struct):
         self.turn_variance = variance - hangs_on**2 * gain * grown
         return turn_rad + hangs_on * gain * off_rad, self.turn_variance
 
-    def _begin(self, axis: Axis, variance: float) -> None:
-        self.axis = Axis(quarter(axis.direction_rad), variance + axis.variance)
-        self.turn_variance = self.crossed = variance
+    def _begin(self, direction_rad: float) -> tuple[float, float]:
+        """The legs show an axis about this direction of the own frame.  It is as good as the
+        heading was at the first of them, and tells what that has lost since: all are followed
+        again.  Gives heading correction and variance after the last.
+        """
+        first = self.legs[0]
+        about_rad = quarter(first.turn_rad + direction_rad)
+        self.axis = Axis(about_rad, first.turn_variance + ABOUT_RAD**2)
+        self.turn_variance = self.crossed = before = first.turn_variance
+        corrected_rad = 0.0
+        for leg in self.legs:
+            self.turn_variance += max(0.0, leg.turn_variance - before)
+            before = leg.turn_variance
+            turn_rad, variance = leg.turn_rad + corrected_rad, self.turn_variance
+            apart = variance - 2.0 * self.crossed + self.axis.variance
+            held = Axis(self.axis.direction_rad - turn_rad, apart)
+            corrected_rad = self._follow(leg, held, turn_rad, variance)[0] - leg.turn_rad
+        return self.legs[-1].turn_rad + corrected_rad, self.turn_variance
 
     def _catch_up(self, variance: float) -> None:
         """What the heading lost since is its own; what it learnt elsewhere tells of the axis."""

@@ -81,7 +81,7 @@ class Recognition(msgspec.Struct):
     ) -> LearntBuilding:
         turn_rad, std_rad = horizontal.turn()
         was_known = self.axis.axis is not None
-        turned = self.axis.look(leg, turn_rad, std_rad**2)
+        turned = self.axis.look(leg, turn_rad, std_rad**2, learnt.axis)
         if self.axis.axis is not None and not was_known:
             learnt = learnt.with_axis(unit_id, self.axis.axis)
         axis = learnt.axis
