@@ -65,6 +65,17 @@ def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
     expect(page.locator(".card.chosen")).to_contain_text("Jonas Bergman")
 
 
+def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
+    """Behind it nobody could read or close it."""
+    page, _ = stage.open(scenes.bad_minute())
+    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
+    dialog = page.get_by_role("dialog", name="How good were the positions?")
+    notice = dialog.get_by_role("alert").filter(has_text="The station answered 404")
+    notice.get_by_role("button", name="OK").click()
+    expect(notice).to_have_count(0)
+    assert flaws(page) == []
+
+
 def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), "phone")
     people, plan = page.get_by_role("region", name="People"), page.locator(".map")

@@ -373,7 +373,7 @@ def test_a_person_is_forgotten_by_who_writes_the_name(
     expect(row).to_have_count(0, timeout=SOON_MS)
     expect(dialog.get_by_role("row", name=NAME)).to_be_visible()
     close(dialog)
-    page.get_by_role("alert").get_by_role("button", name="Close").click()
+    page.get_by_role("alert").get_by_role("button", name="OK").click()
     assert name not in str(answer_to(page, "audit?limit=1000"))
 
 

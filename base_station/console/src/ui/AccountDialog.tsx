@@ -30,14 +30,16 @@ export function AccountDialog() {
         </button>
       </p>
       <h3>Password</h3>
-      <PasswordForm />
-      <h3>Tokens for programs</h3>
-      <Tokens role={me.role} />
+      <PasswordForm username={me.username} />
+      <details>
+        <summary>Tokens for programs</summary>
+        <Tokens role={me.role} />
+      </details>
     </Dialog>
   );
 }
 
-function PasswordForm() {
+function PasswordForm({ username }: { username: string }) {
   return (
     <form
       class="row"
@@ -49,6 +51,7 @@ function PasswordForm() {
         void attempt(changed).then(leave);
       }}
     >
+      <input name="username" autocomplete="username" value={username} readOnly hidden />
       <label>
         Old password
         <input name="old" type="password" required autocomplete="current-password" />

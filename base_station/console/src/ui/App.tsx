@@ -2,13 +2,14 @@ import { useEffect } from "preact/hooks";
 import { isPast, live, picture, replay, user } from "../sessions";
 import { sound } from "../sound";
 import { entitle } from "../title";
-import { half, notice } from "../view";
+import { dialog, half } from "../view";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
 import { Halves } from "./Halves";
 import { Header } from "./Header";
 import { LinkBanner } from "./LinkBanner";
 import { Login } from "./Login";
+import { Notice } from "./Notice";
 import { People } from "./People";
 import { PlanPanel } from "./PlanPanel";
 import { ReplayBar } from "./ReplayBar";
@@ -39,7 +40,7 @@ export function App() {
         Muster supplements a certified PASS device and never replaces it.{" "}
         <span>Temperatures are of the equipment’s environment, not of the wearer.</span>
       </footer>
-      <Notice />
+      {dialog.value === null && <Notice />}
       <Dialogs />
     </div>
   );
@@ -53,16 +54,4 @@ function useAttention(): void {
     const ends = [sound(watched), entitle(watched)];
     return () => ends.forEach((end) => end());
   }, [watched]);
-}
-
-function Notice() {
-  if (notice.value === null) return null;
-  return (
-    <div class="notice" role="alert">
-      <span>{notice.value}</span>
-      <button type="button" onClick={() => (notice.value = null)}>
-        Close
-      </button>
-    </div>
-  );
 }

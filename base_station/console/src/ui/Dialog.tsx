@@ -1,6 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { dialog } from "../view";
+import { Notice } from "./Notice";
 import { UrgentNow } from "./UrgentNow";
 
 interface Props {
@@ -26,6 +27,7 @@ export function Dialog({ title, wide = false, children }: Props) {
           Close
         </button>
         <UrgentNow />
+        <Notice />
       </header>
       {children}
     </dialog>

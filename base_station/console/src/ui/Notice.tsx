@@ -1,0 +1,14 @@
+import { notice } from "../view";
+
+/** What was last said; in a dialog it stands in it, as nothing behind a dialog can be read or pressed. */
+export function Notice() {
+  if (notice.value === null) return null;
+  return (
+    <div class="notice" role="alert">
+      <span>{notice.value}</span>
+      <button type="button" onClick={() => (notice.value = null)}>
+        OK
+      </button>
+    </div>
+  );
+}
