@@ -48,10 +48,21 @@ def late_start(description: SensorDescription, imu: ImuBatch, _: np.random.Gener
     return description, imu.part(slice(first, None))
 
 
-def gyro_bias(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
-    axis = rng.normal(size=3)
-    bias_radps = BIAS_RADPS * axis / np.linalg.norm(axis)
-    return description, _with(imu, imu.accel_mps2, imu.gyro_radps + bias_radps)
+def late_and_biased(
+    description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
+) -> Made:
+    return gyro_bias(2.0 * BIAS_RADPS)(*late_start(description, imu, rng), rng)
+
+
+def gyro_bias(bias_radps: float) -> Change:
+    """Off by so much about any axis."""
+
+    def change(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+        axis = rng.normal(size=3)
+        off_radps = bias_radps * axis / np.linalg.norm(axis)
+        return description, _with(imu, imu.accel_mps2, imu.gyro_radps + off_radps)
+
+    return change
 
 
 def accel_scale(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
@@ -136,7 +147,8 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("as recorded", as_recorded),
     Perturbation("another mount", other_mount),
     Perturbation("first 3 s missing", late_start),
-    Perturbation("gyroscope 0.5 deg/s off", gyro_bias),
+    Perturbation("the same, gyroscope 1 deg/s off", late_and_biased),
+    Perturbation("gyroscope 0.5 deg/s off", gyro_bias(BIAS_RADPS)),
     Perturbation("accelerometer scale 3 % off", accel_scale),
     Perturbation("gyroscope scale 1 % off", gyro_scale(0.01)),
     Perturbation("gyroscope scale 3 % off", gyro_scale(0.03)),

@@ -22,10 +22,11 @@ Segment = Literal["foot", "shank", "hip", "chest"]
 
 
 class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):
-    """Go along straight lines through points on the same floor."""
+    """Go along straight lines through points, on a floor or an even ramp."""
 
     to: Points
     pace: Pace = "walk"
+    rise_m: float = 0.0  # of the ramp, over the whole way
 
 
 class Stairs(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=True):

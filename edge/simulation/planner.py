@@ -31,7 +31,7 @@ class Planner:
 
     def do(self, leg: Leg) -> None:
         if isinstance(leg, Walk):
-            self._walk(leg.to, PACES[leg.pace])
+            self._walk(leg)
         elif isinstance(leg, Stairs | Spiral):
             self._climb(leg)
         elif isinstance(leg, Stand):
@@ -54,17 +54,22 @@ class Planner:
         for _ in range(strides):
             self._stride(TURN, self._middle, self._heading_rad + turn_rad / strides)
 
-    def _walk(self, to: tuple[Point, ...], gait: Gait) -> None:
-        for line in split_at_sharp_turns(self._middle, to, _SHARP_RAD):
+    def _walk(self, walk: Walk) -> None:
+        gait = PACES[walk.pace]
+        lines = split_at_sharp_turns(self._middle, walk.to, _SHARP_RAD)
+        slope = walk.rise_m / max(sum(line.length_m for line in lines), 0.01)
+        for line in lines:
             self._face(line.heading_rad(0.0, 0.1) + gait.facing_rad, _AROUND_RAD)
             strides = max(1, round(line.length_m / gait.stride_m))
             reach_m = 0.35 * gait.stride_m
+            begin_down_m = self.plan.down.last
             for k in range(1, strides + 1):
                 along_m = line.length_m * k / strides
                 if k < strides:
                     along_m += self._rng.normal(0.0, 0.03) * gait.stride_m
                 heading_rad = line.heading_rad(along_m, reach_m) + gait.facing_rad
-                self._stride(gait, line.point(along_m), heading_rad)
+                down_m = begin_down_m - slope * along_m if walk.rise_m else None
+                self._stride(gait, line.point(along_m), heading_rad, down_m)
 
     def _climb(self, stairs: Stairs | Spiral) -> None:
         line = self._way_up(stairs)

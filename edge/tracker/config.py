@@ -52,9 +52,13 @@ class EskfConfig(NamedTuple):
     floor_gate_slope: float = 0.075  # the same by the stride's length, where that is more
     floor_std_m: float = 0.01
     floor_ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
+    floor_ramp_stds: float = 1.0  # the same by how well the filter knows a rise
     floor_ramp_strides: float = 6.0
+    floor_ramp_doubt: float = 0.5  # deviation of the height by what the floor has taken out of it
+    floor_ramp_most_m: float = 1.0  # ... up to this much: nobody climbs so gently for long
     floor_habit_strides: float = 30.0  # over which the habit on the flat is learned
     floor_habit_std_m: float = 0.004  # by which stairs may differ from it
+    floor_habit_per_gain_m: float = 1.0  # ... for each unit of what the gains may be off
     floor_pause_s: float = 0.4  # between two looks at the floor
 
     # Aids that are looked at once a stance (side_filter.py).
@@ -118,6 +122,8 @@ class EskfConfig(NamedTuple):
     landing_off_most: float = 0.06  # of one
     landing_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
     landing_off_usual: float = 0.02  # more than this, and the gains are worse than was told
+    landing_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond
+    landing_slow_mps: float = 2.0  # a slower swing tells nothing of them
     landing_off_poor: float = 0.025  # then the noise is what the filter works with
 
     # What clipping hides (clipping.py).
@@ -131,6 +137,8 @@ class EskfConfig(NamedTuple):
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005
     start_gyro_bias_gate: float = 3.0  # deviations
+    rest_rate_scatter: float = 0.25  # of the mean rate; a foot that sways scatters more
+    data_sheet_bias_std_radps: float = 0.0175  # stated until a rest shows it: 1 deg/s
     start_accel_bias_std_mps2: float = 0.14
     start_lever_std_m: float = 0.1
     data_sheet_gain_std: float = 0.012  # of scale and axes of sensors that nobody calibrated

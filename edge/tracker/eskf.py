@@ -47,6 +47,7 @@ class EskfTracker:
         self._state = new_filter_state()
         self._block = slots // 4
         self._state["gains"]["std"] = gain_std(description, self.config)
+        self._state["unshown_bias_std_radps"] = unshown_bias_std_radps(description, self.config)
         self._state["compass"]["calibrated"] = description.mag_iron_std_ut is not None
         self._state["compass"]["iron_std_ut"] = iron_std_ut(description, self.config)
 
@@ -92,6 +93,11 @@ def gain_std(description: SensorDescription, config: EskfConfig) -> float:
     return config.data_sheet_gain_std if left is None else left
 
 
+def unshown_bias_std_radps(description: SensorDescription, config: EskfConfig) -> float:
+    """How far the gyroscope's bias may be off before a rest, beyond what the filter expects."""
+    return config.data_sheet_bias_std_radps if description.gain_std is None else 0.0
+
+
 def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:
     """How much iron there may be on the foot; a calibration is not of today's shoe."""
     left_ut = description.mag_iron_std_ut
@@ -126,9 +132,12 @@ def work(
         ring[slot].rest_norm_mps2 = memory.rest_norm_mps2
         before = ring[(k - 1) & (len(ring) - 1)].motion_sum_m2ps4
         ring[slot].motion_sum_m2ps4 = before + ring[slot].motion_m2ps4
+        squares = ring[(k - 1) & (len(ring) - 1)].rate_square_sum_rad2ps2
         for i in range(3):
             before = ring[(k - 1) & (len(ring) - 1)].rate_sum_radps[i]
             ring[slot].rate_sum_radps[i] = before + ring[slot].gyro_radps[i]
+            squares += ring[slot].gyro_radps[i] ** 2
+        ring[slot].rate_square_sum_rad2ps2 = squares
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered

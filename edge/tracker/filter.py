@@ -22,6 +22,7 @@ from edge.tracker.error_model import (
     VELOCITY,
     propagate,
 )
+from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
 from edge.tracker.intervals import mean_readings
@@ -61,14 +62,17 @@ def filter_sample(
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
+        believe_rest(state, config)
         if not progress.in_stance:
             land(ring, state, slot, config)
         stand(ring, state, slot, config)
         state.swing_rad = 0.0
+        state.swing_speed_mps = 0.0
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             settle(ring, progress, state, slot, config)
     elif progress.in_stance:
         lift_off(state, config)
+    doubt_bias(state, config)
     heed_field(ring, state, slot, still, config)
     heed_pressure(ring, progress, state, slot, still, config)
     if note_faults(ring, progress, slot):
@@ -102,7 +106,9 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
     for i in range(3):
         state.rest_force_mps2[i] = ring[0].accel_mps2[i]
         state.gains.down_b[i] = state.rotation_nb[2, i]
+        state.standing_down_b[i] = state.rotation_nb[2, i]
     state.landing_off = config.landing_off
+    state.gain_off = config.landing_off
     progress.last_stance_s = ring[0].t_s
 
 
@@ -138,6 +144,8 @@ def _predict(
     turn_walk(state, follow_gain_errors(state, dt_s, config))
     bend_way(state, dt_s)
     state.swing_rad += dt_s * math.sqrt((state.gyro_radps**2).sum())
+    speed_mps = math.sqrt((state.velocity_n_mps**2).sum())
+    state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:

@@ -4,13 +4,14 @@ People in buildings walk on level floors most of the time, and an inertial heigh
 drifts by a centimetre or two a stride.  A footfall that rises by less than a stair
 belongs to the floor of the one before; a long stride may rise more, as far as no stairs are
 that shallow.  A stride that rises more than that is a stair or a kerb and starts a new level.
-Strides that all rise a little are a ramp: then the floor stops correcting and gives back what
-it took out.
+Strides that all rise a little, by more than the filter can explain itself, are a ramp: then the
+floor stops correcting and gives back what it took out.
 
 On the flat, strides of recorded walks seem to rise or sink by up to 2 cm, each wearer and
-sensor by a habit of its own.  What of that remains on stairs is not known (simulated, a
-correction by it does more harm than good), and it adds up from stride to stride, so the
-stated height does.
+sensor by a habit of its own, and the more the less the sensor is calibrated.  What of that remains
+on stairs is not known (simulated, a correction by it does more harm than good), and it adds up from
+stride to stride, so the stated height does.  Nor is it known whether what the floor takes out all
+the time is habit or a gentle ramp, so a part of that is stated too, unless a barometer tells.
 """
 
 from __future__ import annotations
@@ -44,6 +45,9 @@ def settle(
     for i in range(3):
         progress.footfall_n_m[i] = state.position_n_m[i]
     progress.footfall_s = ring[slot].t_s
+    progress.footfall_variance_m2 = state.covariance[DOWN, DOWN]
+    if not state.barometer.started:
+        state.ramp_var_m2 = progress.past_ramps_m2 + _ramp_variance(progress, config)
 
 
 @njit()
@@ -59,7 +63,9 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
         progress.mean_sink_m = 0.0
         return False
     progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor_ramp_strides
-    if abs(progress.mean_sink_m) >= config.floor_ramp_m or progress.floor_doubted:
+    std_m = math.sqrt(max(state.covariance[DOWN, DOWN] - progress.footfall_variance_m2, 0.0))
+    ramp_m = max(config.floor_ramp_m, config.floor_ramp_stds * std_m)
+    if abs(progress.mean_sink_m) >= ramp_m or progress.floor_doubted:
         return False
     if stride_m > config.floor_gate_m:
         progress.flat_strides = min(progress.flat_strides + 1.0, config.floor_habit_strides)
@@ -75,10 +81,18 @@ def _hold_level(
     variance_m2 = config.floor_std_m**2 + progress.level_variance_m2
     taken_m = _measure_height_only(ring, state, slot, off_m, variance_m2)
     if off_m * progress.withheld_m < 0.0:
+        progress.past_ramps_m2 += _ramp_variance(progress, config)
         progress.withheld_m = 0.0
     progress.withheld_m += taken_m
     # The floor is no better known than when it was entered.
     state.covariance[DOWN, DOWN] = max(state.covariance[DOWN, DOWN], progress.level_variance_m2)
+
+
+@njit()
+def _ramp_variance(progress: Progress, config: EskfConfig) -> float:
+    """Return the doubt about what the floor takes out: by a habit of the strides, or of a ramp."""
+    doubted_m = config.floor_ramp_doubt * min(abs(progress.withheld_m), config.floor_ramp_most_m)
+    return float(doubted_m * doubted_m)
 
 
 @njit()
@@ -88,6 +102,7 @@ def _climb(progress: Progress, state: FilterState, config: EskfConfig) -> None:
     progress.climbed += 1.0
     more = 2.0 * progress.climbed - 1.0  # that one stride more adds to their square
     habit_m2 = progress.habit_m**2 + config.floor_habit_std_m**2
+    habit_m2 += (config.floor_habit_per_gain_m * state.gains.std) ** 2
     state.covariance[DOWN, DOWN] += progress.withheld_m**2 + more * habit_m2
     progress.withheld_m = 0.0
     _enter_level(progress, state)

@@ -36,7 +36,11 @@ def land(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
         squares += off_mps * off_mps
     off = min(math.sqrt(squares) / state.swing_rad, config.landing_off_most)
     state.landings = min(state.landings + 1.0, config.landing_memory)
-    state.landing_off += (off - state.landing_off) / (config.landing_worth + state.landings)
+    weight = 1.0 / (config.landing_worth + state.landings)
+    state.landing_off += weight * (off - state.landing_off)
+    if state.swing_speed_mps > config.landing_slow_mps:
+        off *= min(config.landing_speed_mps / state.swing_speed_mps, 1.0)
+        state.gain_off += weight * (off - state.gain_off)
 
 
 @njit()
@@ -67,7 +71,7 @@ def gain_scale(state: FilterState, config: EskfConfig) -> float:
     """
     if state.gains.heard:
         return 1.0
-    return float(max(1.0, (state.landing_off / config.landing_off_usual) ** 2))
+    return float(max(1.0, (state.gain_off / config.landing_off_usual) ** 2))
 
 
 @njit()

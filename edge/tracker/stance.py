@@ -27,6 +27,7 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     motion = ring[slot].motion_m2ps4
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
+        state.standing_down_b[i] = state.rotation_nb[2, i]
     begin_updates(state)
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):

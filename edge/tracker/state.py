@@ -59,6 +59,7 @@ RING = np.dtype(
         ("rest_norm_mps2", np.float64),  # what was known of it when this was measured
         ("motion_sum_m2ps4", np.float64),  # of this and all samples before
         ("rate_sum_radps", np.float64, 3),  # the same
+        ("rate_square_sum_rad2ps2", np.float64),  # the same
         ("unrest_m2ps4", np.float64),  # the same over a longer time, whatever the bias
         # What the smoother needs to go back over this sample.
         ("interval_s", np.float64),  # since the sample before; negative after a gap
@@ -178,10 +179,20 @@ FILTER = np.dtype(
         ("gyro_bias_per_k", np.float64, 3),
         ("gains", GAINS),  # see gain_errors
         ("bent_n_m", np.float64, 2),  # see stated
+        # The gyroscope's bias before a rest; see first_rest.
+        ("bias_shown", np.bool_),
+        ("unshown_bias_std_radps", np.float64),
+        ("unshown", np.float64, 3),  # north and east (m) and heading (rad) by one deviation of it
+        ("standing_down_b", np.float64, 3),  # the vertical at the last still sample
+        ("rest_rate_radps", np.float64, 3),  # mean rate around the last still sample
+        ("rest_rate_var_rad2ps2", np.float64),  # the rate's scatter about it
+        ("ramp_var_m2", np.float64),  # doubt whether the floor is flat; see floor
         # How an ordinary stride's noise is stated; see landing.
         ("swing_rad", np.float64),  # that the foot has turned since it stood
         ("landing_off", np.float64),  # mean velocity that a landing is off, m/s for each radian
         ("landings", np.float64),  # from which that is known
+        ("swing_speed_mps", np.float64),  # the foot's highest since it stood
+        ("gain_off", np.float64),  # mean of landings that tell of the gains, at an ordinary speed
         ("faulty_stride", np.bool_),  # since the last lift-off
         ("noise_m2", np.float64),  # of both horizontal axes at the last lift-off
         ("ordinary_m2", np.float64),  # ... by strides without a fault
@@ -231,12 +242,14 @@ PROGRESS = np.dtype(
         ("level_variance_m2", np.float64),
         ("footfall_n_m", np.float64, 3),  # of the last footfall
         ("footfall_s", np.float64),
+        ("footfall_variance_m2", np.float64),  # of its height
         ("mean_sink_m", np.float64),  # of the last strides, before the floor's correction
         ("floor_doubted", np.bool_),  # by the barometer
         ("habit_m", np.float64),  # by which a stride on the flat seems to sink
         ("flat_strides", np.float64),  # from which that is known
         ("climbed", np.float64),  # strides that left a level
         ("withheld_m", np.float64),  # what the floor has taken out in one direction
+        ("past_ramps_m2", np.float64),  # doubt whether what it took out before was a ramp
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ],
     align=True,

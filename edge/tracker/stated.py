@@ -1,8 +1,10 @@
 """What is stated of a position: the filter's covariance, and what no filter sees.
 
 Beside the noise of the walk these are systematic, and as wide as they make the walk wrong as a
-whole: the gyroscope's gains turn it, those of the accelerometer make it too long or too short, and
-a heading that is wrong shortens it, whichever way it is wrong.
+whole: the gyroscope's gains turn it, those of the accelerometer make it too long or too short (and
+too high), and
+a heading that is wrong shortens it, whichever way it is wrong.  Before the foot has rested the
+gyroscope's bias is doubted beside.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import SIZE, TURN, heading_variance
+from edge.tracker.first_rest import unshown_heading_variance
 from edge.tracker.gain_errors import spread
 from edge.tracker.landing import gain_scale, noise_scale
 from edge.tracker.state import FilterState, Ring
@@ -24,7 +27,8 @@ def bend_way(state: FilterState, dt_s: float) -> None:
 
     For large errors twice the mean of one minus the cosine takes the place of the variance.
     """
-    variance = 2.0 * (1.0 - math.exp(-0.5 * heading_variance(state.covariance)))
+    heading_var = heading_variance(state.covariance) + unshown_heading_variance(state)
+    variance = 2.0 * (1.0 - math.exp(-0.5 * heading_var))
     for i in range(2):
         state.bent_n_m[i] += variance * dt_s * state.velocity_n_mps[i]
 
@@ -40,6 +44,7 @@ def state_position(ring: Ring, state: FilterState, slot: int, config: EskfConfig
         for j in range(3):
             stated_m2[i, j] = state.covariance[i, j]
     gains = state.gains
+    stated_m2[2, 2] += (gains.std * state.position_n_m[2]) ** 2 + state.ramp_var_m2
     less = noise_scale(state, config) - 1.0
     worse = gain_scale(state, config)
     for i in range(2):
@@ -49,6 +54,7 @@ def state_position(ring: Ring, state: FilterState, slot: int, config: EskfConfig
             more_m2 = less * state.covariance[i, j]
             more_m2 += worse * spread(state, carried_m, gains.carried_m[j])
             more_m2 += worse * gains.std**2 * state.position_n_m[i] * state.position_n_m[j]
+            more_m2 += state.unshown[i] * state.unshown[j]
             # A normal error's fourth moment is three times its variance squared.
             more_m2 += 0.75 * state.bent_n_m[i] * state.bent_n_m[j]
             stated_m2[i, j] += more_m2

@@ -14,6 +14,7 @@ from edge.tracker.conditioning import (
 )
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, TURN, heading_variance
+from edge.tracker.first_rest import unshown_heading_variance
 from edge.tracker.landing import gain_scale, noise_scale
 from edge.tracker.port import Quality, Reason
 from edge.tracker.state import FilterState, Progress, Ring
@@ -72,4 +73,5 @@ def judge(
     yaw = ATTITUDE + 2
     heading_var = heading_variance(p) + (noise_scale(state, config) - 1.0) * p[yaw, yaw]
     heading_var += (gain_scale(state, config) - 1.0) * p[TURN, TURN]
+    heading_var += unshown_heading_variance(state)
     ring[slot].heading_std_rad = math.sqrt(heading_var)

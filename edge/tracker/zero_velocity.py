@@ -101,6 +101,8 @@ def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -
 def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig) -> float:
     """Return the mean statistic within ``unrest_half_window_s`` of ``k``, free of bias.
 
+    ``rest_rate_radps`` becomes the mean rate, ``rest_rate_var_rad2ps2`` its scatter.
+
     Sway is not told from a gyroscope's bias sample by sample: judged one by one, the
     samples whose sway happens to cancel the bias would pass for the stillest.  So the rate
     counts as far as its mean is off the bias that is known.
@@ -120,10 +122,14 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
     count = last + 1 - first
     total = ring[last & mask].motion_sum_m2ps4 - ring[before].motion_sum_m2ps4
     by_bias = 0.0  # of the mean square rate
+    squares = ring[last & mask].rate_square_sum_rad2ps2 - ring[before].rate_square_sum_rad2ps2
+    state.rest_rate_var_rad2ps2 = squares / count
     for i in range(3):
         mean = (ring[last & mask].rate_sum_radps[i] - ring[before].rate_sum_radps[i]) / count
         off = mean - state.gyro_bias_radps[i]
         by_bias += mean * mean - off * off
+        state.rest_rate_radps[i] = mean
+        state.rest_rate_var_rad2ps2 -= mean * mean
     return float(max(total / count - config.rate_weight_m2ps2 * by_bias, 0.0))
 
 

@@ -1,4 +1,4 @@
-"""Five floors up and back, by risers of every height that is built."""
+"""Five floors up and back, by risers of every height; winding stairs, running, two at once."""
 
 from __future__ import annotations
 
@@ -6,32 +6,41 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.simulation.legs import Stairs, Stand, Turn, Walk
+from edge.simulation.legs import Spiral, Stairs, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
-from edge.simulation.simulation import Simulation
+from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.rows import join_rows
 
 RISERS = 9  # a flight; two flights and a landing a floor
 
 
-def flights(rise_m, floors):
+def flights(rise_m, floors, at_once=1, pace="walk"):
     """Up the stairwell, along the top floor and back, down again."""
-    far = (RISERS * 0.28, 0.0)
-    up = (Stairs(far, rise_m, RISERS), Turn(180.0), Stairs((0.0, 0.0), rise_m, RISERS), Turn(0.0))
-    down = (
-        Stairs(far, -rise_m, RISERS),
-        Turn(180.0),
-        Stairs((0.0, 0.0), -rise_m, RISERS),
-        Turn(0.0),
+    far, near = (RISERS * 0.28, 0.0), (0.0, 0.0)
+    up, down = (
+        (
+            Stairs(far, rise, RISERS, at_once, pace),
+            Turn(180.0),
+            Stairs(near, rise, RISERS, at_once, pace),
+            Turn(0.0),
+        )
+        for rise in (rise_m, -rise_m)
     )
     top = (Walk(((-8.0, 0.0), (0.0, 0.0))), Turn(0.0))
     return (Stand(5.0), *floors * up, *top, *floors * down, Stand(3.0))
 
 
-def tracked(legs, seed):
+def winding(rise_m, floors, turns):
+    """Winding stairs with so many turns a floor, up and down."""
+    up = Spiral((0.0, 0.9), 360.0 * turns, rise_m, 2 * RISERS)
+    down = Spiral((0.0, 0.9), -360.0 * turns, -rise_m, 2 * RISERS)
+    return (Stand(5.0), *floors * (up,), Stand(2.0), *floors * (down,), Stand(3.0))
+
+
+def tracked(legs, seed, sensors=CONSUMER_SENSORS):
     """Height above the start, tracked (n,), its deviation and the true one."""
-    simulation = Simulation(Scenario("stairwell", "stairs", legs), seed)
+    simulation = Simulation(Scenario("stairwell", "stairs", legs), seed, sensors)
     imu = [batch.imu for batch in simulation.batches(1.0)]
     t_ns = np.concatenate([part.t_ns for part in imu])
     tracker = EskfTracker(simulation.description)
@@ -66,3 +75,38 @@ def test_what_stairs_may_add_up_is_stated():
     _, once, _ = tracked(flights(1.53, 1), seed=2)
     _, thrice, _ = tracked(flights(1.53, 3), seed=2)
     assert thrice[-1] > 1.9 * once[-1]
+
+
+@pytest.mark.parametrize(
+    "legs",
+    [
+        winding(3.2, 5, 1.5),
+        flights(1.6, 5, at_once=2),
+        flights(1.6, 5, pace="run"),
+        flights(1.6, 5, at_once=2, pace="run"),
+    ],
+    ids=["winding", "two at once", "running", "running, two at once"],
+)
+def test_whoever_climbs_in_his_own_way_keeps_his_height(legs):
+    height_m, _, true_m = tracked(legs, seed=7)
+    assert np.abs(height_m - true_m).max() < 0.06 * true_m.max()
+    for seed in range(3):  # and by sensors of a data sheet it is said how far it may be off
+        height_m, std_m, true_m = tracked(legs, seed, UNCALIBRATED_SENSORS)
+        assert np.mean(np.abs(height_m - true_m) < 2.0 * std_m + 0.02) > 0.9
+
+
+def test_a_gentle_ramp_that_passes_for_a_floor_is_doubted():
+    legs = (Stand(4.0), Walk(((24.0, 0.0),), rise_m=0.48), Walk(((30.0, 0.0),)), Stand(2.0))
+    height_m, std_m, true_m = tracked(legs, seed=3)
+    assert abs(height_m[-1] - true_m[-1]) > 0.3  # nothing tells it from a habit of the strides
+    assert abs(height_m[-1] - true_m[-1]) < 3.0 * std_m[-1]
+    _, flat_m, _ = tracked((legs[0], Walk(((30.0, 0.0),)), legs[-1]), seed=3)
+    assert flat_m[-1] < 0.5 * std_m[-1]
+
+
+@pytest.mark.parametrize("seed", [4, 5, 6, 7])
+def test_a_sprint_on_the_flat_is_stated(seed):
+    """Clipped strides of three metres seem to rise by decimetres, some of them past any gate."""
+    there_and_back = Walk(((80.0, 0.0), (0.0, 0.0)), pace="sprint")
+    height_m, std_m, _ = tracked((Stand(4.0), there_and_back, Stand(2.0)), seed)
+    assert abs(height_m[-1]) < 2.0 * std_m[-1] + 0.02

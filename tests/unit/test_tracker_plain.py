@@ -27,7 +27,11 @@ from tests.walking import walk
 
 # Without the floor's correction, and with every rate update used.
 CONFIG = EskfConfig(
-    floor_gate_m=0.0, floor_gate_slope=0.0, floor_habit_std_m=0.0, stance_rate_worth=0.0
+    floor_gate_m=0.0,
+    floor_gate_slope=0.0,
+    floor_habit_std_m=0.0,
+    floor_habit_per_gain_m=0.0,
+    stance_rate_worth=0.0,
 )
 WALK = walk(strides=4, gyro_bias_radps=(0.002, -0.003, 0.001), accel_bias_mps2=(0.05, 0.1, -0.1))
 
