@@ -22,6 +22,7 @@ RED_M = 20.0
 AMBER_DOWN_M = 1.5  # half a storey
 AMBER_FLOOR = 0.7  # probability of the floor shown
 _RADII_95 = math.sqrt(-2.0 * math.log(0.05))
+_AMBER_M2 = (AMBER_M / _RADII_95) ** 2  # variance
 
 
 class Trust(msgspec.Struct, frozen=True):
@@ -81,10 +82,11 @@ def _doubts(unit: UnitState, conflicts: int) -> Iterator[Trust]:
         yield Trust(level, "not heard: shown where it last was", "not heard")
     if fused.quality is Quality.LOST:
         yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
-    within_m = _RADII_95 * math.sqrt(_largest_var_m2(fused))
-    if within_m > AMBER_M:
-        level = "red" if within_m > RED_M else "amber"
-        yield Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
+    if fused.std_north_m**2 + fused.std_east_m**2 > _AMBER_M2:  # else no axis is longer
+        within_m = _RADII_95 * math.sqrt(_largest_var_m2(fused))
+        if within_m > AMBER_M:
+            level = "red" if within_m > RED_M else "amber"
+            yield Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
     if conflicts:
         which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
         yield Trust("amber", f"{which} the trail", "a pin contradicts the trail")

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from base_station.live_state import StationState, UnitState
+from base_station.site.plan import Plan
+from shared.messages import FusedPosition
 
 OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
 WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
 
 
-def is_outside(state: StationState, unit: UnitState) -> bool:
-    """Whether its barometer feels the weather, and no doors and fans of the building; no pin may
-    matter for that, or what is without pins would not be what it would be.
+def is_outside(
+    plan: Plan | None, fused: FusedPosition | None, shown_m: tuple[float, float] | None
+) -> bool:
+    """Whether a barometer feels the weather, and no doors and fans of the building.
+
+    ``shown_m``: north and east as estimated without any pin; no pin may matter for that, or what
+    is without pins would not be what it would be.
     """
-    fused, history = unit.fused, state.paths.get(unit.unit_id)
-    shown_m = None if history is None else history.shown_m
     if fused is None or shown_m is None:
         return False
-    if state.plan is not None and state.plan.outlines:
-        return state.plan.depth_m(*shown_m) < -OUTSIDE_M
+    if plan is not None and plan.outlines:
+        return plan.depth_m(*shown_m) < -OUTSIDE_M
     return fused.since_gps_s is not None and fused.since_gps_s < OUTSIDE_FIX_S
 
 

@@ -78,14 +78,14 @@ class Positioning:
     def follow(self, state: StationState, unit: UnitState, position: Position) -> list[str]:
         """Gives the units whose past was solved again because this one has gone on."""
         told = self._told(unit)
-        fuser, *pinned = told
+        fuser, history = told[0], _history(state, unit)
         reason = fuser.advance(position)
         if reason:
             _count(unit, reason)
-        for one in pinned:
+        for one in told[1:]:
             one.advance(position)
         t_ns = station_ns(state, unit, position.header.t_mono_ns)
-        outside = is_outside(state, unit)
+        outside = is_outside(state.plan, unit.fused, history.shown_m)
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=outside)
         bearing = _bearing(state, position)
         for one in told:
@@ -94,9 +94,8 @@ class Positioning:
             if bearing is not None:
                 one.face(bearing)
         state.learnt_building = fuser.recognise(state.learnt_building)
-        for one in pinned:
+        for one in told[1:]:
             one.recognise(state.learnt_building)
-        history = _history(state, unit)
         begins = history.end_ns is None
         history.note(position, t_ns, bool(reason))
         if state.learnt_floors.follow(position, unit.unit_id):

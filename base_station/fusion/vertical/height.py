@@ -48,6 +48,11 @@ class HeightFilter:
         self._kind = kind
         self._air_t_mono_ns: int | None = None  # None: the shift is not known yet
         self._path = np.zeros(kernels.PATH)  # how the own path climbed: ``kernels.climb``
+        self._climbing = (
+            kind.climb_m_per_sqrt_climb_m**2,
+            kind.climb_m_per_sqrt_m**2,
+            kind.level_m,
+        )
         self._rides = Rides()
         self._filter = KalmanFilter(dim_x=3, dim_z=1)
         self._filter.x = np.zeros((3, 1))
@@ -66,11 +71,11 @@ class HeightFilter:
 
     @property
     def down_m(self) -> float:
-        return self._filter.x.item(0)
+        return float(self._filter.x.item(0))
 
     @property
     def variance_m2(self) -> float:
-        return self._filter.P.item(0) + self._path.item(kernels.DOUBT_M2)
+        return float(self._filter.P.item(0)) + self._path.item(kernels.DOUBT_M2)
 
     @property
     def walked_level(self) -> bool:
@@ -93,15 +98,8 @@ class HeightFilter:
         """The own height went on by this much; ``own_std_m`` is how sure the unit is of it, and
         ``moves`` whether its wearer goes anywhere.
         """
-        kind = self._kind
-        kernels.climb(
-            self._filter.x,
-            self._filter.P,
-            self._path,
-            (down_m, walked_m, own_std_m),
-            moves,
-            (kind.climb_m_per_sqrt_climb_m**2, kind.climb_m_per_sqrt_m**2, kind.level_m),
-        )
+        now, stretch = self._filter, (down_m, walked_m, own_std_m)
+        kernels.climb(now.x, now.P, self._path, stretch, moves, self._climbing)
         if moves:
             self._rides.felt.clear()
 
