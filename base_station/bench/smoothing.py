@@ -23,7 +23,8 @@ from base_station.bench.fusion_walks import Receiver, Walk
 from base_station.bench.incident_people import Truth
 from base_station.bench.incident_scores import CHI2_95_2DOF
 from base_station.bench.incident_sensors import mono_ns
-from base_station.fusion.path.history import PathArrays, PathHistory
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
 from base_station.site.floor_grid import FloorGrid

@@ -18,7 +18,7 @@ from base_station.assessment.report import IncidentReport, assess
 from base_station.db.models import Incident
 from base_station.db.records import TrackSample
 from base_station.db.smoothed import SmoothedTracks
-from base_station.fusion.path.history import NO_FLOOR, RESTART, PathArrays
+from base_station.fusion.path.points import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base_station.fusion.path.history import NO_FLOOR, PathArrays, PathHistory
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.points import NO_FLOOR, PathArrays
 from base_station.fusion.smoother.port import (
     PlaceSeen,
     SmoothedPath,

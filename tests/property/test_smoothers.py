@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from base_station.fusion.path.history import BREAK, DOUBTFUL, RESTART, PathArrays
+from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import PlaceSeen, Smoother, Tie, UnitEvidence

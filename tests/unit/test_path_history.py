@@ -9,14 +9,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.path.history import (
-    BREAK,
-    CHUNK,
-    DOUBTFUL,
-    MOST_POINTS,
-    RESTART,
-    PathHistory,
-)
+from base_station.fusion.path.history import CHUNK, MOST_POINTS, PathHistory
+from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART
 from base_station.fusion.port import PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.messages import Header, Position

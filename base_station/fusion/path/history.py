@@ -7,14 +7,27 @@ is judged better later, goes on in the same history.
 
 from __future__ import annotations
 
-import math
 from bisect import bisect_left
-from dataclasses import dataclass
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
+from base_station.fusion.path.points import (
+    BREAK,
+    DOUBTFUL,
+    FIX_ROW,
+    NO_FLOOR,
+    POINT_ROW,
+    RESTART,
+    PathArrays,
+    Point,
+    Records,
+    arrays_of,
+    move,
+    pack,
+    saturated,
+    thinned,
+)
 from base_station.fusion.path.straight import Straight
 from base_station.fusion.port import Estimate, PlaceFix, Start
 from shared.clock import NS_PER_S
@@ -30,72 +43,6 @@ FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is near
 FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
 CHUNK = 128
 MOST_POINTS = 14_400  # some four hours of walking; beyond it every other old one goes
-_MOST_MM = 2**31 - 1  # what a column holds
-_TURN_RAD = 2.0 * math.pi
-
-Records = NDArray[np.void]
-Floats = NDArray[np.float64]
-_POINT = np.dtype(
-    [
-        ("t_ns", "<i8"),
-        ("north_mm", "<i4"),  # own frame
-        ("east_mm", "<i4"),
-        ("std_mm", "<i4"),  # as the tracker states it
-        ("heading_e4", "<i4"),  # own frame, 1e-4 rad
-        ("moving_ms", "<i4"),  # since the point before
-        ("shown_north_mm", "<i4"),  # in the incident frame, as estimated then without any pin
-        ("shown_east_mm", "<i4"),
-        ("shown_std_mm", "<i4"),  # along the longer axis
-        ("shown_down_mm", "<i4"),
-        ("shown_down_std_mm", "<i4"),
-        ("floor", "<i4"),
-        ("flags", "<i4"),
-    ]
-)
-_FIX = np.dtype([("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("std_mm", "<i4")])
-NO_FLOOR = -(2**31)
-BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not join
-
-
-class Point(msgspec.Struct, array_like=True):
-    """One place of the own path; fields as in the packed rows, not rounded yet."""
-
-    t_ns: int = 0
-    north_m: float = 0.0
-    east_m: float = 0.0
-    std_m: float = 0.0
-    heading_rad: float = 0.0
-    moving_ms: int = 0
-    shown_north_m: float = 0.0
-    shown_east_m: float = 0.0
-    shown_std_m: float = 0.0
-    shown_down_m: float = 0.0
-    shown_down_std_m: float = 0.0
-    floor: int = NO_FLOOR
-    flags: int = 0
-
-
-@dataclass(frozen=True)
-class PathArrays:
-    """A history in SI units; every array has one row a point."""
-
-    t_ns: NDArray[np.int64]
-    own_m: Floats  # (n, 2) north, east in the unit's own frame
-    std_m: Floats  # (n,) as stated, growing
-    heading_rad: Floats  # (n,) own frame
-    moving_s: Floats  # (n,) since the point before
-    shown_m: Floats  # (n, 2) north, east in the incident frame, as estimated then without any pin
-    shown_std_m: Floats  # (n,) along the longer axis
-    down_m: Floats  # (n,) incident frame, as estimated then
-    down_std_m: Floats
-    floor: NDArray[np.int64]  # NO_FLOOR: not known
-    flags: NDArray[np.int64]
-    fix_t_ns: NDArray[np.int64]
-    fix_m: Floats  # (m, 2) north, east in the incident frame
-    fix_std_m: Floats  # (m,)
-
-    def __len__(self) -> int:
-        return len(self.t_ns)
 
 
 class PathHistory(msgspec.Struct):
@@ -114,7 +61,7 @@ class PathHistory(msgspec.Struct):
     @property
     def begin_ns(self) -> int | None:
         if self.packed:
-            return int(np.frombuffer(self.packed, _POINT, 1)["t_ns"][0])
+            return int(np.frombuffer(self.packed, POINT_ROW, 1)["t_ns"][0])
         return self.points[0].t_ns if self.points else None
 
     @property
@@ -191,29 +138,29 @@ class PathHistory(msgspec.Struct):
 
     def trim(self, before_ns: int) -> None:
         """What lies before that time is no longer wanted."""
-        rows = np.frombuffer(self.packed, _POINT)
+        rows = np.frombuffer(self.packed, POINT_ROW)
         self.packed = rows[rows["t_ns"] >= before_ns].tobytes()
         self.points = [point for point in self.points if point.t_ns >= before_ns]
-        fixes = np.frombuffer(self.packed_fixes, _FIX)
+        fixes = np.frombuffer(self.packed_fixes, FIX_ROW)
         self.packed_fixes = fixes[fixes["t_ns"] >= before_ns].tobytes()
 
     def fix(self, fix: PlaceFix, t_ns: int) -> None:
         """A fix that was taken; others close by tell the same."""
-        last = np.frombuffer(self.packed_fixes[-_FIX.itemsize :], _FIX)
+        last = np.frombuffer(self.packed_fixes[-FIX_ROW.itemsize :], FIX_ROW)
         if len(last) and abs(t_ns - int(last["t_ns"][0])) < FIX_NS:
             return
-        seen_mm = _saturated(np.array([fix.north_m, fix.east_m, fix.horizontal_std_m]) * 1e3)
-        self.packed_fixes += np.array([(t_ns, *seen_mm)], _FIX).tobytes()
+        seen_mm = saturated(np.array([fix.north_m, fix.east_m, fix.horizontal_std_m]) * 1e3)
+        self.packed_fixes += np.array([(t_ns, *seen_mm)], FIX_ROW).tobytes()
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         """The incident frame was moved: turned clockwise, then shifted."""
         shift = turn_rad, north_m, east_m
-        fixes = np.frombuffer(self.packed_fixes, _FIX).copy()
-        _move(fixes, "north_mm", "east_mm", *shift)
+        fixes = np.frombuffer(self.packed_fixes, FIX_ROW).copy()
+        move(fixes, "north_mm", "east_mm", *shift)
         self.packed_fixes = fixes.tobytes()
-        rows = np.frombuffer(self.packed, _POINT).copy()
-        _move(rows, "shown_north_mm", "shown_east_mm", *shift)
-        rows["shown_down_mm"] = _saturated(rows["shown_down_mm"] + down_m * 1e3)
+        rows = np.frombuffer(self.packed, POINT_ROW).copy()
+        move(rows, "shown_north_mm", "shown_east_mm", *shift)
+        rows["shown_down_mm"] = saturated(rows["shown_down_mm"] + down_m * 1e3)
         self.packed = rows.tobytes()
         for point in self.points:
             moved = rotate(point.shown_north_m, point.shown_east_m, turn_rad)
@@ -230,26 +177,7 @@ class PathHistory(msgspec.Struct):
             )
 
     def arrays(self) -> PathArrays:
-        rows = self._rows()
-        fixes = np.frombuffer(self.packed_fixes, _FIX)
-        fixes = fixes[np.argsort(fixes["t_ns"], kind="stable")]
-        metres = {name: rows[f"{name}_mm"] * 1e-3 for name in ("north", "east", "std")}
-        return PathArrays(
-            t_ns=rows["t_ns"].astype(np.int64),
-            own_m=np.column_stack((metres["north"], metres["east"])),
-            std_m=metres["std"],
-            heading_rad=rows["heading_e4"] * 1e-4,
-            moving_s=rows["moving_ms"] * 1e-3,
-            shown_m=np.column_stack((rows["shown_north_mm"], rows["shown_east_mm"])) * 1e-3,
-            shown_std_m=rows["shown_std_mm"] * 1e-3,
-            down_m=rows["shown_down_mm"] * 1e-3,
-            down_std_m=rows["shown_down_std_mm"] * 1e-3,
-            floor=rows["floor"].astype(np.int64),
-            flags=rows["flags"].astype(np.int64),
-            fix_t_ns=fixes["t_ns"].astype(np.int64),
-            fix_m=np.column_stack((fixes["north_mm"], fixes["east_mm"])) * 1e-3,
-            fix_std_m=fixes["std_mm"] * 1e-3,
-        )
+        return arrays_of(self._rows(), np.frombuffer(self.packed_fixes, FIX_ROW))
 
     def _is_settled(self, tip: Point, flags: int) -> bool:
         """Whether the tip stays where it is and a new one, with these flags, begins."""
@@ -283,14 +211,14 @@ class PathHistory(msgspec.Struct):
         begun = _shown_as(tip)
         self.points.append(begun)
         if len(self.points) >= 2 * CHUNK:
-            self.packed += _pack(self.points[:CHUNK]).tobytes()
+            self.packed += pack(self.points[:CHUNK]).tobytes()
             del self.points[:CHUNK]
-            if len(self.packed) > MOST_POINTS * _POINT.itemsize:
-                self.packed = _thinned(np.frombuffer(self.packed, _POINT)).tobytes()
+            if len(self.packed) > MOST_POINTS * POINT_ROW.itemsize:
+                self.packed = thinned(np.frombuffer(self.packed, POINT_ROW)).tobytes()
         return begun
 
     def _rows(self) -> Records:
-        return np.concatenate((np.frombuffer(self.packed, _POINT), _pack(self.points)))
+        return np.concatenate((np.frombuffer(self.packed, POINT_ROW), pack(self.points)))
 
 
 def _point_of(position: Position, t_ns: int, flags: int) -> Point:
@@ -316,41 +244,3 @@ def _shown_as(point: Point) -> Point:
         shown_down_std_m=point.shown_down_std_m,
         floor=point.floor,
     )
-
-
-def _pack(points: list[Point]) -> Records:
-    rows = np.zeros(len(points), _POINT)
-    columns = zip(*map(msgspec.structs.astuple, points), strict=True)
-    for name, column in zip(_POINT.names or (), columns, strict=False):
-        values = np.array(column)
-        if name == "heading_e4":  # whatever it says
-            values = np.rint(values % _TURN_RAD * 1e4)
-        elif name.endswith("_mm"):
-            values = _saturated(values * 1e3)
-        rows[name] = values
-    return rows
-
-
-def _move(
-    rows: Records, north: str, east: str, turn_rad: float, north_m: float, east_m: float
-) -> None:
-    cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
-    north_mm, east_mm = rows[north].astype(float), rows[east].astype(float)
-    rows[north] = _saturated(cosine * north_mm - sine * east_mm + north_m * 1e3)
-    rows[east] = _saturated(sine * north_mm + cosine * east_mm + east_m * 1e3)
-
-
-def _saturated(millimetres: Floats) -> Floats:
-    """An anchor on the other side of the Earth moves everything farther than a number holds."""
-    return np.rint(np.clip(millimetres, -_MOST_MM, _MOST_MM))
-
-
-def _thinned(rows: Records) -> Records:
-    """Every other point of the older half goes, but not where the path does not join."""
-    half = len(rows) // 2
-    keep = np.ones(len(rows), bool)
-    keep[1:half:2] = (rows["flags"][1:half:2] & (BREAK | RESTART)) != 0
-    after = np.flatnonzero(~keep) + 1
-    thinned = rows.copy()
-    thinned["moving_ms"][after] += rows["moving_ms"][after - 1]
-    return thinned[keep]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path.history import BREAK, DOUBTFUL, RESTART, PathArrays
+from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.port import Start
 from base_station.fusion.smoother.port import UnitEvidence
 

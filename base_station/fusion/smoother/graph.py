@@ -150,7 +150,8 @@ class Graph:
         """Covariances of all knots (k, 5, 5) by unit; ``on_plan``: of where they lie on the plan,
         which may lie aside itself.
         """
-        information = self._equations(noise, with_links=False).information
+        solved = self._equations(noise, with_links=False) if self.links else self._normal
+        information = solved.information
         blocks = {one: information[own, own].tocsc() for one, own in self._columns.items()}
         plus = self.shared.plan if on_plan else None
         shared = shared_spreads(information, self._columns, self.shared.axis, STATES, plus)

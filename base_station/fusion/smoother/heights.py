@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from base_station.fusion.path.history import PathArrays
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.port import PlaceSeen
 
 Floats = NDArray[np.float64]

@@ -24,7 +24,7 @@ from base_station.fusion.learnt.axes import (
     evidence,
     remember,
 )
-from base_station.fusion.path.history import BREAK, RESTART, PathArrays
+from base_station.fusion.path.points import BREAK, RESTART, PathArrays
 from base_station.fusion.smoother.chain import STATES, Belief, Chain
 from base_station.fusion.smoother.equations import Equations
 

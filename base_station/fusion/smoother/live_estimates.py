@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path.history import PathArrays
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.chain import (
     NS_TO_S,
     STATES,

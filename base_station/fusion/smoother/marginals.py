@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numba import njit
+from numba.core.types import float64, void
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.linalg import splu
 
 Floats = NDArray[np.float64]
 
+_BLOCKS = float64[:, :, ::1]
 UNKNOWN_VAR = 1e8  # said of a knot where the numbers are too far apart to tell
 
 
@@ -28,18 +31,8 @@ def chain_covariances(
     diagonal, beside = _blocks(information, count, states)
     for knot, known in told:
         diagonal[knot, :2, :2] += known
-    inverses = np.empty_like(diagonal)
-    gains = np.empty_like(beside)
-    reduced = diagonal[0]
-    for row in range(count):
-        inverses[row] = _inverse(reduced)
-        if row + 1 < count:
-            gains[row] = inverses[row] @ beside[row]
-            reduced = diagonal[row + 1] - beside[row].T @ gains[row]
-            reduced = 0.5 * (reduced + reduced.T)
-    covariances = inverses
-    for row in range(count - 2, -1, -1):
-        covariances[row] += gains[row] @ covariances[row + 1] @ gains[row].T
+    covariances = np.empty_like(diagonal)
+    _substitute(diagonal, beside, covariances)
     variances = np.diagonal(covariances, axis1=1, axis2=2)
     lost = ~(np.isfinite(variances) & (variances > 0.0)).all(axis=1)
     covariances[lost] = UNKNOWN_VAR * np.eye(states)
@@ -74,12 +67,29 @@ def shared_spreads(
     return spreads
 
 
-def _inverse(matrix: Floats) -> Floats:
-    """Of a positive definite matrix whose rows are of very different units."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1.0 / UNKNOWN_VAR))
-    scales = np.outer(scale, scale)
-    inverse: Floats = np.linalg.inv(matrix * scales) * scales
-    return inverse
+@njit(void(_BLOCKS, _BLOCKS, _BLOCKS), cache=True, error_model="numpy")
+def _substitute(diagonal: Floats, beside: Floats, covariances: Floats) -> None:
+    """Eliminate forwards, substitute backwards; ``covariances`` is written."""
+    count, states = len(diagonal), diagonal.shape[1]
+    gains = np.empty_like(beside)
+    scale = np.empty(states)
+    reduced = diagonal[0].copy()
+    for knot in range(count):
+        for i in range(states):  # the rows are of very different units
+            scale[i] = 1.0 / np.sqrt(max(reduced[i, i], 1.0 / UNKNOWN_VAR))
+        for i in range(states):
+            for j in range(states):
+                reduced[i, j] *= scale[i] * scale[j]
+        inverse = np.linalg.inv(reduced)
+        for i in range(states):
+            for j in range(states):
+                covariances[knot, i, j] = inverse[i, j] * scale[i] * scale[j]
+        if knot + 1 < count:
+            gains[knot] = covariances[knot] @ beside[knot]
+            reduced = diagonal[knot + 1] - beside[knot].T @ gains[knot]
+            reduced = 0.5 * (reduced + reduced.T)
+    for knot in range(count - 2, -1, -1):
+        covariances[knot] += gains[knot] @ covariances[knot + 1] @ gains[knot].T
 
 
 def _blocks(information: csc_matrix, count: int, states: int) -> tuple[Floats, Floats]:

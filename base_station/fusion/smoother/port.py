@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path.history import PathArrays
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.port import Present, Start
 from base_station.site.floor_grid import FloorGrid
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path.history import BREAK, RESTART
+from base_station.fusion.path.points import BREAK, RESTART
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
 from base_station.fusion.smoother.equations import Equations
 from base_station.site.floor_grid import FloorGrid
