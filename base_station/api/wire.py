@@ -225,6 +225,7 @@ class HealthView(msgspec.Struct, frozen=True):
     standby: StandbyView | None = None  # None: this is the only station
     recordings: tuple[RecordingView, ...] = ()
     repeated: int = 0  # messages since the station started that came again and were kept once
+    reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 
 class ReplayView(msgspec.Struct, frozen=True):

@@ -17,6 +17,7 @@ from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.services import Services
 from base_station.app.disk import Disk, open_disk
+from base_station.app.early import early_console
 from base_station.app.folder import rebuild
 from base_station.app.parts import (
     Announce,
@@ -161,7 +162,13 @@ def _run_once(config: StationConfig, announce: Announce, manager: ServiceManager
                 say=lambda orders: downlink.report(orders if side.leads else ()),
             ),
             side.begin,
-            recovering(recorder.segments(), listening, config.http, announce),
+            recovering(
+                recorder.segments(),
+                listening,
+                config.http,
+                lambda: early_console(config, disk),
+                announce,
+            ),
         )
         gate = side.gate_to(drive)
         beside = closing.enter_context(ExitStack())  # ends behind the drive: the other gets all

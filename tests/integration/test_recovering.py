@@ -1,59 +1,140 @@
-"""While a station reads its log, its console's address says how far it is."""
+"""While a station reads its log, its console shows what was last stored, and how far it is."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
+from typing import NoReturn
 
 import httpx
 import pytest
+from websockets.sync.client import connect
 
-from base_station.config import HttpConfig
+from base_station.api.security import COOKIE
+from base_station.app.disk import Disk, open_disk
+from base_station.app.early import early_console
+from base_station.bench import said as said_by_bench
+from base_station.config import HttpConfig, StationConfig
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Role
+from base_station.live import last_known
 from base_station.live import recovering as module
 from base_station.live.recovering import recovering
+from base_station.live.sinks import Projection
 from base_station.live.surroundings import Record
+from base_station.recorder import Recorder
 from base_station.server import bind
+from shared.clock import ManualClock
+from shared.envelope import Stamper
 from shared.mcap_log import SegmentInfo, SegmentState
+from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
+from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
+from tests.station import PASSWORD
 
 SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)
 
 
-def test_the_page_and_the_api_say_how_much_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_PAGE_AFTER_S", 0.0)
+def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
+) -> None:
+    monkeypatch.setattr(module, "_SHOWN_AFTER_S", 0.0)
     monkeypatch.setattr(module, "_SAID_EVERY_S", 0.0)
     monkeypatch.setattr(module, "_TOLD_EVERY", 1)
-    seen: list[httpx.Response] = []
+    monkeypatch.setattr(last_known, "_SAID_AGAIN_NS", 0)
     said: list[str] = []
-
-    with bind("127.0.0.1", 0) as listening:
+    folder = DataFolder(tmp_path)
+    recorder = Recorder(tmp_path, clock)
+    with bind("127.0.0.1", 0) as listening, ExitStack() as closing:
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, said.append, closing)
+        store_what_happened(disk)
         address = f"http://127.0.0.1:{listening.getsockname()[1]}"
+        config = StationConfig(data=tmp_path)
 
         def records() -> Iterator[Record]:
             for t_ns in (1000, 2000, 3000):
                 yield t_ns, "key", b""
-            seen.extend(httpx.get(address + path) for path in ("/", "/api/v1/health"))
+            look(address)
 
-        with recovering([SEGMENT], listening, HttpConfig(), said.append) as watched:
+        with recovering(
+            [SEGMENT], listening, HttpConfig(), lambda: early_console(config, disk), said.append
+        ) as watched:
             assert [t_ns for t_ns, _, _ in watched(records())] == [1000, 2000, 3000]
         with pytest.raises(httpx.TransportError):
             httpx.get(address, timeout=0.3)
         assert listening.fileno() >= 0
-
-    page, api = seen
-    assert (page.status_code, api.status_code) == (503, 503)
-    assert "50%" in page.text
-    assert "frame-ancestors" in page.headers["content-security-policy"]
-    assert api.headers["retry-after"] == "2"
-    assert "50%" in api.json()["title"]
     assert said[-1] == "reading the log: 50%"
 
 
+def store_what_happened(disk: Disk) -> None:
+    disk.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    stamper = Stamper(STATION_ID, 1, disk.clock)
+    t_ns = disk.clock.utc_ns()
+    actions: tuple[Action, ...] = (OpenIncident("i1", "Mill Lane"), RegisterUnit("FF-01", "one"),
+               Assign("FF-01", "p1", "Bea", "red", "leader"))  # fmt: skip
+    header = stamper.header()
+    disk.projection.project(
+        Projection(
+            t_ns,
+            actions=tuple(
+                OperatorAction(header, f"a{number}", "ada", action)
+                for number, action in enumerate(actions)
+            ),
+            heard=(("FF-01", t_ns),),
+            tracks=(said_by_bench.fused(header, "FF-01", north_m=3.0, east_m=4.0),),
+            alarms=(
+                AlarmChange(
+                    header, "x1", "mayday", "FF-01", 1, AlarmState.RAISED, "", "MAYDAY", "", t_ns
+                ),
+            ),
+        )
+    )
+    disk.projection.flush()
+
+
+def look(address: str) -> None:
+    with httpx.Client(base_url=f"{address}/api/v1", headers={"origin": address}) as browser:
+        page = httpx.get(address)
+        assert "frame-ancestors" in page.headers["content-security-policy"]
+        assert browser.get("/units").status_code == 401
+        credentials = {"username": "ada", "password": PASSWORD}
+        assert browser.post("/login", json=credentials).status_code == 200
+        (unit,) = browser.get("/units").json()
+        assert unit["person_id"] == "p1"
+        refused = browser.post("/incidents", json={"name": "Other"})
+        assert refused.status_code == 503
+        assert "reading its log (50%)" in refused.json()["detail"]
+        assert browser.post("/standby/take-over").status_code == 503
+        assert browser.get("/standby/leads").json() == {"leads": False}
+        cookie = f"{COOKIE}={browser.cookies[COOKIE]}"
+        with connect(
+            f"{address.replace('http', 'ws')}/api/v1/live",
+            additional_headers={"cookie": cookie, "origin": address},
+        ) as socket:
+            picture = json.loads(socket.recv())
+    assert picture["health"]["reading"] == 0.5
+    assert picture["incident"]["name"] == "Mill Lane"
+    (shown,) = picture["units"]
+    assert (shown["link"], shown["trust"]["level"]) == ("lost", "red")
+    assert shown["person"]["name"] == "Bea"
+    assert (shown["position"]["north_m"], shown["position"]["east_m"]) == (3.0, 4.0)
+    assert shown["alarms"] == ["x1"]
+    assert [one["text"] for one in picture["alarms"]] == ["MAYDAY"]
+    assert picture["trails"]["FF-01"][0][1:3] == [3.0, 4.0]
+
+
+def never() -> NoReturn:
+    pytest.fail("it was quick")
+
+
 def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_PageServer", None)
+    monkeypatch.setattr(module, "_EarlyServer", None)
     said: list[str] = []
     with (
         bind("127.0.0.1", 0) as listening,
-        recovering([SEGMENT], listening, HttpConfig(), said.append) as watched,
+        recovering([SEGMENT], listening, HttpConfig(), never, said.append) as watched,
     ):
         assert list(watched(iter([(1000, "key", b"")]))) == [(1000, "key", b"")]
     assert said == []

@@ -22,10 +22,12 @@ export const picture = computed(() => (replay.value?.session ?? live.value)?.pic
 export const isPast = computed(() => picture.value !== null && picture.value.replay.value !== null);
 /** Whether there is a live picture behind the replay. */
 export const besideLive = computed(() => replay.value?.session !== live.value);
-/** Whether this station leads; of two, things are changed only there. */
+/** Whether this station leads; of two, things are changed only there.  One that reads its log does not
+ * yet. */
 const leads = computed(() => {
-  const standby = live.value?.picture.health.value?.standby ?? null;
-  return standby === null || standby.role === "active";
+  const health = live.value?.picture.health.value ?? null;
+  const standby = health?.standby ?? null;
+  return (standby === null || standby.role === "active") && (health?.reading ?? null) === null;
 });
 /** A viewer only looks, and the past and a standby are only looked at. */
 export const mayAct = computed(

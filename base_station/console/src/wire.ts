@@ -200,6 +200,7 @@ export interface HealthView {
   standby: StandbyView | null; // null: this is the only station
   recordings: RecordingView[];
   repeated: number; // messages since the station started that came again and were kept once
+  reading: number | null; // share of its log; nothing is live: what was last stored is shown
 }
 
 /** A unit's raw recording that somebody asked for, on its way over the bus. */

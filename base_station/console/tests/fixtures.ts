@@ -23,6 +23,7 @@ export const HEALTH: HealthView = {
   standby: null,
   recordings: [],
   repeated: 0,
+  reading: null,
 };
 
 export const STATUS: StatusView = {

@@ -8,6 +8,8 @@ import { Icon } from "./Icon";
 
 /** At a station that does not lead: nobody may take it for the one that does. */
 export function StandbyBar({ picture }: { picture: Picture }) {
+  const reading = picture.health.value?.reading ?? null;
+  if (reading !== null) return <ReadingBar share={reading} />;
   const standby = picture.health.value?.standby ?? null;
   if (standby === null || standby.role === "active") return null;
   return (
@@ -22,6 +24,20 @@ export function StandbyBar({ picture }: { picture: Picture }) {
       </span>
       <OtherConsole standby={standby} />
       {user.value !== null && user.value.role !== "viewer" && <TakeOver standby={standby} />}
+    </section>
+  );
+}
+
+/** After a crash without a saved state: nobody may take what was last stored for what is now. */
+function ReadingBar({ share }: { share: number }) {
+  return (
+    <section class="standby-bar" aria-label="Reading the log">
+      <Icon name="linkGood" />
+      <strong>The station is reading its log: {Math.round(100 * share)} %.</strong>
+      <span>
+        This is what was last stored: nothing here is live, and nothing can be changed yet. Units go on
+        by themselves, and what they say meanwhile is fetched.
+      </span>
     </section>
   );
 }

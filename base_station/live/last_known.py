@@ -1,0 +1,210 @@
+"""What was last stored, for consoles while a station that starts is still reading its log.
+
+A log without a saved state takes minutes to be read, and a commander needs to know meanwhile who
+was where, and when, and what had been raised.  The tables have that.  Nothing here is live: every
+unit counts as not heard, and nobody can change anything.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Future
+
+import msgspec
+
+from base_station.api.wire import (
+    AlarmView,
+    AnchorView,
+    HealthView,
+    IncidentView,
+    PersonView,
+    PositionView,
+    Snapshot,
+    StandbyView,
+    TrailPoint,
+    TrustView,
+    UnitView,
+)
+from base_station.db import models
+from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
+from base_station.db.roster import Roster
+from base_station.live.sinks import ActionDone, LiveSink
+from shared.clock import NS_PER_S, Clock
+from shared.errors import StoreError
+from shared.messages.station import Action
+
+_NS_PER_MS = 1_000_000
+_RECENT_NS = 3600 * NS_PER_S  # of trails, and of alarms where no incident is open
+_TRAIL_EVERY_S = 5
+_RADIUS_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's standard deviation
+_SAID_AGAIN_NS = 2 * NS_PER_S
+_OLD = TrustView("red", "as it was last stored; the station is reading its log")
+
+
+class LastKnown:
+    """A ``LiveSource``; and an ``OperatorGate`` and a standing that say why nothing can be done."""
+
+    def __init__(self, roster: Roster, records: Records, clock: Clock, sink: LiveSink) -> None:
+        self._roster = roster
+        self._records = records
+        self._clock = clock
+        self._sink = sink
+        self._share = 0.0
+        self._said_ns = 0
+
+    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+        deliver(self.snapshot())
+
+    def tell(self, share: float) -> None:
+        """So much of the log is read."""
+        self._share = share
+        now_ns = self._clock.monotonic_ns()
+        if now_ns - self._said_ns >= _SAID_AGAIN_NS:
+            self._said_ns = now_ns
+            self._sink.reset(self.snapshot())
+
+    # ---- a standing
+
+    def view(self) -> StandbyView:
+        return StandbyView("", "waiting", "", "", "", "", in_step=False)
+
+    def refusal(self) -> str:
+        return f"the station is reading its log ({self._share:.0%}) and shows what was last stored"
+
+    def take_over(self) -> None:
+        raise StoreError(self.refusal())
+
+    def submit(self, _by: str, _action: Action) -> Future[ActionDone]:
+        refused: Future[ActionDone] = Future()
+        refused.set_exception(StoreError(self.refusal()))
+        return refused
+
+    # ---- the picture
+
+    def snapshot(self) -> Snapshot:
+        now_ns = self._clock.utc_ns()
+        incident = next((one for one in self._records.incidents() if one.closed_ns is None), None)
+        since_ns = now_ns - _RECENT_NS if incident is None else incident.opened_ns
+        open_alarms = [
+            one
+            for one in self._records.alarms(Window(since_ns, FOREVER_NS))
+            if one.state != "resolved"
+        ]
+        trails = {
+            unit_id: self._records.track(
+                unit_id, Window(now_ns - _RECENT_NS, FOREVER_NS), _TRAIL_EVERY_S
+            )
+            for unit_id in self._roster.registered_units()
+        }
+        plan, anchor = self._records.plan(), self._records.anchor()
+        return Snapshot(
+            seq=0,
+            now_ms=now_ns // _NS_PER_MS,
+            incident=None if incident is None else _incident(incident),
+            units=tuple(
+                self._unit(unit, worn, trails.get(unit.unit_id, []), open_alarms)
+                for unit, worn in self._roster.units()
+            ),
+            alarms=tuple(map(_alarm, open_alarms)),
+            commands=(),
+            trails={unit_id: tuple(map(_point, trail)) for unit_id, trail in trails.items()},
+            pins=(),
+            beacons=(),
+            plan=None if plan is None else msgspec.Raw(plan),
+            anchor=None if anchor is None else _anchor(anchor),
+            health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False, reading=self._share),
+            replay=None,
+        )
+
+    def _unit(
+        self,
+        unit: models.Unit,
+        worn: models.Assignment | None,
+        trail: list[TrackSample],
+        alarms: list[models.Alarm],
+    ) -> UnitView:
+        return UnitView(
+            unit_id=unit.unit_id,
+            label=unit.label,
+            registered=unit.registered_ns is not None,
+            person=None if worn is None else self._person(worn),
+            link="lost" if unit.last_heard_ns is not None else "never",
+            last_heard_ms=_ms(unit.last_heard_ns),
+            status=None,
+            status_ms=None,
+            ambient_degc=None,
+            heat_level=next(
+                (one.level for one in alarms if (one.unit_id, one.rule) == (unit.unit_id, "heat")),
+                "",
+            ),
+            position=_position(trail[-1]) if trail else None,
+            inside_since_ms=None,
+            duty=None,
+            alarms=tuple(one.alarm_id for one in alarms if one.unit_id == unit.unit_id),
+            trust=_OLD,
+            clock=None,
+            cloned=False,
+        )
+
+    def _person(self, worn: models.Assignment) -> PersonView:
+        photo_url = self._roster.photo_url(worn.person_id)
+        return PersonView(worn.person_id, worn.person_name, worn.crew, worn.role, photo_url)
+
+
+def _position(sample: TrackSample) -> PositionView:
+    """The larger error on both axes: the tables have no more of the region."""
+    radius_m = _RADIUS_95 * max(sample.std_north_m, sample.std_east_m)
+    return PositionView(
+        t_ms=sample.t_ns // _NS_PER_MS,
+        north_m=sample.north_m,
+        east_m=sample.east_m,
+        down_m=sample.down_m,
+        floor=sample.floor,
+        ellipse_major_m=radius_m,
+        ellipse_minor_m=radius_m,
+        ellipse_heading_rad=0.0,
+        std_down_m=sample.std_down_m,
+        heading_rad=sample.heading_rad,
+        heading_std_rad=math.pi,
+        quality=sample.quality,
+        quality_reason=_OLD.reason,
+        since_gps_s=None,
+        lat_deg=None,
+        lon_deg=None,
+        floor_probability=None,
+        reach=(),
+    )
+
+
+def _point(sample: TrackSample) -> TrailPoint:
+    return TrailPoint(sample.t_ns // _NS_PER_MS, sample.north_m, sample.east_m, sample.floor)
+
+
+def _incident(incident: models.Incident) -> IncidentView:
+    """Nobody's check-in counts down while nothing is live."""
+    opened_ms = incident.opened_ns // _NS_PER_MS
+    return IncidentView(incident.incident_id, incident.name, opened_ms, None, 0.0, 0.0, 0.0)
+
+
+def _anchor(anchor: models.Anchor) -> AnchorView:
+    return AnchorView(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.plan_rotation_rad)
+
+
+def _alarm(alarm: models.Alarm) -> AlarmView:
+    return AlarmView(
+        alarm_id=alarm.alarm_id,
+        rule=alarm.rule,
+        unit_id=alarm.unit_id,
+        priority=alarm.priority,
+        state=alarm.state,
+        level=alarm.level,
+        text=alarm.text,
+        by=alarm.by,
+        raised_ms=alarm.raised_ns // _NS_PER_MS,
+        changed_ms=alarm.changed_ns // _NS_PER_MS,
+    )
+
+
+def _ms(t_ns: int | None) -> int | None:
+    return None if t_ns is None else t_ns // _NS_PER_MS
