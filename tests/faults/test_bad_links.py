@@ -2,136 +2,29 @@
 
 from __future__ import annotations
 
-import socket
-import time
-from collections.abc import Iterator
-from contextlib import ExitStack, closing
-
 import pytest
 
 from base_station.bench.faults import suffer
-from base_station.bench.forwarder import Conditions
-from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
-from base_station.bench.site import MessageId, Site, site
-from base_station.bench.troubles import FAULTS, BadLink, Clone, Fault
-from shared.errors import BusError
-from shared.messages import AlarmState
+from base_station.bench.site import MessageId, Site
+from base_station.bench.troubles import FAULTS, BadLink
 
-SEED = 5
-PORT = 5000
-# The others are for `muster bench faults`.
-SHORT = [fault for fault in FAULTS if not fault.is_long]
 PATIENCE_S = 90.0
+# The others are for `muster bench faults`.
+SHORT = [fault for fault in FAULTS if isinstance(fault, BadLink) and not fault.is_long]
 
 
-pytestmark = [pytest.mark.usefixtures("links"), pytest.mark.timeout(400)]
-
-
-@pytest.fixture(scope="module")
-def links() -> None:
-    """Skips where they cannot be had."""
-    with ExitStack() as ended:
-        try:
-            LossyLink(SEED, ended)
-        except BusError as error:
-            pytest.skip(str(error))
-
-
-class Datagrams:
-    """Numbers sent from the unit's end of a link and those that arrive at the station's."""
-
-    def __init__(self, link: LossyLink, closing_all: ExitStack) -> None:
-        self.link = link
-        self._sender, self._receiver = (
-            closing_all.enter_context(
-                closing(one.call(lambda: socket.socket(type=socket.SOCK_DGRAM)))
-            )
-            for one in (link.units, link.station)
-        )
-        self._receiver.bind((link.station.address, PORT))
-
-    def arrived(self, count: int, size: int = 4, quiet_s: float = 0.6) -> list[int]:
-        """Of ``count`` sent now, the numbers in the order in which they come."""
-        numbers: list[int] = []
-        self._receiver.settimeout(0.001)
-        for number in range(count):
-            payload = number.to_bytes(4, "big").ljust(size)
-            self._sender.sendto(payload, (self.link.station.address, PORT))
-            numbers += self._received()
-        self._receiver.settimeout(quiet_s)
-        return numbers + self._received()
-
-    def _received(self) -> list[int]:
-        numbers = []
-        try:
-            while True:
-                numbers.append(int.from_bytes(self._receiver.recv(2048)[:4], "big"))
-        except TimeoutError:
-            return numbers
-
-
-@pytest.fixture
-def datagrams() -> Iterator[Datagrams]:
-    with ExitStack() as ended:
-        yield Datagrams(LossyLink(SEED, ended), ended)
-
-
-@pytest.fixture(scope="module")
-def running(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    with site(tmp_path_factory.mktemp("site"), SEED) as one:
-        yield one
-
-
-def test_a_clean_link_brings_all_in_order(datagrams: Datagrams) -> None:
-    assert datagrams.arrived(100) == list(range(100))
-
-
-def test_a_dark_link_brings_nothing_until_it_is_clean_again(datagrams: Datagrams) -> None:
-    datagrams.link.set(DARK)
-    assert datagrams.arrived(20) == []
-    datagrams.link.set(CLEAN)
-    assert datagrams.arrived(20) == list(range(20))
-
-
-def test_each_direction_has_its_own_conditions(datagrams: Datagrams) -> None:
-    datagrams.link.set(down=DARK, up=CLEAN)
-    assert datagrams.arrived(20) == list(range(20))
-
-
-def test_loss_and_jitter_are_those_asked_for(datagrams: Datagrams) -> None:
-    datagrams.link.set(Conditions(loss=0.4, jitter_s=0.3))
-    arrived = datagrams.arrived(1000)
-    assert 0.55 < len(arrived) / 1000 < 0.65
-    assert arrived != sorted(arrived)
-    assert len(set(arrived)) == len(arrived)
-
-
-def test_a_thin_link_carries_its_rate_and_throws_away_what_it_cannot_queue(
-    datagrams: Datagrams,
-) -> None:
-    datagrams.link.set(Conditions(rate_bps=80_000.0))
-    began_s = time.monotonic()
-    arrived = datagrams.arrived(40, size=1000)
-    assert time.monotonic() - began_s >= len(arrived) * 8_000 / 80_000.0
-    assert 0 < len(arrived) < 40
-
-
+@pytest.mark.timeout(400)
 @pytest.mark.parametrize("fault", SHORT, ids=lambda fault: fault.name)
-def test_every_message_is_in_the_log_once(running: Site, fault: Fault) -> None:
-    before = running.said()
-    report = suffer(running, fault, PATIENCE_S)
+def test_every_message_is_in_the_log_once(troubled: Site, fault: BadLink) -> None:
+    before = troubled.said()
+    report = suffer(troubled, fault, PATIENCE_S)
     assert (report.lost, report.duplicates) == (0, 0)
     assert report.heard_s is not None
     assert report.complete_s is not None
-    match fault:
-        case BadLink():
-            assert report.sent > fault.seconds * 5  # positions alone
-            assert report.alerts > 0
-            if fault.link.dark and fault.seconds > 3.0:  # the kernel brings what a short one held
-                assert_alerts_come_first(running, before)
-        case Clone():
-            changes = running.alarms("cloned-unit")
-            assert changes[0].state is AlarmState.RAISED
+    assert report.sent > fault.seconds * 5  # positions alone
+    assert report.alerts > 0
+    if fault.link.dark and fault.seconds > 3.0:  # the kernel brings what a short one held
+        assert_alerts_come_first(troubled, before)
 
 
 def assert_alerts_come_first(running: Site, before: set[MessageId]) -> None:

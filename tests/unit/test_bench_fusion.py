@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from base_station.bench import smoothing
 from base_station.bench.fusion import WITH_PLAN, bench_fusion
 from base_station.bench.incident_people import LASTS_S
 from base_station.bench.incident_run import Timing, draw_incident, fuse
@@ -20,7 +21,9 @@ from base_station.site.plan import read_plan
 @pytest.fixture(scope="module")
 def figures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     file = tmp_path_factory.mktemp("bench") / "figures.json"
-    bench_fusion(incidents=1, seed=3, json_file=file)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(smoothing, "UNITS", 1)  # an hour of each is timed
+        bench_fusion(incidents=1, seed=3, json_file=file)
     found: dict[str, Any] = json.loads(file.read_text())
     return found
 

@@ -1,0 +1,31 @@
+"""Networks of their own for stations and units, where this machine allows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from base_station.bench.lossy_link import LossyLink
+from base_station.bench.site import Site, site
+from shared.errors import BusError
+
+LUCK = 5  # the seed of the links
+
+
+@pytest.fixture(scope="session")
+def links() -> None:
+    """Skips where they cannot be had."""
+    with ExitStack() as ended:
+        try:
+            LossyLink(LUCK, ended)
+        except BusError as error:
+            pytest.skip(str(error))
+
+
+@pytest.fixture(scope="module")
+def troubled(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """A station and a unit with a link between them that can be spoiled."""
+    with site(tmp_path_factory.mktemp("site"), LUCK) as one:
+        yield one

@@ -1,0 +1,26 @@
+"""A real station and a real unit that are killed, doubled or out of disk: nothing is lost."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.bench.faults import suffer
+from base_station.bench.site import Site
+from base_station.bench.troubles import FAULTS, BadLink, Clone, Fault
+from shared.messages import AlarmState
+
+PATIENCE_S = 90.0
+# The others are for `muster bench faults`.
+SHORT = [fault for fault in FAULTS if not isinstance(fault, BadLink) and not fault.is_long]
+
+
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize("fault", SHORT, ids=lambda fault: fault.name)
+def test_every_message_is_in_the_log_once(troubled: Site, fault: Fault) -> None:
+    report = suffer(troubled, fault, PATIENCE_S)
+    assert (report.lost, report.duplicates) == (0, 0)
+    assert report.heard_s is not None
+    assert report.complete_s is not None
+    if isinstance(fault, Clone):
+        changes = troubled.alarms("cloned-unit")
+        assert changes[0].state is AlarmState.RAISED
