@@ -66,6 +66,7 @@ class _Memory(msgspec.Struct):
     horizontal: SavedWalled | None = None
     height: SavedHeight | None = None
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
+    height_assumed: bool = True  # and nothing told yet that it did not begin upstairs
     last: Position | None = None
     own: OwnPath = msgspec.field(default_factory=OwnPath)
     path: PathMemory = msgspec.field(default_factory=PathMemory)
@@ -101,7 +102,7 @@ class GpsInertialFuser:
             (start.north_m, start.east_m), start.std_m, start.heading_rad, start.heading_std_rad
         )
         self._height.begin(start.down_m, start.std_m)
-        memory.assumed = False
+        memory.assumed = memory.height_assumed = False
         memory.trust.outliers.clear()
         memory.recognition.forget()
         memory.recognition.shared_m2 = start.std_m**2
@@ -112,6 +113,7 @@ class GpsInertialFuser:
         self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
         if present.down_std_m is not None:
             self._height.begin(self._height.down_m + present.down_shift_m, present.down_std_m)
+            self._memory.height_assumed = False
         self._memory.assumed = False
         self._memory.trust.outliers.clear()
         self._memory.recognition.forget()
@@ -185,6 +187,8 @@ class GpsInertialFuser:
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
             self._height.correct(fix.down_m, std_m)
+        if fix.horizontal_std_m < self._kind.open_sky_m:  # who has such fixes is outside
+            memory.height_assumed = False
         memory.fix_t_mono_ns = max(fix.t_mono_ns, memory.fix_t_mono_ns or 0)
         memory.recognition.hear_fix(memory.trust.common_m2(fix))
         return FixVerdict(True)
@@ -269,6 +273,7 @@ class GpsInertialFuser:
             quality=quality,
             quality_reason=reason,
             since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
+            height_assumed=memory.height_assumed,
         )
 
     def _walk(self, stretch: Stretch, own_std_m: float) -> None:

@@ -38,6 +38,7 @@ class Parameters:
     unsure_m: float = 5.0  # standard deviation of a place that is called degraded
     lost_m: float = 30.0  # and lost
     height_std_floor_m: float = 5.0
+    open_sky_m: float = 5.0  # standard deviation of a fix that nobody has far inside
     fastest_mps: float = 12.0
     unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
     restart_m: float = 5.0  # and how far while the unit starts again

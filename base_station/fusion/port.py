@@ -92,6 +92,7 @@ class Estimate(msgspec.Struct, frozen=True):
     quality: Quality
     quality_reason: str
     since_gps_s: float | None
+    height_assumed: bool = False  # nothing said how high the own frame begins: on the ground?
 
 
 class Fuser(Protocol):

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from base_station.fusion.port import Estimate
 from base_station.live_state import StationState, UnitState
 from base_station.site.storeys import floor_at, sureness
 from shared.messages import FusedPosition, Header
+
+ASSUMED_STD_M = 6.0  # a unit may have been switched on upstairs
 
 
 def said(
@@ -19,9 +23,12 @@ def said(
     """``held``: the floor it was on, where that is known."""
     storeys = state.storeys_at(estimate.north_m, estimate.east_m)
     floor = floor_at(storeys, estimate.down_m, held)
+    std_down_m = estimate.std_down_m
+    if estimate.height_assumed:
+        std_down_m = math.hypot(std_down_m, ASSUMED_STD_M)
     sure = None
     if floor is not None:
-        sure = sureness(storeys, floor, estimate.down_m, estimate.std_down_m)
+        sure = sureness(storeys, floor, estimate.down_m, std_down_m)
     return FusedPosition(
         header=header,
         unit_id=unit.unit_id,
@@ -31,7 +38,7 @@ def said(
         down_m=estimate.down_m,
         std_north_m=estimate.std_north_m,
         std_east_m=estimate.std_east_m,
-        std_down_m=estimate.std_down_m,
+        std_down_m=std_down_m,
         correlation_ne=estimate.correlation_ne,
         heading_rad=estimate.heading_rad,
         heading_std_rad=estimate.heading_std_rad,

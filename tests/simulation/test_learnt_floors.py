@@ -84,6 +84,7 @@ class People:
 def people() -> People:
     """Two; one has been on the ground floor, the first and the third."""
     people = People("FF-01", "FF-02")
+    people.script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
     people.walk("FF-01", 20)
     people.climb("FF-01", 1)
     people.walk("FF-01", 20)
@@ -164,6 +165,15 @@ def test_who_begins_upstairs_tells_nothing_of_the_ground(people: People) -> None
     people.walk("FF-02", 20)
     assert people.floor("FF-02") == 3
     assert people.seen()[0] == pytest.approx(0.0, abs=0.3)
+
+
+def test_of_a_unit_that_nobody_said_where_it_began_the_floor_is_assumed(people: People) -> None:
+    people.walk("FF-02", 20)
+    assert people.floor("FF-02") == 0
+    assert people.sure("FF-02") < 0.5
+    people.script.act(SetStart("FF-02", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
+    people.walk("FF-02", 1)
+    assert people.sure("FF-02") > 0.9
 
 
 def test_buildings_apart_have_floors_of_their_own(people: People) -> None:

@@ -19,7 +19,7 @@ from edge.tracker import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import FusedPosition, Position
-from shared.messages.station import SetPlan
+from shared.messages.station import SetPlan, SetStart
 from tests.station_script import Script
 
 LASTS_S = 200
@@ -41,6 +41,7 @@ def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floa
     unit = TrackerPipeline(identity, tracker, stamper, 2.0)
     script = Script()
     script.register("FF-01")
+    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, 0.1))
     if with_plan:
         script.act(SetPlan(PLAN))
     times_s, shown = [], []
