@@ -63,7 +63,7 @@ export function IncidentsDialog() {
                   aria-label={`How good were the positions? ${incident.name}`}
                   onClick={() => assess(incident)}
                 >
-                  How good were the positions?
+                  How good?
                 </button>
               </td>
               {forgets && (

@@ -34,7 +34,9 @@ export function People({ picture }: { picture: Picture }) {
       <CommandBar picture={picture} />
       {places.value.length === 0 ? (
         <p class="nobody">
-          {picture.ready.value ? "No unit has been heard yet." : "Waiting for the station."}
+          {picture.ready.value
+            ? "No unit has been heard yet. Each appears here by itself when it is switched on."
+            : "Waiting for the station."}
         </p>
       ) : (
         <ul class="cards">
