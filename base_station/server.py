@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import resource
 import signal
 import socket
 from collections.abc import Callable, Generator
@@ -153,6 +154,13 @@ async def serve_until_stopped(
         await asyncio.to_thread(housekeeping)
         await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
     await serving
+
+
+def allow_many_files() -> None:
+    """As many as the machine allows: connections must not take them from the log."""
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    with contextlib.suppress(OSError, ValueError):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
 def bind(host: str, port: int) -> socket.socket:

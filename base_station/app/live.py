@@ -49,7 +49,7 @@ from base_station.recordings.fetch import ask_over
 from base_station.router.process import RouterProcess
 from base_station.router.router import station_endpoint
 from base_station.segment_index import SegmentIndex
-from base_station.server import ConsoleServer, bind, serve_until_stopped
+from base_station.server import ConsoleServer, allow_many_files, bind, serve_until_stopped
 from base_station.standby.places import Place
 from base_station.standby.setting_aside import set_aside
 from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
@@ -74,6 +74,7 @@ class _Again(NamedTuple):
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
     collector.relax()
+    allow_many_files()
     manager = ServiceManager(os.environ)
 
     def tell(line: str) -> None:

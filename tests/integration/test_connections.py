@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import resource
 from collections.abc import AsyncIterator
 
 import pytest
@@ -10,7 +11,7 @@ import pytest_asyncio
 from starlette.responses import PlainTextResponse
 
 from base_station import server
-from base_station.server import ConsoleServer, bind
+from base_station.server import ConsoleServer, allow_many_files, bind
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
@@ -62,3 +63,13 @@ async def test_one_address_has_only_so_many(port: int) -> None:
     stream[1].write(GET + b"\r\n")
     assert await answer_of(stream) == b"HTTP/1.1 200 OK"
     stream[1].close()
+
+
+def test_connections_take_no_files_from_the_log() -> None:
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(256, before[1]), before[1]))
+    try:
+        allow_many_files()
+        assert resource.getrlimit(resource.RLIMIT_NOFILE) == (before[1], before[1])
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
