@@ -26,7 +26,7 @@ NS_TO_S = 1e-9
 class WalkNoise:
     """How own paths err."""
 
-    walk_m_per_sqrt_m: float = 0.06  # each axis
+    walk_m_per_sqrt_m: float = 0.04  # each axis
     turn_rad_per_sqrt_m: float = 0.004
     turn_part: float = 0.004
     scale_std: float = 0.015
