@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+import zenoh
 
 from shared.bus_zenoh import ClientEndpoint
 from shared.channels import (
@@ -18,6 +19,7 @@ from shared.channels import (
     GPS,
     IMU,
     POSITION,
+    STATIONS_ROOT,
     Qos,
     alive_key,
     clock_key,
@@ -105,6 +107,53 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     time.sleep(QUIET_S)
     assert list(site.station.query("muster/v1/bert/journal/range", b"", QUIET_S)) == []
     token.close()
+
+
+def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> None:
+    """As whoever has taken a unit apart and writes a program of their own would try."""
+    anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
+    site.open()
+    unit, other = site.unit(anna), site.unit(bert)
+    other.declare_alive(alive_key("bert"))
+    other.serve("muster/v1/bert/journal/**", lambda *_: [b"entry"])
+    kinds: list[tuple[str, bool]] = []
+
+    def note(sample: zenoh.Sample) -> None:
+        kinds.append((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT))
+
+    def forge(query: zenoh.Query) -> None:
+        query.reply(query.key_expr, b"forged")
+
+    watching = site.station._session.declare_subscriber("**", note)
+    publish_until_heard(site, unit, "anna")
+    publish_until_heard(site, other, "bert")
+    session = unit._session
+    beat = f"{STATIONS_ROOT}/first/beat"
+    wide = ("muster/v1/*/up/position", "muster/v1/**", "muster/**", "**", f"{STATIONS_ROOT}/**")
+    for key in (*wide, beat, "@/router/local"):
+        session.put(key, b"forged")
+        session.delete(key)
+    session.delete(POSITION.key("anna"))
+    queryables = [session.declare_queryable(key, forge) for key in wide]
+    subscribers = [session.declare_subscriber(key) for key in (*wide, "@/**")]
+    time.sleep(QUIET_S)
+    publish_until_heard(site, other, "bert")
+    answers = list(site.station.query("muster/v1/bert/journal/range", b"", QUIET_S))
+    assert answers == [b"entry"]
+    for key in (*wide, "@/**", beat):
+        replies = [one.ok for one in session.get(key, timeout=QUIET_S) if one.ok]
+        # A session answers itself.
+        others = [one for one in replies if str(session.zid()) not in str(one.key_expr)]
+        assert {one.payload.to_bytes() for one in others} <= {b"forged"}
+    tokens = session.liveliness().get("muster/v1/**", timeout=QUIET_S)
+    assert [str(one.ok.key_expr) for one in tokens if one.ok] == []
+    foreign = {POSITION.key("bert")}
+    for subscriber in subscribers:
+        while (sample := subscriber.try_recv()) is not None:
+            assert str(sample.key_expr) not in foreign
+    watching.undeclare()
+    assert len(queryables) == len(wide)
+    assert set(kinds) == {(POSITION.key("anna"), True), (POSITION.key("bert"), True)}
 
 
 def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(site: Site) -> None:
