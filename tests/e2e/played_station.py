@@ -13,6 +13,7 @@ from urllib.parse import parse_qs, urlsplit
 import msgspec
 from playwright.sync_api import Page, Route, WebSocketRoute
 
+from base_station.api.routes.live import NOT_LOGGED_IN
 from base_station.api.wire import Delta, Snapshot
 from tests.e2e.console_files import DIST
 
@@ -49,6 +50,11 @@ class PlayedStation:
         self._picture = msgspec.structs.replace(self._picture, **said)
         for socket in self._sockets:
             socket.send(msgspec.json.encode(delta).decode())
+
+    def end_logins(self) -> None:
+        for socket in self._sockets:
+            socket.close(code=NOT_LOGGED_IN)
+        self._sockets.clear()
 
     def fall_silent(self) -> None:
         """The link to the station is cut."""

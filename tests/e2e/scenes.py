@@ -246,6 +246,12 @@ def nobody() -> wire.Snapshot:
     return msgspec.structs.replace(empty, incident=None, plan=None)
 
 
+def stored() -> wire.Snapshot:
+    """What a station shows of its tables while it reads its log after a crash."""
+    shown = bad_minute()
+    return msgspec.structs.replace(shown, health=msgspec.structs.replace(HEALTH, reading=0.42))
+
+
 def past() -> wire.Snapshot:
     shown = bad_minute()
     replay = wire.ReplayView(

@@ -101,6 +101,14 @@ def test_what_is_old_looks_old_when_the_station_is_gone(stage: Stage) -> None:
     assert barriers(page) == []
 
 
+def test_whose_login_has_ended_is_told_so(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    station.end_logins()
+    expect(page.get_by_role("status")).to_contain_text("This login has ended")
+    expect(page.get_by_role("button", name="Log in")).to_be_visible()
+    expect(page).to_have_title("Muster")
+
+
 def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     page.evaluate(

@@ -24,14 +24,17 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
 
 
 @pytest.mark.parametrize(
-    "scene", [scenes.quiet, scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past]
+    "scene",
+    [scenes.quiet, scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past, scenes.stored],
 )
 def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
     page, _ = stage.open(scene())
     assert on_every_screen(page, flaws) == {}
 
 
-@pytest.mark.parametrize("scene", [scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past])
+@pytest.mark.parametrize(
+    "scene", [scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past, scenes.stored]
+)
 def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapshot]) -> None:
     page, _ = stage.open(scene())
     for scheme in ("light", "dark"):

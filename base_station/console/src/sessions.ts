@@ -49,15 +49,22 @@ export async function resume(): Promise<void> {
 export function begin(me: api.Me): void {
   user.value = me;
   if (live.value !== null) return;
-  live.value = new Session(api.LIVE_PATH, forget);
+  live.value = new Session(api.LIVE_PATH, loginEnded);
   stopWatching = watchOver(live.value, (url) => location.assign(url));
   void attempt(loadBaseMap());
 }
 
 let stopWatching: () => void = () => undefined;
 
+/** The station lets nobody look on any more; without a word it would look like a fault. */
+function loginEnded(): void {
+  forget();
+  notice.value = "This login has ended. Log in again to see what is live.";
+}
+
 export async function leave(): Promise<void> {
   stopReplay();
+  live.peek()?.close();
   await attempt(api.logout());
   forget();
 }

@@ -22,8 +22,9 @@ export function App() {
   if (shown === null) return null;
   const kind = isPast.value ? "replay" : "live";
   const stopped = shown.link.value.kind === "down";
+  const stored = (shown.health.value?.reading ?? null) !== null;
   return (
-    <div class={`console ${kind} ${stopped ? "stopped" : ""}`}>
+    <div class={`console ${kind} ${stopped ? "stopped" : ""} ${stopped || stored ? "not-now" : ""}`}>
       <LinkBanner picture={shown} />
       <StandbyBar picture={shown} />
       {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}

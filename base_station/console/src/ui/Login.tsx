@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { begin } from "../sessions";
+import { notice } from "../view";
 import * as api from "../api";
 import { arrival } from "../live/arrival";
 
@@ -14,6 +15,7 @@ export function Login() {
     busy.value = true;
     try {
       begin(await api.login(String(form.get("username")), String(form.get("password"))));
+      notice.value = null;
     } catch (error) {
       problem.value = error instanceof Error ? error.message : String(error);
     }
@@ -26,6 +28,7 @@ export function Login() {
         <img src="/icon.svg" alt="" width="48" height="48" />
         <h1 id="login-title">Muster</h1>
         {cameFrom !== "" && <p role="status">{cameFrom}</p>}
+        {notice.value !== null && <p role="status">{notice.value}</p>}
         <label>
           User
           <input name="username" autocomplete="username" required autofocus />

@@ -45,7 +45,7 @@ const WORDS: Record<string, string> = {
   conflict: "in conflict",
 };
 
-/** "Ana here, 12:40", "Ana met Bo, 12:41", "Ana at beacon 7, start". */
+/** "Ana here, 12:40, behind the lift", "Ana met Bo, 12:41", "Ana at beacon 7, at the start". */
 function said(pin: PinView, picture: Picture): string {
   const name = (unitId: string) => {
     const unit = picture.unit(unitId)?.peek();
@@ -57,5 +57,6 @@ function said(pin: PinView, picture: Picture): string {
       : pin.other_id === ""
         ? `${name(pin.unit_id)} here`
         : `${name(pin.unit_id)} at ${pin.kind} ${pin.other_id}`;
-  return `${what}, ${pin.t_ms === 0 ? "at the start" : clockTime(pin.t_ms).slice(0, 5)}`;
+  const when = pin.t_ms === 0 ? "at the start" : clockTime(pin.t_ms).slice(0, 5);
+  return [what, when, pin.note].filter((part) => part !== "").join(", ");
 }
