@@ -1,0 +1,130 @@
+"""Satellite fixes into the filters: which are taken, as what, and what is done about others."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+
+from base_station.fusion.fixes.sky import COMMON_S
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.path.memory import OwnPlace
+from base_station.fusion.path.since import since_then, unguided_m2, walls_std_m
+from base_station.fusion.plane.heading_bank import Sighting
+from base_station.fusion.plane.walled import WalledFilter
+from base_station.fusion.port import FixVerdict, PlaceFix
+from base_station.fusion.remembered import Memory
+from base_station.fusion.vertical.height import HeightFilter
+from shared.clock import NS_PER_S
+from shared.geo import wrap_pi
+
+LATE_NS = 5 * NS_PER_S  # a fix is later than the newest by more than receivers are
+
+
+class FixTaker:
+    """Works on the filters of one fuser."""
+
+    def __init__(
+        self, kind: Parameters, memory: Memory, horizontal: WalledFilter, height: HeightFilter
+    ) -> None:
+        self._kind = kind
+        self._memory = memory
+        self._horizontal = horizontal
+        self._height = height
+
+    def take(self, fix: PlaceFix) -> FixVerdict:
+        """Correct what is believed by a fix, or say why not."""
+        memory = self._memory
+        then = memory.path.at(fix.t_mono_ns)
+        if isinstance(then, str):
+            return FixVerdict(False, then)
+        if memory.fix_t_mono_ns is not None and fix.t_mono_ns < memory.fix_t_mono_ns - LATE_NS:
+            return self._correct_past(fix, then)
+        walked_m = memory.last.distance_m if memory.last else 0.0
+        if memory.trust.is_stuck(self._kind, fix, walked_m):
+            return FixVerdict(False, "the receiver is stuck")
+        if memory.assumed:  # the first thing known of the incident frame
+            memory.assumed = False
+            self._horizontal.forget_place()
+            self._horizontal.forget_heading()
+        self._let_wander(fix.t_mono_ns)
+        distance2 = self._horizontal.distance2(self._sighting(fix, then, lasts=1.0))
+        if distance2 > self._kind.gate:
+            return self._turned_away(fix, then)
+        if not memory.trust.fits():
+            return FixVerdict(False, "fits, but the receiver was wrong just before")
+        if self._unguided_m2(fix.t_mono_ns) == 0.0:
+            memory.trust.compare(distance2)
+            memory.trust.compare_pair(fix, then)
+        self._horizontal.update(self._sighting(fix, then, self._kind.doubt_lasts))
+        if fix.vertical_std_m is not None:
+            std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
+            self._height.correct(fix.down_m, std_m)
+        if fix.horizontal_std_m < self._kind.open_sky_m:  # who has such fixes is outside
+            memory.height_assumed = False
+        memory.fix_t_mono_ns = max(fix.t_mono_ns, memory.fix_t_mono_ns or 0)
+        memory.recognition.hear_fix(memory.trust.common_m2(fix))
+        return FixVerdict(True)
+
+    def _correct_past(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
+        """A fix of a time before the newest one: the state then, less the path walked since."""
+        sighting = self._sighting(fix, then, self._kind.doubt_lasts)
+        slow_m2 = sighting.slow_m**2
+        own_m2 = slow_m2 + sighting.white_m2
+        once = msgspec.structs.replace(sighting, slow_m=0.0, white_m2=own_m2)
+        if self._horizontal.distance2(once) > self._kind.gate:
+            return FixVerdict(False, "does not fit the path walked")
+        lasting_m2 = 2.0 * self._kind.slow_s * slow_m2 + own_m2
+        self._horizontal.update(msgspec.structs.replace(once, white_m2=lasting_m2))
+        return FixVerdict(True)
+
+    def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:
+        """``lasts``: so many fixes in a row have about the same doubtful error."""
+        last, kind, trust = self._memory.last, self._kind, self._memory.trust
+        since = since_then(then, last)
+        outside_m = self._horizontal.outside_m(since.north_m, since.east_m)
+        own_m2, common_m2, part = trust.own_m2(fix), trust.common_m2(fix), 1.0 - trust.fresh_part
+        doubt_m2 = lasts * trust.doubt_m2(fix, walls_std_m(kind, outside_m))
+        doubt_m2 += self._unguided_m2(fix.t_mono_ns)
+        doubt_m2 += since.doubt_m2(kind, self._horizontal.drift_std_radps)
+        return Sighting(
+            north_m=fix.north_m,
+            east_m=fix.east_m,
+            since_north_m=since.north_m,
+            since_east_m=since.east_m,
+            slow_m=math.sqrt(own_m2 * part),
+            common_m=math.sqrt(common_m2),
+            white_m2=own_m2 * (1.0 - part) + doubt_m2,
+        )
+
+    def _unguided_m2(self, t_mono_ns: int) -> float:
+        """How far a wearer may have got since the last word of the own path."""
+        last = self._memory.last
+        heard_ns = last.header.t_mono_ns if last else self._memory.fix_t_mono_ns
+        return unguided_m2(self._kind, t_mono_ns, heard_ns)
+
+    def _let_wander(self, t_mono_ns: int) -> None:
+        """Predict the fixes' slow errors up to the time of this one."""
+        before_ns = self._memory.wander_t_mono_ns
+        self._memory.wander_t_mono_ns = max(t_mono_ns, before_ns or t_mono_ns)
+        if before_ns is None or t_mono_ns <= before_ns:
+            return
+        since_s = (t_mono_ns - before_ns) / NS_PER_S
+        lasts_s = np.array([self._kind.slow_s] * 2 + [COMMON_S] * 2)
+        self._horizontal.fade(np.exp(-since_s / lasts_s))
+        self._height.fade(math.exp(-since_s / self._kind.height_slow_s))
+
+    def _turned_away(self, fix: PlaceFix, then: OwnPlace) -> FixVerdict:
+        """Outside the gate; but fixes that draw the shape of the walk are right after all."""
+        shape = self._memory.trust.misses(self._kind, fix, (then.north_m, then.east_m))
+        if shape is None:
+            return FixVerdict(False, "does not fit the path walked")
+        held_rad, held_std_rad = self._horizontal.turn()
+        shape_std_rad = 2.0 * fix.horizontal_std_m / shape.spread_m
+        apart_rad = abs(wrap_pi(shape.turn_rad - held_rad))
+        self._horizontal.forget_place()
+        self._memory.recognition.forget()
+        if apart_rad > 3.0 * math.hypot(held_std_rad, shape_std_rad):
+            self._horizontal.forget_heading()
+        return FixVerdict(False, "contradicts the path, and agrees with others: going there")
