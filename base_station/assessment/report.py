@@ -187,8 +187,8 @@ def _pin_residuals(
         shown = _at(live, pin.t_ns)
         shown_m = None
         if shown is not None and place.north_m is not None and place.east_m is not None:
-            apart = math.hypot(shown.north_m - place.north_m, shown.east_m - place.east_m)
-            shown_m = round(apart, 2)
+            apart_m = math.hypot(shown.north_m - place.north_m, shown.east_m - place.east_m)
+            shown_m = round(apart_m, 2)
         floor_right = None
         if shown is not None and place.floor is not None:
             floor_right = shown.floor == place.floor
@@ -213,9 +213,11 @@ def _loop_closure(
     if not smoothed or len(raw) != len(smoothed):
         return None
     first = smoothed[0]
-    apart = [math.hypot(one.north_m - first.north_m, one.east_m - first.east_m) for one in smoothed]
-    away = next((row for row, one in enumerate(apart) if one > AWAY_M), None)
-    back = [row for row, one in enumerate(apart) if one < BACK_M]
+    apart_m = [
+        math.hypot(one.north_m - first.north_m, one.east_m - first.east_m) for one in smoothed
+    ]
+    away = next((row for row, one in enumerate(apart_m) if one > AWAY_M), None)
+    back = [row for row, one in enumerate(apart_m) if one < BACK_M]
     if away is None or not back or back[-1] < away:
         return None
     row = back[-1]
