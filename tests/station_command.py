@@ -10,7 +10,6 @@ from typing import Any
 
 import httpx
 
-from base_station.bench.station import free_port as free_port  # noqa: PLC0414
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import channel_of
 from shared.clock import SystemClock

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from threading import Event
 
@@ -113,18 +114,25 @@ def air() -> Air:
     return Air()
 
 
-def weak_unit(one_by_one: bool = False, boot_id: int = 7) -> list[Message]:
-    return run(pipeline(U, NO_TRACKER, boot_id), batches(one_by_one))
+@cache
+def weak_unit(one_by_one: bool = False, boot_id: int = 7) -> Sequence[Message]:
+    return tuple(run(pipeline(U, NO_TRACKER, boot_id), batches(one_by_one)))
 
 
-def end_of_run() -> list[Message]:
+@cache
+def strong_unit() -> Sequence[Message]:
+    """It tracks itself."""
+    return tuple(run(pipeline(U, "eskf"), batches()))
+
+
+def end_of_run() -> Sequence[Message]:
     """The unit starts again, which ends the run before."""
     return weak_unit(boot_id=8)[:40]
 
 
 def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate() -> None:
     said = weak_unit(one_by_one=True)
-    itself = run(pipeline(U, "eskf"), batches())
+    itself = strong_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
     assert not positions(said)
     for kind in (Temperature, GpsFix, Status):
@@ -140,7 +148,7 @@ def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate(
 def test_the_positions_are_those_of_a_unit_that_tracks_itself(air: Air, one_by_one: bool) -> None:
     air.send(weak_unit(one_by_one))
     air.send(end_of_run())
-    itself = positions(run(pipeline(U, "eskf"), batches()))
+    itself = positions(strong_unit())
     assert len(itself) > 50
     assert contents(air.track()) == contents(itself)
 
@@ -167,7 +175,7 @@ def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
     missed = {id(message) for message in raw[lost]}
     air.send(message for message in said if id(message) not in missed)
     air.send(end_of_run())
-    itself = positions(run(pipeline(U, "eskf"), batches()))
+    itself = positions(strong_unit())
     assert contents(air.track()) == contents(itself)
     assert air.source.fetched == len(missed)
 
@@ -183,7 +191,7 @@ def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, tmp_
         if message is raw[130]:
             air.send(late)
     air.send(end_of_run())
-    itself = positions(run(pipeline(U, "eskf"), batches()))
+    itself = positions(strong_unit())
     assert contents(air.track()) == contents(itself)
     assert (air.source.fetched, air.source.late) == (10, 10)
 
@@ -208,7 +216,7 @@ def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:
         if message is raw[50]:
             air.send((raw[50], raw[20]))
     air.send(end_of_run())
-    itself = positions(run(pipeline(U, "eskf"), batches()))
+    itself = positions(strong_unit())
     assert contents(air.track()) == contents(itself)
 
 
