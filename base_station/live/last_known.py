@@ -52,6 +52,7 @@ class LastKnown:
         self._sink = sink
         self._share = 0.0
         self._said_ns = 0
+        self._stored: Snapshot | None = None  # nothing is stored while the log is read
 
     def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
         deliver(self.snapshot())
@@ -83,6 +84,14 @@ class LastKnown:
     # ---- the picture
 
     def snapshot(self) -> Snapshot:
+        stored = self._stored = self._stored or self._read()
+        return msgspec.structs.replace(
+            stored,
+            now_ms=self._clock.utc_ns() // _NS_PER_MS,
+            health=msgspec.structs.replace(stored.health, reading=self._share),
+        )
+
+    def _read(self) -> Snapshot:
         now_ns = self._clock.utc_ns()
         incident = next((one for one in self._records.incidents() if one.closed_ns is None), None)
         since_ns = now_ns - _RECENT_NS if incident is None else incident.opened_ns
@@ -113,7 +122,7 @@ class LastKnown:
             beacons=(),
             plan=None if plan is None else msgspec.Raw(plan),
             anchor=None if anchor is None else _anchor(anchor),
-            health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False, reading=self._share),
+            health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False),
             replay=None,
         )
 
