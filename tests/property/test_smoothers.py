@@ -11,8 +11,19 @@ from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import PlaceSeen, Smoother, Tie, UnitEvidence
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import Plan, Stairs, Wall
+from base_station.site.storeys import Storey
 
 CASES = 25
+ROOM = ((0.0, 0.0), (0.0, 6.0), (6.0, 6.0), (6.0, 0.0), (0.0, 0.0))
+PLAN = Plan(
+    b"",
+    (Storey(0, 0.0), Storey(1, -3.0)),
+    (ROOM,),
+    (Wall(0, ROOM), Wall(1, ROOM)),
+    (Stairs(0, ROOM),),
+)
 
 
 def any_path(rng: np.random.Generator) -> PathArrays:
@@ -57,7 +68,9 @@ def any_evidence(rng: np.random.Generator, unit_id: str) -> UnitEvidence:
         for number in range(int(rng.integers(0, 6)))
     )
     start = Start(0.0, 0.0, 0.0, 1.0, float(rng.choice([0.0, 1e3])), float(rng.choice([0.0, 4.0])))
-    return UnitEvidence(path, start if rng.random() < 0.5 else None, int(path.t_ns[0]), places)
+    grid = FloorGrid.of(PLAN) if rng.random() < 0.5 else None
+    said = start if rng.random() < 0.5 else None
+    return UnitEvidence(path, said, int(path.t_ns[0]), places, grid)
 
 
 @pytest.mark.parametrize("smoother", SMOOTHERS, ids=lambda smoother: smoother.name)

@@ -11,6 +11,7 @@ import pytest
 
 from base_station.fusion.path.history import CHUNK, MOST_POINTS, PathHistory
 from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART
+from base_station.fusion.path.straight import OFF_M
 from base_station.fusion.port import PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.messages import Header, Position
@@ -49,6 +50,27 @@ def test_somebody_at_rest_leaves_a_point_now_and_then(at: Callable[..., Position
     arrays = walked(at, 120, mps=0.0).arrays()
     assert 10 <= len(arrays) <= 15
     assert arrays.moving_s.sum() == 0.0
+
+
+def test_nobody_was_elsewhere_between_two_points(at: Callable[..., Position]) -> None:
+    """Corners, rests and other paces: a straight line in time is near wherever somebody was."""
+    rng, history = np.random.default_rng(5), PathHistory()
+    place, velocity, times, places = np.zeros(2), np.zeros(2), [], []
+    for step in range(3000):
+        if rng.random() < 0.05:
+            velocity = rng.normal(0.0, 0.8, 2) * (rng.random() < 0.7)
+        place = place + 0.2 * velocity
+        position = at(0.2 * step, float(place[0]), east_m=float(place[1]))
+        history.note(position, position.header.t_mono_ns, jumped=False)
+        times.append(position.header.t_mono_ns)
+        places.append(place)
+    arrays = history.arrays()
+    off = [
+        np.interp(times, arrays.t_ns, arrays.own_m[:, axis]) - np.array(places)[:, axis]
+        for axis in (0, 1)
+    ]
+    assert np.abs(off).max() < 1.3 * OFF_M
+    assert len(arrays) < 0.4 * len(times)
 
 
 def test_breaks_and_doubts_stand_where_they_were(at: Callable[..., Position]) -> None:
