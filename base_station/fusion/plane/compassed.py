@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from base_station.fusion.plane.compass import CONTRADICTS2, CompassUse, turn_by, worth_of
 from base_station.fusion.plane.heading_bank import Sighting
-from base_station.fusion.plane.horizontal import HorizontalFilter, SavedHorizontal, turn_of
+from base_station.fusion.plane.horizontal import HorizontalFilter, SavedHorizontal
+from base_station.fusion.plane.state import turn_of
 from base_station.fusion.port import Bearing
 
 Floats = NDArray[np.float64]

@@ -14,6 +14,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.plane.state import PLACE_AND_SLOW
+
 Floats = NDArray[np.float64]
 
 HYPOTHESES = 72
@@ -76,7 +78,7 @@ class HeadingBank:
         """Of a normal distribution (8,), (8, 8) of ``[north, east, c, s, b_n, b_e, k_n, k_e]``:
         given the heading, the rest of it is normal too.
         """
-        own, turn = [0, 1, 4, 5, 6, 7], [2, 3]
+        own, turn = PLACE_AND_SLOW, [2, 3]
         c, s = float(mean[2]), float(mean[3])
         across = np.array([-s, c]) / (c * c + s * s)
         with_turn = covariance[np.ix_(own, turn)] @ across
@@ -181,8 +183,7 @@ class HeadingBank:
         mean: Floats = weights @ states
         apart = states - mean
         covariance: Floats = (apart * weights[:, None]).T @ apart
-        own = [0, 1, 4, 5, 6, 7]
-        covariance[np.ix_(own, own)] += self._covariance
+        covariance[np.ix_(PLACE_AND_SLOW, PLACE_AND_SLOW)] += self._covariance
         between = SPACING_RAD**2 / 12.0  # a hypothesis stands for the headings next to it
         covariance[2, 2] += between * float(weights @ sine**2)
         covariance[3, 3] += between * float(weights @ cosine**2)

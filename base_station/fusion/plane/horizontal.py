@@ -28,6 +28,15 @@ from numpy.typing import NDArray
 from base_station.fusion import kernels
 from base_station.fusion.kernels import Placed
 from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting, slow_errors
+from base_station.fusion.plane.state import (
+    DRIFT,
+    PATH,
+    PLACE_AND_SLOW,
+    SLOW,
+    STATES,
+    place_then,
+    turn_of,
+)
 from base_station.fusion.told import told
 from shared.geo import wrap_pi
 
@@ -35,10 +44,6 @@ Floats = NDArray[np.float64]
 
 _UNKNOWN_VAR_M2 = 1e8
 REOPEN = 1.5  # times the width at which one hypothesis was enough
-_STATES = 9
-_PLACE_AND_SLOW = [0, 1, 4, 5, 6, 7]
-_SLOW = [4, 5, 6, 7]
-DRIFT = 8
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
@@ -59,8 +64,8 @@ class HorizontalFilter:
         self._linear_rad = linear_rad
         self._wander_var = wander_radps**2 / 60.0
         self._drift_std_radps = 0.0
-        self._filter = KalmanFilter(dim_x=_STATES, dim_z=2)
-        self._filter.x = np.zeros((_STATES, 1))
+        self._filter = KalmanFilter(dim_x=STATES, dim_z=2)
+        self._filter.x = np.zeros((STATES, 1))
         self._filter.x[2, 0] = 1.0
         self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0])
         self._bank: HeadingBank | None = None  # where it is, the filter mirrors its moments
@@ -72,7 +77,7 @@ class HorizontalFilter:
         return SavedHorizontal(now.x.ravel().tolist(), now.P.tolist(), bank, self._drift_std_radps)
 
     def load(self, saved: SavedHorizontal) -> None:
-        self._filter.x = np.array(saved.x).reshape(_STATES, 1)
+        self._filter.x = np.array(saved.x).reshape(STATES, 1)
         self._filter.P = np.array(saved.covariance)
         self._drift_std_radps = saved.drift_std_radps
         self._bank = None if saved.bank is None else HeadingBank.restore(saved.bank)
@@ -95,14 +100,13 @@ class HorizontalFilter:
     def adopt(self, mean: Floats, covariance: Floats) -> None:
         """Go on from what another filter of the same state came to."""
         self._bank = None
-        self._filter.x, self._filter.P = mean.reshape(_STATES, 1).copy(), covariance.copy()
+        self._filter.x, self._filter.P = mean.reshape(STATES, 1).copy(), covariance.copy()
 
     def settle(self, mean: Floats, covariance: Floats) -> None:
         """Begin again with ``[north, east, c, s, w]``; of fixes' slow errors nothing is known."""
-        known = [0, 1, 2, 3, DRIFT]
-        whole, spread = np.zeros(_STATES), np.zeros((_STATES, _STATES))
-        whole[known], spread[np.ix_(known, known)] = mean, covariance
-        spread[_SLOW, _SLOW] = 1.0
+        whole, spread = np.zeros(STATES), np.zeros((STATES, STATES))
+        whole[PATH], spread[np.ix_(PATH, PATH)] = mean, covariance
+        spread[SLOW, SLOW] = 1.0
         self.adopt(whole, spread)
         self._open_heading(self._linear_rad)
 
@@ -142,10 +146,10 @@ class HorizontalFilter:
         self._forget_drift()
 
     def forget_heading(self, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> None:
-        own = np.ix_(_PLACE_AND_SLOW, _PLACE_AND_SLOW)
+        own = np.ix_(PLACE_AND_SLOW, PLACE_AND_SLOW)
         now = self._current()
         self._bank = HeadingBank.about(
-            now.x[_PLACE_AND_SLOW, 0], now.P[own], heading_rad, heading_std_rad
+            now.x[PLACE_AND_SLOW, 0], now.P[own], heading_rad, heading_std_rad
         )
         self._stale = True
 
@@ -183,10 +187,10 @@ class HorizontalFilter:
             self._bank.fade(keeps)
             self._stale = True
             return
-        self._filter.x[_SLOW, 0] *= keeps
-        self._filter.P[_SLOW, :] *= keeps[:, None]
-        self._filter.P[:, _SLOW] *= keeps
-        self._filter.P[_SLOW, _SLOW] += 1.0 - keeps**2
+        self._filter.x[SLOW, 0] *= keeps
+        self._filter.P[SLOW, :] *= keeps[:, None]
+        self._filter.P[:, SLOW] *= keeps
+        self._filter.P[SLOW, SLOW] += 1.0 - keeps**2
 
     def distance2(self, sighting: Sighting) -> float:
         """How far a fix lies from what is believed, chi-square of two degrees of freedom."""
@@ -218,7 +222,7 @@ class HorizontalFilter:
         """
         self.reframe(turn_rad, 0.0, 0.0)
         north_m, east_m, c, s = self._filter.x[:4, 0]
-        by = np.array([-east_m, north_m, -s, c, *[0.0] * (_STATES - 4)])
+        by = np.array([-east_m, north_m, -s, c, *[0.0] * (STATES - 4)])
         self._filter.P += std_rad**2 * np.outer(by, by)
 
     def face(self, turn_rad: float, variance: float) -> None:
@@ -226,12 +230,12 @@ class HorizontalFilter:
         mean, covariance = self.moments()
         c, s = float(mean[2]), float(mean[3])
         scale2 = c * c + s * s
-        observe = np.zeros((1, _STATES))
+        observe = np.zeros((1, STATES))
         observe[0, 2:4] = -s / scale2, c / scale2
         to = observe @ mean + wrap_pi(turn_rad - math.atan2(s, c))
         mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
         mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
-        self._filter.x, self._filter.P = mean.reshape(_STATES, 1), covariance
+        self._filter.x, self._filter.P = mean.reshape(STATES, 1), covariance
 
     def _close_heading(self) -> None:
         """Known so well, one hypothesis is enough."""
@@ -249,7 +253,7 @@ class HorizontalFilter:
             self._bank.reframe(turn_rad, turn, np.array([north_m, east_m]))
             self._stale = True
             return
-        whole = np.eye(_STATES)
+        whole = np.eye(STATES)
         whole[:DRIFT, :DRIFT] = np.kron(np.eye(DRIFT // 2), turn)
         self._filter.x = whole @ self._filter.x
         self._filter.x[:2, 0] += north_m, east_m
@@ -260,7 +264,7 @@ class HorizontalFilter:
         if self._stale and self._bank is not None:
             mean, covariance = self._bank.moments()
             self._filter.x[:DRIFT, 0] = mean
-            self._filter.P = np.zeros((_STATES, _STATES))
+            self._filter.P = np.zeros((STATES, STATES))
             self._filter.P[:DRIFT, :DRIFT] = covariance
             self._forget_drift()
         self._stale = False
@@ -283,28 +287,9 @@ class HorizontalFilter:
         self._filter.P[2:4, 2:4] = covariance
 
 
-def turn_of(mean: Floats, covariance: Floats) -> tuple[float, float]:
-    """Heading correction of such a state and its standard deviation, pi where it is not known."""
-    c, s = float(mean[2]), float(mean[3])
-    scale2 = c * c + s * s
-    if scale2 < 0.05:
-        return 0.0, math.pi
-    across = np.array([-s, c]) / scale2
-    variance = float(across @ covariance[2:4, 2:4] @ across)
-    return math.atan2(s, c), min(math.sqrt(max(variance, 0.0)), math.pi)
-
-
-def place_then(north_m: float, east_m: float) -> Floats:
-    """(2, 9): the place before this much of own path was walked, by the present state."""
-    observe = np.zeros((2, _STATES))
-    observe[0, :4] = 1.0, 0.0, -north_m, east_m
-    observe[1, :4] = 0.0, 1.0, -east_m, -north_m
-    return observe
-
-
 def _linear(sighting: Sighting) -> tuple[Floats, Floats, Floats]:
     """Measurement (2, 1), its matrix (2, 9) and its covariance (2, 2)."""
     observe = place_then(sighting.since_north_m, sighting.since_east_m)
-    observe[:, _SLOW] = slow_errors(sighting)
+    observe[:, SLOW] = slow_errors(sighting)
     place = np.array([[sighting.north_m], [sighting.east_m]])
     return place, observe, sighting.white_m2 * np.eye(2)

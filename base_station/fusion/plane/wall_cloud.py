@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
+from base_station.fusion.plane.state import DRIFT, PATH, SLOW, STATES
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -51,7 +52,7 @@ class WallCloud:
     def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
         self._rng = np.random.Generator(np.random.PCG64(seed))
         self._scale = float(np.hypot(mean[2], mean[3]))
-        own, slow = [0, 1, 2, 3, 8], [4, 5, 6, 7]
+        own, slow = PATH, SLOW
         spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
         root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
         drawn = self._rng.normal(size=(GUESSES, 5)) @ root.T
@@ -85,7 +86,7 @@ class WallCloud:
 
     @staticmethod
     def restore(saved: SavedCloud) -> WallCloud:
-        cloud = WallCloud(np.eye(9)[2], np.eye(9), 0)
+        cloud = WallCloud(np.eye(STATES)[2], np.eye(STATES), 0)
         cloud._guesses = np.frombuffer(saved.guesses).reshape(GUESSES, 4).copy()
         cloud._log_weights = np.frombuffer(saved.weights).copy()
         cloud._slow = np.frombuffer(saved.slow).reshape(GUESSES, 4).copy()
@@ -211,15 +212,15 @@ class WallCloud:
         """Mean (9,) and covariance (9, 9) in the state of ``HorizontalFilter``."""
         if self._moments is None:
             weights, guesses = _normal(self._log_weights), self._guesses
-            states = np.empty((GUESSES, 9))
+            states = np.empty((GUESSES, STATES))
             states[:, :2] = guesses[:, :2]
             states[:, 2], states[:, 3] = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
             states[:, 2:4] *= self._scale
-            states[:, 4:8], states[:, 8] = self._slow, guesses[:, 3]
+            states[:, SLOW], states[:, DRIFT] = self._slow, guesses[:, 3]
             mean = weights @ states
             apart = states - mean
             covariance = (apart * weights[:, None]).T @ apart
-            covariance[4:8, 4:8] += self._slow_covariance
+            covariance[np.ix_(SLOW, SLOW)] += self._slow_covariance
             covariance[[0, 1], [0, 1]] += FLOOR_VAR_M2
             self._moments = mean, covariance
         mean, covariance = self._moments

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from base_station.fusion.kernels import Placed, placed_before
 from base_station.fusion.plane.compassed import CompassedFilter, SavedCompassed
 from base_station.fusion.plane.heading_bank import Sighting
-from base_station.fusion.plane.horizontal import DRIFT, place_then, turn_of
+from base_station.fusion.plane.state import DRIFT, place_then, turn_of
 from base_station.fusion.plane.wall_cloud import SavedCloud, WallCloud
 from base_station.fusion.port import Bearing
 from base_station.fusion.told import told
