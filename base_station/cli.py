@@ -140,10 +140,13 @@ def forget(
 
 @app.command("compile")
 def compile_() -> None:
-    """Compile what every position goes through now, so that the first station starts at once."""
+    """Compile what every position and every trail goes through now, so that the first station
+    starts at once.
+    """
     from importlib import import_module  # noqa: PLC0415
 
-    import_module("base_station.fusion.kernels")
+    for compiled in ("base_station.fusion.kernels", "base_station.fusion.smoother"):
+        import_module(compiled)
 
 
 @app.command()
