@@ -1,6 +1,6 @@
 """One unit's own path since an incident began, thinned, with the satellite fixes that were taken.
 
-Small enough to be kept in the pipeline's state for hours (60 bytes a point) and enough to solve
+Small enough to be kept in the pipeline's state for hours (56 bytes a point) and enough to solve
 the whole past again.  Times are the station's, so that a unit that starts again, or whose clock
 is judged better later, goes on in the same history.
 """
