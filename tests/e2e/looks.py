@@ -62,6 +62,13 @@ _FIND = """
     if (cut || sticksOut) found.push(`not wholly seen: ${said(one)}`);
   }
 
+  for (const one of root.querySelectorAll(".card :is(dt, dd, span, li, small), .alarm *")) {
+    if (!isShown(one) || one.closest(".spoken")) continue;
+    const around = one.closest(".card, .alarm").getBoundingClientRect();
+    if (one.getBoundingClientRect().right > around.right + 1)
+      found.push(`sticks out of its card: ${said(one)}`);
+  }
+
   const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const { parentElement: one, textContent } = texts.currentNode;
