@@ -72,7 +72,7 @@ class EskfConfig(NamedTuple):
     field_iron_least_ut: float = 1.0  # ... of a calibrated unit
     field_noise_ut: float = 0.5  # of the mean of a stance
     field_near_m: float = 1.5  # steel nearby is forgotten over this way
-    field_wide_m: float = 30.0  # and that of a whole part of a building over this
+    field_wide_m: float = 50.0  # and that of a whole part of a building over this
     field_wide_ut: float = 0.4  # deviation of that by the first belief
     field_wide_ratio: float = 2.2  # ... of each that follows by the one before
     field_least_log_weight: float = -12.0  # of a belief beside the likeliest
