@@ -38,6 +38,7 @@ from shared.quality import Quality
 STEP_M = 1.0
 CLIMB_M = 0.5
 STEP_NS = 10 * NS_PER_S
+STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bends
 MOVING_M = 0.05  # between two positions: the wearer moved
 FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
 FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
@@ -94,7 +95,7 @@ class PathHistory(msgspec.Struct):
         tip = self.points[-1]
         before_ns, before_north_m, before_east_m = tip.t_ns, tip.north_m, tip.east_m
         t_ns = max(t_ns, before_ns + 1)
-        if self._is_settled(tip, flags) or not self._goes_straight_to(position, t_ns):
+        if self._is_settled(tip, flags) or self._bends(tip, position, t_ns):
             tip = self._begin_point(tip)
         tip.t_ns = t_ns
         tip.flags |= flags
@@ -193,12 +194,16 @@ class PathHistory(msgspec.Struct):
             or tip.t_ns - before.t_ns >= STEP_NS
         )
 
-    def _goes_straight_to(self, position: Position, t_ns: int) -> bool:
-        """Whether all since the last settled point was on the way there, at one pace."""
+    def _bends(self, tip: Point, position: Position, t_ns: int) -> bool:
+        """Whether the wearer was not always on the way there, at one pace, since the last settled
+        point.
+        """
         before = self.points[-2]
+        if tip.t_ns - before.t_ns < STRIDE_NS:
+            return False
         after_s = (t_ns - before.t_ns) / NS_PER_S
         north_m, east_m = position.north_m - before.north_m, position.east_m - before.east_m
-        return self.straight.leads_to(north_m, east_m, after_s)
+        return not self.straight.leads_to(north_m, east_m, after_s)
 
     def _pass_by(self, tip: Point) -> None:
         before = self.points[-2]
