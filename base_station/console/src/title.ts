@@ -5,15 +5,18 @@ import type { Picture } from "./live/picture";
 /** Until the returned function is called. */
 export function entitle(picture: Picture): () => void {
   const end = effect(() => {
-    document.title = titleOf(picture.link.value.kind === "down", picture.openAlarms.value.length);
+    const linkLost = picture.link.value.kind === "down";
+    const isPast = picture.replay.value !== null;
+    document.title = titleOf(linkLost, isPast, picture.openAlarms.value.length);
   });
   return () => {
     end();
-    document.title = titleOf(false, 0);
+    document.title = titleOf(false, false, 0);
   };
 }
 
-export function titleOf(linkLost: boolean, alarms: number): string {
+export function titleOf(linkLost: boolean, isPast: boolean, alarms: number): string {
   if (linkLost) return "NO CONNECTION – Muster";
+  if (isPast) return "Replay – Muster";
   return alarms === 0 ? "Muster" : `(${alarms}!) Muster`;
 }

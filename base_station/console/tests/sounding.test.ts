@@ -59,7 +59,8 @@ describe("what is to be heard", () => {
 });
 
 it("the title says what is wrong", () => {
-  expect(titleOf(false, 0)).toBe("Muster");
-  expect(titleOf(false, 2)).toBe("(2!) Muster");
-  expect(titleOf(true, 2)).toContain("NO CONNECTION");
+  expect(titleOf(false, false, 0)).toBe("Muster");
+  expect(titleOf(false, false, 2)).toBe("(2!) Muster");
+  expect(titleOf(false, true, 2)).toBe("Replay – Muster");
+  expect(titleOf(true, false, 2)).toContain("NO CONNECTION");
 });
