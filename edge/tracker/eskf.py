@@ -23,7 +23,7 @@ from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
 from edge.tracker.state import RING, Progress, Ring, new_filter_state, new_progress, reach
-from edge.tracker.zero_velocity import motion_statistic, stride_minimum
+from edge.tracker.zero_velocity import measure_motion, stride_minimum
 from shared.earth_field import EarthField
 
 RING_S = 4.0  # of samples in the ring at the described rate
@@ -126,18 +126,7 @@ def work(
         k = memory.measured
         if not final and not _is_past(ring, memory.timed, k, config.half_window_s):
             break
-        slot = k & (len(ring) - 1)
-        stop = min(memory.timed, reach(ring, k))
-        ring[slot].motion_m2ps4 = motion_statistic(ring, memory, k, stop, config)
-        ring[slot].rest_norm_mps2 = memory.rest_norm_mps2
-        before = ring[(k - 1) & (len(ring) - 1)].motion_sum_m2ps4
-        ring[slot].motion_sum_m2ps4 = before + ring[slot].motion_m2ps4
-        squares = ring[(k - 1) & (len(ring) - 1)].rate_square_sum_rad2ps2
-        for i in range(3):
-            before = ring[(k - 1) & (len(ring) - 1)].rate_sum_radps[i]
-            ring[slot].rate_sum_radps[i] = before + ring[slot].gyro_radps[i]
-            squares += ring[slot].gyro_radps[i] ** 2
-        ring[slot].rate_square_sum_rad2ps2 = squares
+        measure_motion(ring, memory, k, config)
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered

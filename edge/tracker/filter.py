@@ -146,6 +146,20 @@ def _predict(
     state.swing_rad += dt_s * math.sqrt((state.gyro_radps**2).sum())
     speed_mps = math.sqrt((state.velocity_n_mps**2).sum())
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
+    _add_noise(ring, progress, state, k, dt_s, config)
+    ring[slot].interval_s = dt_s
+    for i in range(3):
+        ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
+        for j in range(3):
+            ring[slot].rotation_nb[i, j] = state.rotation_nb[i, j]
+
+
+@njit()
+def _add_noise(
+    ring: Ring, progress: Progress, state: FilterState, k: int, dt_s: float, config: EskfConfig
+) -> None:
+    """Widen the covariance by what an interval adds: noise, what clipping hid, biases' walks."""
+    slot, before = k & (len(ring) - 1), (k - 1) & (len(ring) - 1)
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
@@ -167,11 +181,6 @@ def _predict(
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] += (
             dt_s * config.accel_bias_walk_mps3_rthz**2
         )
-    ring[slot].interval_s = dt_s
-    for i in range(3):
-        ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
-        for j in range(3):
-            ring[slot].rotation_nb[i, j] = state.rotation_nb[i, j]
 
 
 @njit()

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from edge.samples import Floats
@@ -109,27 +108,3 @@ def advance(
             step_mps += gravity_mps2 * dt_s
         position_n_m[i] += dt_s * (velocity_n_mps[i] + 0.5 * step_mps)
         velocity_n_mps[i] += step_mps
-
-
-def quaternion_from_rotation(rotation_nb: Floats) -> Floats:
-    """Return the quaternion (4,) with ``w >= 0`` of a rotation matrix (3, 3) (Shepperd 1978)."""
-    m = rotation_nb
-    squares = np.array(
-        [
-            1.0 + m[0, 0] + m[1, 1] + m[2, 2],
-            1.0 + m[0, 0] - m[1, 1] - m[2, 2],
-            1.0 - m[0, 0] + m[1, 1] - m[2, 2],
-            1.0 - m[0, 0] - m[1, 1] + m[2, 2],
-        ]
-    )
-    rows = np.array(
-        [
-            [squares[0], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
-            [m[2, 1] - m[1, 2], squares[1], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0]],
-            [m[0, 2] - m[2, 0], m[0, 1] + m[1, 0], squares[2], m[1, 2] + m[2, 1]],
-            [m[1, 0] - m[0, 1], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], squares[3]],
-        ]
-    )
-    row = rows[int(np.argmax(squares))]
-    quaternion: Floats = row / np.linalg.norm(row)
-    return quaternion if quaternion[0] >= 0.0 else -quaternion

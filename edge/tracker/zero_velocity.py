@@ -22,6 +22,23 @@ from edge.tracker.state import FilterState, Progress, Ring, reach
 
 
 @njit()
+def measure_motion(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> None:
+    """Write the statistic of sample ``k``, and the sums up to it that ``unrest`` takes means of."""
+    mask = len(ring) - 1
+    here, before = k & mask, (k - 1) & mask
+    stop = min(progress.timed, reach(ring, k))
+    ring[here].motion_m2ps4 = motion_statistic(ring, progress, k, stop, config)
+    ring[here].rest_norm_mps2 = progress.rest_norm_mps2
+    ring[here].motion_sum_m2ps4 = ring[before].motion_sum_m2ps4 + ring[here].motion_m2ps4
+    squares = ring[before].rate_square_sum_rad2ps2
+    for i in range(3):
+        rate_radps = ring[here].gyro_radps[i]
+        ring[here].rate_sum_radps[i] = ring[before].rate_sum_radps[i] + rate_radps
+        squares += rate_radps * rate_radps
+    ring[here].rate_square_sum_rad2ps2 = squares
+
+
+@njit()
 def motion_statistic(
     ring: Ring, progress: Progress, k: int, stop: int, config: EskfConfig
 ) -> float:

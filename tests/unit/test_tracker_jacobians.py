@@ -30,7 +30,6 @@ from edge.tracker.stance import lever_velocity_row
 from edge.tracker.strapdown import (
     GRAVITY_MPS2,
     advance,
-    quaternion_from_rotation,
     rotate_attitude,
     rotate_navigation,
     rotation_matrix,
@@ -195,4 +194,3 @@ def test_rotation_vector_turns_about_its_axis():
     matrix = np.zeros((3, 3))
     rotation_matrix(quaternion, matrix)
     np.testing.assert_allclose(matrix @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
-    np.testing.assert_allclose(quaternion_from_rotation(matrix), quaternion, atol=1e-12)
