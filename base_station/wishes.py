@@ -68,7 +68,9 @@ class Wishes(Generic[W]):
                     self._save()
                 except ConfigError as error:
                     self._all = before
-                    raise StoreError(f"the wish cannot be kept, so nothing is done: {error}") from error
+                    raise StoreError(
+                        f"the wish cannot be kept, so nothing is done: {error}"
+                    ) from error
             return _copy(wish)
 
     def note(self, wish: W, *, save: bool, **now: object) -> bool:
