@@ -37,7 +37,8 @@ class Sighting(msgspec.Struct, frozen=True):
 
 def slow_errors(sighting: Sighting) -> Floats:
     """(2, 4): what the slow errors ``[b_n, b_e, k_n, k_e]`` do to a fix."""
-    return np.hstack([sighting.slow_m * np.eye(2), sighting.common_m * np.eye(2)])
+    slow_m, common_m = sighting.slow_m, sighting.common_m
+    return np.array([[slow_m, 0.0, common_m, 0.0], [0.0, slow_m, 0.0, common_m]])
 
 
 class SavedBank(msgspec.Struct, frozen=True):

@@ -106,7 +106,7 @@ class HorizontalFilter:
         """Begin again with ``[north, east, c, s, w]``; of fixes' slow errors nothing is known."""
         whole, spread = np.zeros(STATES), np.zeros((STATES, STATES))
         whole[PATH], spread[np.ix_(PATH, PATH)] = mean, covariance
-        spread[SLOW, SLOW] = 1.0
+        spread[SLOW, SLOW] = np.eye(4)
         self.adopt(whole, spread)
         self._open_heading(self._linear_rad)
 
@@ -190,7 +190,7 @@ class HorizontalFilter:
         self._filter.x[SLOW, 0] *= keeps
         self._filter.P[SLOW, :] *= keeps[:, None]
         self._filter.P[:, SLOW] *= keeps
-        self._filter.P[SLOW, SLOW] += 1.0 - keeps**2
+        self._filter.P[SLOW, SLOW] += np.diag(1.0 - keeps**2)
 
     def distance2(self, sighting: Sighting) -> float:
         """How far a fix lies from what is believed, chi-square of two degrees of freedom."""

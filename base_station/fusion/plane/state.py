@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 STATES = 9
-SLOW = [4, 5, 6, 7]  # of the fixes' errors
-PLACE_AND_SLOW = [0, 1, *SLOW]
+SLOW = slice(4, 8)  # of the fixes' errors
+PLACE_AND_SLOW = [0, 1, 4, 5, 6, 7]
 DRIFT = 8
 PATH = [0, 1, 2, 3, DRIFT]  # what the path tells of, in the order of ``port.Present``
 
