@@ -1,0 +1,75 @@
+"""A calibration's file: written, read, damaged, old and poor."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from datetime import timedelta
+
+import msgspec
+import pytest
+
+from edge.calibration import Calibration, identity, read_calibration, write_calibration
+from edge.calibration.session import calibrate_guided, calibrate_recorded
+from edge.calibration.steps import StillStep
+from edge.simulation.handling import HandledUnit
+from edge.sources import open_source
+from shared.errors import ConfigError, UserError
+from tests.calibrating import MADE, gathered, known, solved
+
+
+@pytest.fixture
+def calibration() -> Calibration:
+    return solved(gathered(StillStep(), [HandledUnit(2).rest(14.0)]))
+
+
+def test_a_file_gives_back_the_calibration_and_its_identity(calibration, tmp_path):
+    write_calibration(calibration, tmp_path / "c.toml")
+    again = read_calibration(tmp_path / "c.toml")
+    assert again == calibration
+    assert identity(again) == identity(calibration)
+    assert identity(calibration).startswith("20260501T120000Z-")
+    other = msgspec.structs.replace(calibration, unit="u2")
+    assert identity(other) != identity(calibration)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("unit = 1", "is damaged"),
+        ("made = ", "is damaged"),
+        ('unit = "u"\nsensor = "s"\nmade = 2026-01-01T00:00:00', "no time zone"),
+        ('unit = "u"\nsensor = "s"\nmade = 2026-01-01T00:00:00Z\nbias = 1', "bias"),
+    ],
+)
+def test_a_damaged_file_is_one_sentence(text, said, tmp_path):
+    (tmp_path / "c.toml").write_text(text)
+    with pytest.raises(ConfigError, match=said):
+        read_calibration(tmp_path / "c.toml")
+
+
+def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
+    with pytest.raises(ConfigError, match="check the path"):
+        read_calibration(tmp_path / "none.toml")
+
+
+def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
+    assert not calibration.is_old(MADE + timedelta(days=180))
+    assert calibration.is_old(MADE + timedelta(days=181))
+    gyroscope = msgspec.structs.replace(known(calibration.gyroscope), residual_radps=0.01)
+    poor = msgspec.structs.replace(calibration, gyroscope=gyroscope)
+    assert poor.faults() == ("gyroscope off by 0.573 deg/s",)
+
+
+def test_a_whole_calibration_from_a_source_and_from_recordings(tmp_path, capsys):
+    with closing(open_source("bench:7")) as unit:
+        calibrate_guided(unit, tmp_path / "guided.toml", "u1", None, with_warm_up=True)
+    guided = read_calibration(tmp_path / "guided.toml")
+    assert guided.sensor == "simulated on a table"
+    assert None not in (guided.accelerometer, guided.gyroscope, guided.magnetometer, guided.warmth)
+    calibrate_recorded({"still": "bench:7"}, tmp_path / "recorded.toml", "u1", None)
+    assert read_calibration(tmp_path / "recorded.toml").accelerometer is None
+    said = capsys.readouterr().err
+    assert "gyroscope bias" in said
+    with pytest.raises(UserError, match="simulated:straight: the poses step cannot be used"):
+        calibrate_recorded({"poses": "simulated:straight"}, tmp_path / "x.toml", "u1", None)
+    assert not (tmp_path / "x.toml").exists()

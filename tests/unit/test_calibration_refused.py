@@ -1,0 +1,122 @@
+"""What does not determine a calibration is refused, and the sentence says what is missing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from edge.calibration.guide import guide
+from edge.calibration.steps import PosesStep, StillStep, TurningStep, WarmUpStep
+from edge.samples import ImuBatch, SensorBatch
+from edge.simulation.handling import SIDES, HandledUnit
+from shared.errors import UserError
+from tests.calibrating import gathered, known, solved
+
+X = np.array([1.0, 0.0, 0.0])
+
+
+def refusal(step, batches) -> str:
+    with pytest.raises(UserError) as caught:
+        gathered(step, batches)
+    return str(caught.value)
+
+
+def test_a_unit_that_moved_is_refused_for_the_still_step():
+    unit = HandledUnit(0)
+    said = refusal(StillStep(), [unit.rest(6.0), unit.turn(X, 1.0), unit.rest(6.0)])
+    assert "moved during the still step (last at 7.0 s)" in said
+    assert "10 s are needed" in said
+
+
+def test_a_unit_on_a_turntable_is_refused_for_the_still_step():
+    batch = HandledUnit(0).rest(15.0)
+    turning = replace(batch, gyro_radps=batch.gyro_radps + 0.3)
+    assert "turned evenly" in refusal(StillStep(), [turning])
+
+
+def test_missing_poses_are_named():
+    unit = HandledUnit(0)
+    said = refusal(PosesStep(), [*unit.poses(SIDES[[0, 2, 4]]), unit.turn(X, 1.0)])
+    assert "only 3 of 6 poses: turn it until -x, -y and -z of the sensor points up" in said
+
+
+@pytest.mark.parametrize(
+    ("turns", "said"),
+    [
+        ([], "hardly turned"),
+        ([6.0 * X], "about one axis only"),
+        ([3.0 * X, 0.4 * X[[1, 0, 2]]], "about one axis only"),
+    ],
+)
+def test_turning_that_does_not_determine_the_iron_is_refused(turns, said):
+    unit = HandledUnit(0)
+    batches = [unit.rest(3.0), *(unit.turn(turn, 6.0) for turn in turns)]
+    assert said in refusal(TurningStep(), batches)
+
+
+def test_half_a_sphere_is_refused():
+    unit = HandledUnit(0)
+    whole = gathered(TurningStep(), unit.turning(45)).fields_ut()
+    half = whole[whole @ np.array([1.0, 1.0, 1.0]) > np.median(whole @ np.array([1.0, 1.0, 1.0]))]
+    n = len(half)
+    batch = ImuBatch(np.arange(n), np.zeros((n, 3)), np.zeros((n, 3)), mag_ut=half)
+    assert "also upside down" in refusal(TurningStep(), [batch])
+
+
+def test_a_magnet_is_not_taken_for_the_earth():
+    unit = HandledUnit(0)
+    batches = [
+        replace(batch, mag_ut=None if batch.mag_ut is None else 4.0 * batch.mag_ut)
+        for batch in unit.turning(45)
+    ]
+    assert "not the earth's" in refusal(TurningStep(), batches)
+
+
+def test_a_unit_without_the_sensor_is_told_to_leave_the_step_out():
+    batch = replace(HandledUnit(0).rest(30.0), mag_ut=None, imu_temperature_degc=None)
+    assert "no magnetometer" in refusal(TurningStep(), [batch])
+    assert "leave the warm-up out" in refusal(WarmUpStep(), [batch])
+
+
+def test_a_field_that_changes_on_the_way_is_refused():
+    unit = HandledUnit(0)
+    rng = np.random.default_rng(1)
+    batches = [
+        replace(batch, mag_ut=known(batch.mag_ut) * rng.uniform(0.3, 1.7, (len(batch), 1)))
+        for batch in unit.turning(45)
+    ]
+    for batch in batches:
+        known(batch.mag_ut)[:] += rng.normal(0.0, 30.0, 3)
+    step = gathered(TurningStep(), batches)
+    with pytest.raises(UserError, match="do not lie on an ellipsoid"):
+        solved(step)
+
+
+def test_a_warm_up_needs_the_temperature_of_the_other_steps():
+    unit = HandledUnit(0)
+    still = gathered(StillStep(), [replace(unit.rest(14.0), imu_temperature_degc=None)])
+    warm_up = gathered(WarmUpStep(), unit.warm_up(400.0))
+    with pytest.raises(UserError, match="leave the warm-up out"):
+        solved(still, warm_up)
+
+
+def test_too_little_warmth_is_refused_with_the_figure():
+    said = refusal(WarmUpStep(), HandledUnit(0).warm_up(100.0, from_degc=21.5))
+    assert "changed by only 1.2 degC; 10 are needed" in said
+
+
+def test_a_guided_step_ends_when_it_has_enough():
+    unit = HandledUnit(0)
+    batches = iter([SensorBatch(unit.rest(1.0)) for _ in range(60)])
+    told: list[str] = []
+    guide(StillStep(), batches, 600.0, told.append)
+    assert 40 < len(list(batches)) < 50
+    assert told[-1] == "10 of 10 s"
+
+
+def test_a_guided_step_gives_up_after_its_time():
+    unit = HandledUnit(0)
+    with pytest.raises(UserError, match="only 1 of 6 poses"):
+        guide(PosesStep(), (SensorBatch(unit.rest(1.0)) for _ in range(99)), 20.0, lambda _: None)
