@@ -52,7 +52,7 @@ class WallCloud:
     def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
         self._rng = np.random.Generator(np.random.PCG64(seed))
         self._scale = float(np.hypot(mean[2], mean[3]))
-        own, slow = PATH, np.arange(STATES)[SLOW]
+        own, slow = PATH, list(range(STATES))[SLOW]
         spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
         root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
         drawn = self._rng.normal(size=(GUESSES, 5)) @ root.T
