@@ -1,4 +1,4 @@
-"""Networks of their own for stations and units, where this machine allows them."""
+"""Stations and units to be troubled; networks of their own, where this machine allows them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from base_station.bench.lossy_link import LossyLink
 from base_station.bench.site import Site, site
 from shared.errors import BusError
+from tests.recorded_unit import RecordedUnit
 
 LUCK = 5  # the seed of the links
 
@@ -29,3 +30,18 @@ def troubled(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     """A station and a unit with a link between them that can be spoiled."""
     with site(tmp_path_factory.mktemp("site"), LUCK) as one:
         yield one
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RecordedUnit]:
+    unit = RecordedUnit(tmp_path_factory.mktemp("unit"))
+    yield unit
+    unit.folder.close()
+
+
+@pytest.fixture
+def unit(recorded: RecordedUnit) -> RecordedUnit:
+    recorded.linked = True
+    recorded.spoil = lambda _, reply: reply
+    recorded.questions.clear()
+    return recorded
