@@ -228,7 +228,6 @@ PROGRESS = np.dtype(
         ("temperature_s", np.float64),  # of the sample that said it
         ("warmed_degc", np.float64),  # for which the gyroscope bias holds
         ("in_stance", np.bool_),
-        ("aligned", np.bool_),
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),
         ("gyro_saturated_s", np.float64),  # when last seen
