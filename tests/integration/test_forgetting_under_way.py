@@ -1,0 +1,190 @@
+"""Forgetting beside a running station, asked for over the API, and cut short anywhere."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+from collections.abc import Collection, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from base_station.data_folder import DataFolder
+from base_station.db.accounts import Role
+from base_station.db.records import Records
+from base_station.db.store import Store
+from base_station.forgetting.forgetter import ClosedLog, Forgetter
+from base_station.past.checkpoints import Checkpoints
+from base_station.recordings.desk import RecordingDesk
+from base_station.recordings.fetch import FetchState, Wanted
+from shared.clock import ManualClock, SystemClock
+from shared.mcap_log import SegmentWriter, read_log
+from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
+from shared.messages.station import (
+    Assign,
+    RegisterUnit,
+    Unassign,
+)
+from tests.forgetting_story import ANA, BO, Story, Walker, names_in
+from tests.live_station import LiveStation
+from tests.station import DeskStation
+from tests.waiting import until
+
+
+class NoPulls:
+    """Nothing is being pulled."""
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        pass
+
+
+def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    with LiveStation(tmp_path) as station, ExitStack() as closing:
+        store = closing.enter_context(Store(folder.database))
+        records = Records(store, SystemClock())
+        forgetter = Forgetter(
+            station.recorder, store, station.checkpoints, records, SystemClock(), NoPulls(),
+            lambda by, action: station.act(action, by),
+        )  # fmt: skip
+        station.act(RegisterUnit("FF-01", "FF-01"))
+        station.act(Assign("FF-01", "p-77", ANA, "", ""))
+        walker = Walker(station, "FF-01")
+        walker.walk(10, 3.0)
+        walker.press_mayday()
+        station.act(Unassign("FF-01"))
+        forgetter.person("admin", "p-77")
+        unit = station.pipeline.state.units["FF-01"]
+        assert unit.trail == []
+        assert unit.fused is None
+        saved = station.pipeline.checkpoint()
+        assert ANA.encode() not in saved
+        station.act(RegisterUnit("FF-02", "FF-02"))  # the log goes on
+        assert len(station.recorder.segments()) == 2
+    assert len(list(read_log(folder.log))) > 10
+    text = b"".join(payload for _, _, payload in read_log(folder.log)).decode("utf-8", "ignore")
+    assert ANA not in text
+    for path in folder.checkpoints.glob("*.checkpoint"):
+        found = station.checkpoints.latest(int(path.stem))
+        assert ANA.encode() not in msgspec.msgpack.encode(found)
+
+
+@pytest.fixture
+def desk(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    (tmp_path / "log").mkdir()
+    desk = DeskStation(tmp_path, clock)
+    yield desk
+    desk.close()
+
+
+async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStation) -> None:
+    desk.hub.connect(asyncio.get_running_loop(), desk.drive)
+    async with desk.client(Role.COMMANDER) as commander:
+        person = (await commander.post("/people", json={"name": ANA})).json()
+        path = f"/people/{person['person_id']}/forget"
+        assert (await commander.post(path, json={"name": ANA})).status_code == 403
+    async with desk.client(Role.ADMINISTRATOR) as administrator:
+        assert (await administrator.post(path, json={"name": BO})).status_code == 422
+        asked = await administrator.post(path, json={"name": ANA})
+        assert (asked.status_code, asked.json()["state"]) == (202, "waiting")
+        while (one := (await administrator.get("/forgettings")).json()[-1])["state"] != "done":
+            await asyncio.sleep(0.02)
+        assert (one["kind"], one["subject_id"], one["share"]) == ("person", person["person_id"], 1)
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 404
+        entries = (await administrator.get("/audit")).json()
+    assert ("administrator", "ForgotPerson") in {(one["by"], one["action"]) for one in entries}
+    assert not any(ANA in one["detail"] for one in entries)
+
+
+class PowerCut(BaseException):
+    """In the middle of forgetting."""
+
+
+def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> None:
+    """The log goes segment by segment, and the tables after it."""
+    story = Story(tmp_path / "station")
+    data = DataFolder(story.folder)
+    _split(data.log, 4)
+    whole = sum(1 for _ in read_log(data.log))
+    cuts = 0
+    with Store(data.database) as store:
+        records = Records(store, SystemClock())
+        forgetter = Forgetter(
+            ClosedLog(data.log), store, Checkpoints(data.checkpoints), records, SystemClock(),
+            NoPulls(),
+        )  # fmt: skip
+
+        def forget_until(progress: int) -> None:
+            told = iter(range(progress))
+
+            def go_on(_: float) -> None:
+                if next(told, None) is None:
+                    raise PowerCut
+
+            forgetter.person("ada", "p-77", go_on)
+
+        for progress in range(10):
+            try:
+                forget_until(progress)
+                break
+            except PowerCut:
+                cuts += 1
+    assert cuts > 4
+    assert names_in(story.stored(), ANA) == []
+    assert [payload for payload in story.ana_said if payload in story.stored()] == []
+    assert 0 < sum(1 for _ in read_log(data.log)) < whole
+
+
+def _split(folder: Path, parts: int) -> None:
+    """The same log in more segments."""
+    records = list(read_log(folder))
+    for path in folder.iterdir():
+        path.unlink()
+    writer = SegmentWriter(folder)
+    for number, record in enumerate(records):
+        writer.write(*record)
+        if (number + 1) % (len(records) // parts) == 0:
+            writer.end_segment()
+    writer.close()
+
+
+def test_a_recording_that_is_being_pulled_does_not_come_back(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    asked: list[str] = []
+
+    def ask(unit_id: str, question: str) -> bytes | None:
+        asked.append(f"{unit_id} {question}")
+        what, _, parameters = question.partition("?")
+        told = dict(pair.split("=", 1) for pair in parameters.split(";"))
+        if what == "index":
+            file = RecordedFile("day/000001.mcap", 100_000_000)  # it lasts
+            return RecordingIndex((file,), 1).to_bytes()
+        offset, data = int(told["offset"]), b"somebody walked" * 50
+        digest = hashlib.sha256(data).digest()
+        return RecordingPiece(offset, data, digest, gone=False).to_bytes()
+
+    def others() -> list[Path]:
+        return [path for path in folder.recordings.rglob("*.mcap*") if path.is_file()]
+
+    with RecordingDesk(ask, folder.recordings, SystemClock()) as pulls:
+        pulls.add("ada", Wanted("FF-01", 1, 2))
+        until(lambda: any(path.stat().st_size > 3000 for path in others()))
+        with LiveStation(tmp_path) as station, Store(folder.database) as store:
+            station.act(RegisterUnit("FF-01", "FF-01"))
+            station.act(Assign("FF-01", "p-77", ANA, "", ""))
+            station.act(Unassign("FF-01"))
+            Forgetter(
+                station.recorder, store, station.checkpoints, Records(store, SystemClock()),
+                SystemClock(), pulls,
+            ).person("ada", "p-77")  # fmt: skip
+        assert not (folder.recordings / "FF-01").exists()
+        until(lambda: not pulls._running)
+        assert not (folder.recordings / "FF-01").exists()
+        asked.clear()
+    with RecordingDesk(ask, folder.recordings, SystemClock()) as again:
+        (pull,) = again.pulls()
+        assert (pull.state, pull.problem) == (FetchState.FAILED, "deleted: its wearer is forgotten")
+    assert asked == []
+    assert others() == []
