@@ -1,7 +1,8 @@
-"""What live estimates knew better than the graph does: where walls hold somebody.
+"""What live estimates knew better than the graph does.
 
-The graph knows no walls.  Where the estimate that was shown is surer than the graph, which has the
-whole past and future, it can only have that from the plan.
+Where the estimate that was shown is surer than the graph, which has the whole past and future, it
+can only have that from the building: as it was learnt from everybody, or walls of a plan.  Of a
+plan's walls it is a beginning, until they speak for themselves (``walls``).
 """
 
 from __future__ import annotations
@@ -36,8 +37,8 @@ TAIL = 2.4  # standard deviations from which one counts less
 def choose_shown(
     chain: Chain, belief: Belief, spreads: Floats, places: Sequence[PlaceSeen]
 ) -> Ints:
-    """Rows of the path where the live estimate knew better than the graph does, as it does where
-    walls hold somebody, and contradicts neither the graph nor a place that is used.
+    """Rows of the path where the live estimate knew better than the graph does, and contradicts
+    neither the graph nor a place that is used.
     """
     path = chain.path
     knot = np.minimum(np.searchsorted(chain.knots, np.arange(len(path))), len(chain) - 1)
