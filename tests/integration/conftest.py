@@ -1,14 +1,31 @@
-"""A station as a process, in a folder and on a port of its own, and a unit that speaks to it."""
+"""Stations: the API alone on a folder of its own, or a process with a port and a unit beside it."""
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+import pytest_asyncio
 
 from base_station.bench.station import free_port
+from shared.clock import ManualClock
+from tests.station import DeskStation
 from tests.station_command import Command, Unit
+
+
+@pytest.fixture
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    station = DeskStation(tmp_path, clock)
+    yield station
+    station.close()
+
+
+@pytest_asyncio.fixture
+async def consoles(station: DeskStation) -> None:
+    """What the station has to show goes to whoever watches."""
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
 
 
 @pytest.fixture

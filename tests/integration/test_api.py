@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import io
 import xml.etree.ElementTree as ET
-from collections.abc import AsyncIterator, Callable, Iterator
-from pathlib import Path
+from collections.abc import AsyncIterator, Callable
 
 import httpx
 import pytest
@@ -17,13 +16,6 @@ from base_station.exporters import EXPORTERS
 from shared.clock import ManualClock
 from shared.messages import EventKind, Position, UnitEvent
 from tests.station import ORIGIN, PASSWORD, DeskStation
-
-
-@pytest.fixture
-def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    yield station
-    station.close()
 
 
 @pytest_asyncio.fixture

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import AsyncIterator
-from pathlib import Path
-
 import pytest
-import pytest_asyncio
 from httpx import AsyncClient
 
 from base_station.db.accounts import Role
@@ -15,13 +10,7 @@ from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Tick
 from tests.station import DeskStation
 
-
-@pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
-    yield station
-    station.close()
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 def pass_time(station: DeskStation, clock: ManualClock, time_s: float) -> None:

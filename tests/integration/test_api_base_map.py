@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import asyncio
 import io
-from collections.abc import AsyncIterator
-from pathlib import Path
 
 import pytest
-import pytest_asyncio
 from PIL import Image
 
 from base_station.db.accounts import Role
 from base_station.site.base_map import corners_of
-from shared.clock import ManualClock
 from shared.errors import ConfigError
 from tests.station import DeskStation
 
 # A degree of latitude is 111 km: 200 by 100 pixels of a metre, north up.
 WORLD = (1.6e-5, 0.0, 0.0, -9e-6, 4.0, 52.0)
 
-
-@pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
-    yield station
-    station.close()
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 def picture(form: str = "PNG", size: tuple[int, int] = (200, 100)) -> bytes:

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import AsyncIterator
-from pathlib import Path
-
 import pytest
-import pytest_asyncio
 
 from base_station.db.accounts import Role
 from shared.clock import ManualClock
@@ -16,13 +11,7 @@ from tests.station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 
-
-@pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
-    yield station
-    station.close()
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 async def test_a_crew_is_told_and_its_answers_are_shown(

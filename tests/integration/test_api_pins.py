@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import AsyncIterator
-from pathlib import Path
-
 import httpx
 import msgspec
 import pytest
-import pytest_asyncio
 
 from base_station.db.accounts import Role
 from shared.clock import NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.station import DeskStation
 
-
-@pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
-    yield station
-    station.close()
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 async def walk(

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import AsyncIterator
-from pathlib import Path
-
-import pytest_asyncio
+import pytest
 
 from base_station.db.accounts import Role
-from shared.clock import ManualClock
 from tests.station import DeskStation
 
 PATH = "/reference-barometer"
 
-
-@pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
-    yield station
-    station.close()
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 async def test_a_reference_is_set_and_taken_away(station: DeskStation) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import sqlite3
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import httpx
@@ -18,13 +18,6 @@ from base_station.api.security import COOKIE, LoginThrottle, Scope
 from base_station.db.accounts import SESSION_S, Role
 from shared.clock import ManualClock
 from tests.station import ORIGIN, PASSWORD, DeskStation
-
-
-@pytest.fixture
-def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    yield station
-    station.close()
 
 
 @pytest_asyncio.fixture

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 from base_station.api.headers import content_policy
 from base_station.api.wire import StandbyView
 from base_station.db.accounts import Role
-from shared.clock import ManualClock
 from tests.station import DeskStation
 
 HERE, THERE = "https://b:8443", "https://a:8443"
@@ -31,13 +28,6 @@ class Standing:
 
     def take_over(self) -> None:
         self.taken_over += 1
-
-
-@pytest.fixture
-def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    yield station
-    station.close()
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.station import free_port
 from edge.warm_up import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
@@ -72,11 +71,6 @@ class Station:
 def compiled() -> None:
     """So that no agent spends its first minute compiling."""
     compile_trackers()
-
-
-@pytest.fixture
-def port() -> int:
-    return free_port()
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.station import free_port
 from base_station.clock_server import ClockServer
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
@@ -67,11 +66,6 @@ class Site:
 def compiled() -> None:
     """So that no agent spends its first minute compiling."""
     compile_trackers()
-
-
-@pytest.fixture
-def port() -> int:
-    return free_port()
 
 
 @pytest.fixture

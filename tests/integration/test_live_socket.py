@@ -6,8 +6,7 @@ import asyncio
 import json
 import socket
 import time
-from collections.abc import AsyncIterator, Iterator
-from pathlib import Path
+from collections.abc import AsyncIterator
 from typing import Any
 
 import httpx
@@ -20,16 +19,8 @@ from base_station.api.routes import live
 from base_station.api.security import COOKIE
 from base_station.db.accounts import Role
 from base_station.server import ConsoleServer, bind
-from shared.clock import ManualClock
 from shared.messages.station import OpenIncident
 from tests.station import PASSWORD, DeskStation
-
-
-@pytest.fixture
-def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
-    yield station
-    station.close()
 
 
 @pytest_asyncio.fixture
