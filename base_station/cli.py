@@ -256,21 +256,18 @@ def recover(data: Path = Path("muster-data")) -> None:
 
 @log.command("list")
 def list_segments(data: Path = Path("muster-data")) -> None:
-    """The segments with their times and sizes."""
+    """The segments with their times and sizes; open is the one that a station writes."""
     from datetime import UTC, datetime  # noqa: PLC0415
 
     from base_station.data_folder import DataFolder  # noqa: PLC0415
     from shared.clock import NS_PER_S  # noqa: PLC0415
-    from shared.mcap_log import SegmentReader, segment_paths  # noqa: PLC0415
 
     folder = DataFolder(data)
     folder.require()
-    for path in segment_paths(folder.log):
-        with SegmentReader(path) as reader:
-            info = reader.info()
+    for info in folder.segments():
         start = datetime.fromtimestamp(info.start_ns / NS_PER_S, UTC)
         typer.echo(
-            f"{path.name}\t{start:%Y-%m-%d %H:%M:%S}\t{info.messages} messages\t"
+            f"{info.path.name}\t{start:%Y-%m-%d %H:%M:%S}\t{info.messages} messages\t"
             f"{info.size_bytes} bytes\t{info.state.value}"
         )
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 
 from base_station.recorder import LOG_FOLDER
 from shared.errors import LogError, StoreError
 from shared.folder_lock import FolderLock
+from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, segment_paths
 
 
 class DataFolder:
@@ -32,6 +35,20 @@ class DataFolder:
                 "start the station there once"
             )
         return self.database
+
+    def segments(self) -> Iterator[SegmentInfo]:
+        """The log's, in the order of writing; the last one is open while a station writes it.
+
+        Raises LogError when one cannot be opened.
+        """
+        is_written = FolderLock.is_held(self.path)
+        paths = segment_paths(self.log)
+        for path in paths:
+            with SegmentReader(path) as reader:
+                info = reader.info()
+            if is_written and path == paths[-1] and info.state is SegmentState.TORN:
+                info = dataclasses.replace(info, state=SegmentState.OPEN)
+            yield info
 
     def lock(self) -> FolderLock:
         """To change what is in it; DataFolderInUseError while a station works on it."""

@@ -42,5 +42,20 @@ class FolderLock:
         os.ftruncate(self._descriptor, 0)
         os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
 
+    @staticmethod
+    def is_held(folder: Path) -> bool:
+        """Whether a program holds it now; who asks holds it for no longer than that takes."""
+        try:
+            descriptor = os.open(folder / _NAME, os.O_RDONLY)
+        except OSError:
+            return False
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        finally:
+            os.close(descriptor)
+        return False
+
     def close(self) -> None:
         os.close(self._descriptor)

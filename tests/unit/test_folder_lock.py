@@ -28,8 +28,16 @@ def test_a_second_holder_is_told_who_holds_the_folder(tmp_path: Path) -> None:
         DataFolderInUseError, match=rf"another station .*\(process {os.getpid()}\): stop it"
     ):
         FolderLock(tmp_path)
+    assert FolderLock.is_held(tmp_path)
     lock.close()
+    assert not FolderLock.is_held(tmp_path)
     FolderLock(tmp_path).close()
+
+
+def test_a_folder_that_nobody_ever_held_is_not_held_and_stays_as_it_is(tmp_path: Path) -> None:
+    assert not FolderLock.is_held(tmp_path)
+    assert not FolderLock.is_held(tmp_path / "nowhere")
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_folder_is_free_when_its_holder_was_killed(tmp_path: Path) -> None:

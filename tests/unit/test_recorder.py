@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from base_station.data_folder import DataFolder
 from base_station.feed import LogFeed
 from base_station.recorder import LOG_FOLDER, Recorder
 from shared.channels import POSITION
@@ -56,6 +58,24 @@ def test_a_second_station_on_the_folder_is_refused(tmp_path: Path) -> None:
         Recorder(tmp_path, SystemClock())
     with recording(tmp_path):
         pass
+
+
+def test_a_segment_that_is_written_is_open_and_one_that_nobody_writes_is_torn(
+    tmp_path: Path,
+) -> None:
+    def states(data: Path) -> list[str]:
+        return [info.state.value for info in DataFolder(data).segments()]
+
+    data, copy = tmp_path / "data", tmp_path / "copy"
+    with recording(data, segment_s=10.0) as recorder:
+        for second in range(15):
+            recorder.write(T0_NS + second * NS_PER_S, KEY, b"", urgent=True)
+        assert states(data) == ["closed", "open"]
+        shutil.copytree(data, copy)  # as a crash would have left it
+        assert states(copy) == ["closed", "torn"]
+    assert states(data) == ["closed", "closed"]
+    with recording(copy):
+        assert "torn" not in states(copy)
 
 
 def test_segments_are_told_of_when_they_are_complete(tmp_path: Path) -> None:
