@@ -48,12 +48,19 @@ def handle_problems(app: FastAPI) -> None:
     """Every error of a route becomes a problem document."""
 
     @app.exception_handler(HTTPException)
-    async def refused(_request: Request, error: HTTPException) -> JSONResponse:
-        return problem_response(error.status_code, str(error.detail), error.headers)
+    async def refused(request: Request, error: HTTPException) -> JSONResponse:
+        unread = error.status_code == 400 and not isinstance(error, Problem)
+        detail = _what_to_send(request) if unread else str(error.detail)
+        return problem_response(error.status_code, detail, error.headers)
 
     @app.exception_handler(RequestValidationError)
-    async def invalid(_request: Request, error: RequestValidationError) -> JSONResponse:
-        sentences = (_sentence(one["loc"], one["msg"]) for one in error.errors())
+    async def invalid(request: Request, error: RequestValidationError) -> JSONResponse:
+        sentences = (
+            _what_to_send(request)
+            if one["loc"] == ("body",) or one["type"] == "json_invalid"
+            else _sentence(one["loc"], one["msg"])
+            for one in error.errors()
+        )
         return problem_response(422, "; ".join(sentences))
 
     @app.exception_handler(MusterError)
@@ -76,6 +83,15 @@ def _status_of(error: MusterError) -> int:
             return 503
         case _:
             return 500
+
+
+def _what_to_send(request: Request) -> str:
+    """For who sent no body, or one that the framework could not read."""
+    route = request.scope["route"]
+    kind = route.body_field.field_info.media_type
+    if kind == "application/json":
+        return f"send one JSON object as the body, with the header Content-Type: {kind}"
+    return f"send the file itself as the body, with the header Content-Type: {kind} or its like"
 
 
 def _sentence(location: tuple[int | str, ...], message: str) -> str:

@@ -1,0 +1,105 @@
+"""What is sent: how much of it, as what, and what is said of what is no good."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+import pytest_asyncio
+
+from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
+from base_station.db.accounts import Role
+from tests.station import DeskStation
+
+
+@pytest_asyncio.fixture
+async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+    async with station.client(Role.COMMANDER) as client:
+        yield client
+
+
+async def chunks(count: int) -> AsyncIterator[bytes]:
+    for _ in range(count):
+        yield bytes(100_000)
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "most"),
+    [
+        ("POST", "/people", MOST_BYTES),
+        ("PUT", "/site/plan", MOST_UPLOADED_BYTES),
+        ("PUT", "/people/x/photo", MOST_UPLOADED_BYTES),
+    ],
+)
+async def test_a_body_without_end_is_refused(
+    commander: httpx.AsyncClient, method: str, path: str, most: int
+) -> None:
+    length = {"content-type": "application/json"}
+    answer = await commander.request(method, path, content=b"x" * (most + 1), headers=length)
+    assert answer.status_code == 413
+    unsaid = await commander.request(method, path, content=chunks(most // 100_000 + 1))
+    assert unsaid.status_code == 413
+
+
+@pytest.mark.parametrize("path", ["/site/plan", "/people/x/photo", "/site/base-map?world=1"])
+async def test_nobody_who_is_not_logged_in_has_a_large_body_read(
+    station: DeskStation, path: str
+) -> None:
+    read = 0
+
+    async def body() -> AsyncIterator[bytes]:
+        nonlocal read
+        for _ in range(100):
+            read += 1
+            yield bytes(100_000)
+
+    async with station.client() as client:
+        assert (await client.put(path, content=body())).status_code == 401
+    assert read <= 1
+
+
+@pytest.mark.parametrize("bomb", ["[" * 60_000, '{"a":' * 10_000, "9" * 60_000, '"\\ud800"'])
+async def test_json_that_is_a_trap_is_refused(commander: httpx.AsyncClient, bomb: str) -> None:
+    for path in ("/people", "/commands", "/tokens"):
+        assert (await commander.post(path, content=bomb)).status_code in (400, 422)
+    assert (await commander.put("/site/plan", content=bomb)).status_code in (400, 422)
+
+
+FORM = b'{"name": "Ada"}'
+
+
+@pytest.mark.parametrize(
+    ("body", "kind"),
+    [
+        (b"", None),
+        (b"", "application/json"),
+        (FORM, None),
+        (FORM, "text/plain"),
+        (FORM, "application/x-www-form-urlencoded"),
+        (FORM[:-1], "application/json"),
+        (b"\xff", "application/json"),
+        (b"[1]", "application/json"),
+    ],
+)
+@pytest.mark.parametrize(("method", "path"), [("POST", "/people"), ("PUT", "/site/plan")])
+async def test_who_sends_no_json_is_told_to(
+    commander: httpx.AsyncClient, method: str, path: str, body: bytes, kind: str | None
+) -> None:
+    headers = {} if kind is None else {"content-type": kind}
+    answer = await commander.request(method, path, content=body, headers=headers)
+    assert answer.status_code in (400, 422)
+    wanted = "send one JSON object as the body, with the header Content-Type: application/json"
+    assert answer.json()["detail"] == wanted
+
+
+@pytest.mark.parametrize(
+    ("body", "kind"), [(b"", None), (b"[1]", "application/json"), (b"\xff", "application/json")]
+)
+async def test_who_sends_no_picture_is_told_to(
+    commander: httpx.AsyncClient, body: bytes, kind: str | None
+) -> None:
+    headers = {} if kind is None else {"content-type": kind}
+    answer = await commander.put("/people/x/photo", content=body, headers=headers)
+    assert answer.status_code in (400, 422)
+    assert "send the file itself as the body" in answer.json()["detail"]
