@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from urllib.parse import quote
 
 from playwright.sync_api import Locator, Page, expect
@@ -74,6 +75,29 @@ def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     notice.get_by_role("button", name="OK").click()
     expect(notice).to_have_count(0)
     assert flaws(page) == []
+
+
+def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    site = menu(page, "Site")
+    file = site.get_by_label("New plan")
+    (tmp_path / "notes.json").write_text("notes")
+    file.set_input_files(tmp_path / "notes.json")
+    notice = site.get_by_role("alert").filter(has_text="This file is no GeoJSON")
+    notice.get_by_role("button", name="OK").click()
+    (tmp_path / "yard.json").write_text(
+        '{"type": "FeatureCollection", "features": [],'
+        ' "muster": {"frame": "site-m", "name": "Yard", "floors": [{"floor": 0, "down_m": 0}]}}'
+    )
+    file.set_input_files(tmp_path / "yard.json")
+    expect(site).to_contain_text("The file has Yard: 1 floor, 0 rooms")
+    site.get_by_role("button", name="Replace plan").click()
+    site.get_by_role("button", name="No").click()
+    assert station.changes() == []
+    assert flaws(page) == []
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    assert station.changes() == ["/site/plan"]
 
 
 def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:

@@ -1,36 +1,21 @@
-import { ApiError, setAnchor, setPlan } from "../api";
+import { setAnchor } from "../api";
 import { attempt, live } from "../sessions";
 import { dialog } from "../view";
 import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { BaseMapForm } from "./BaseMapForm";
 import { Dialog } from "./Dialog";
+import { PlanForm } from "./PlanForm";
 import { fields } from "./useLoaded";
 
 const DEGREES = 180 / Math.PI;
 
 export function SiteDialog() {
   const picture = live.value?.picture;
-  const plan = picture?.plan.value ?? null;
   return (
     <Dialog title="Site">
       <h3>Plan</h3>
-      <p>
-        {plan === null
-          ? "There is no plan; people are shown on a metre grid."
-          : `${plan.muster.name ?? "A plan without a name"} is shown.`}
-      </p>
-      <label class="row">
-        New plan (GeoJSON in site metres)
-        <input
-          type="file"
-          accept=".geojson,.json,application/geo+json"
-          onChange={(event) => {
-            const file = event.currentTarget.files?.[0];
-            if (file) void attempt(sendPlan(file));
-          }}
-        />
-      </label>
+      <PlanForm shown={picture?.plan.value ?? null} />
       <h3>Base map</h3>
       <BaseMapForm />
       <h3>Place on the Earth</h3>
@@ -49,19 +34,6 @@ export function SiteDialog() {
       <AnchorForm anchor={picture?.anchor.value ?? null} />
     </Dialog>
   );
-}
-
-async function sendPlan(file: File): Promise<void> {
-  await setPlan(parsed(await file.text()));
-  dialog.value = null;
-}
-
-function parsed(text: string): object {
-  try {
-    return JSON.parse(text) as object;
-  } catch {
-    throw new ApiError("This file is no GeoJSON.", 0);
-  }
 }
 
 function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
