@@ -24,7 +24,7 @@ class StorageConfig:
 class EdgeConfig:
     """One agent, one wearable."""
 
-    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT
+    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT, ximu3:tcp://HOST
     sightings: str = ""  # a reader of beacons and tags: tcp:HOST:PORT or a device's path
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured

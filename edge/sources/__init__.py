@@ -10,6 +10,7 @@ from edge.sources.bus import BusSource
 from edge.sources.port import Source, SourceKind
 from edge.sources.recording import RecordingSource
 from edge.sources.simulated import SimulatedSource
+from edge.sources.ximu3 import Ximu3Source
 from shared.errors import ConfigError
 
 SOURCES: tuple[SourceKind, ...] = (
@@ -18,6 +19,7 @@ SOURCES: tuple[SourceKind, ...] = (
     SourceKind("mcap", BlackBoxSource, "PATH"),
     SourceKind("bench", BenchSource, "SEED"),
     SourceKind("bus", BusSource, "UNIT"),
+    SourceKind("ximu3", Ximu3Source, "tcp://HOST:PORT or /dev/PORT?baud=115200"),
 )
 
 

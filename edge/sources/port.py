@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from edge.samples import SensorBatch, SensorDescription
 
@@ -41,6 +41,15 @@ class Source(Protocol):
     def batches(self) -> Iterator[SensorBatch]: ...
 
     def close(self) -> None: ...
+
+
+@runtime_checkable
+class TellsFaults(Protocol):
+    """A source that knows what is wrong with its sensor, such as that it is not there."""
+
+    def take_faults(self) -> tuple[str, ...]:
+        """What a person must hear since the last call, a sentence each; from any thread."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

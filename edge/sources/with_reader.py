@@ -8,18 +8,15 @@ nothing, and is opened again when it can be.
 from __future__ import annotations
 
 import logging
-import os
-import select
-import socket
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from threading import Event, Thread
-from typing import Protocol
 
 from edge.samples import SensorBatch, SensorDescription, SightingSample
-from edge.sources.port import Outage, Source
+from edge.sources.line import DeviceLine, Line, SocketLine
+from edge.sources.port import Outage, Source, TellsFaults
 from edge.sources.sighting_lines import LONGEST, sighting_of
 from shared.clock import Clock
 from shared.errors import ConfigError, WireError
@@ -27,30 +24,19 @@ from shared.errors import ConfigError, WireError
 logger = logging.getLogger(__name__)
 
 MOST_WAITING = 500  # sightings: the oldest are left out
-_CHUNK = 4096
 _LOOK_S = 0.5
 _AGAIN_S = 2.0
 _TALL = 20  # complaints about lines, then only counts
 
 
-class Stream(Protocol):
-    """An open reader."""
-
-    def read(self) -> bytes | None:
-        """What it said; empty: its end.  None: nothing for now."""
-        ...
-
-    def close(self) -> None: ...
-
-
-def open_reader(text: str) -> Callable[[], Stream]:
+def open_reader(text: str) -> Callable[[], Line]:
     """How to open what ``tcp:HOST:PORT`` or ``PATH`` names.  Raises ConfigError."""
     if not text.startswith("tcp:"):
-        return lambda: _File(text)
+        return lambda: DeviceLine(text)
     host, _, port = text.removeprefix("tcp:").rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise ConfigError(f"a reader is tcp:HOST:PORT or a device's path, not {text!r}")
-    return lambda: _Socket(host.strip("[]"), int(port))
+    return lambda: SocketLine(host.strip("[]"), int(port))
 
 
 class WithReader:
@@ -77,6 +63,9 @@ class WithReader:
     @property
     def radio_outages(self) -> tuple[Outage, ...]:
         return self._source.radio_outages
+
+    def take_faults(self) -> tuple[str, ...]:
+        return self._source.take_faults() if isinstance(self._source, TellsFaults) else ()
 
     def batches(self) -> Iterator[SensorBatch]:
         """The source's times are this machine's where it is live; else a sighting is of the batch
@@ -110,7 +99,7 @@ class WithReader:
                 complained = True
             self._stop.wait(_AGAIN_S)
 
-    def _listen(self, stream: Stream) -> None:
+    def _listen(self, stream: Line) -> None:
         """Until it ends."""
         rest = b""
         while not self._stop.is_set():
@@ -136,35 +125,3 @@ class WithReader:
             return
         if seen is not None:
             self._seen.append(seen)
-
-
-class _Socket:
-    def __init__(self, host: str, port: int) -> None:
-        self._socket = socket.create_connection((host, port), timeout=_AGAIN_S)
-        self._socket.settimeout(_LOOK_S)
-
-    def read(self) -> bytes | None:
-        try:
-            return self._socket.recv(_CHUNK)
-        except TimeoutError:
-            return None
-
-    def close(self) -> None:
-        self._socket.close()
-
-
-class _File:
-    """A device or a pipe; a serial port is set up beforehand, with ``stty`` for example."""
-
-    def __init__(self, path: str) -> None:
-        self._descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY)
-
-    def read(self) -> bytes | None:
-        ready, _, _ = select.select([self._descriptor], [], [], _LOOK_S)
-        try:
-            return os.read(self._descriptor, _CHUNK) if ready else None
-        except BlockingIOError:
-            return None
-
-    def close(self) -> None:
-        os.close(self._descriptor)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
-from threading import Event
+from threading import Event, Thread
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from edge.raw_stream import RawStream, raw_imu
 from edge.sources import SOURCES, open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Source
+from edge.sources.ximu3 import Ximu3Source
 from edge.unit_listener import UnitListener
 from shared.bus_memory import MemoryRouter
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, Qos
@@ -21,6 +23,8 @@ from shared.clock import ManualClock
 from shared.codec import encode
 from shared.errors import ConfigError, MusterError
 from shared.messages import Header
+from tests.waiting import until
+from tests.ximu3_device import PtyDevice, TcpDevice, at_rest
 
 Example = Callable[[Path], str]
 
@@ -67,11 +71,33 @@ EXAMPLES: dict[str, Example] = {
 }
 
 
-@pytest.fixture(params=[kind.scheme for kind in SOURCES])
-def source(request: pytest.FixtureRequest, tmp_path: Path) -> Source:
+Device = Callable[[list[bytes]], TcpDevice | PtyDevice]
+# Hardware, pretended: it is closed when everything that it said has been taken.
+DEVICES: dict[str, Device] = {"ximu3 on TCP": TcpDevice, "ximu3 on a serial port": PtyDevice}
+LIVE_SAMPLES = 360  # less than a second of them, which come at once
+
+
+@pytest.fixture(params=[*EXAMPLES, *DEVICES])
+def source(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Source]:
+    if request.param in DEVICES:
+        with closing(DEVICES[request.param](at_rest(LIVE_SAMPLES))) as device:
+            yield _listening(f"ximu3:{device.source}?field=50")
+        return
     source = open_source(EXAMPLES[request.param](tmp_path))
     if isinstance(source, BusSource):
         _say_everything(source)
+    yield source
+
+
+def _listening(text: str) -> Source:
+    source = open_source(text)
+    assert isinstance(source, Ximu3Source)
+
+    def end() -> None:
+        until(lambda: source.taken == LIVE_SAMPLES, "everything is taken")
+        source.close()
+
+    Thread(target=end, daemon=True).start()
     return source
 
 
@@ -96,13 +122,13 @@ def _say_everything(source: BusSource) -> None:
 
 
 def test_every_kind_has_an_example() -> None:
-    assert set(EXAMPLES) == {kind.scheme for kind in SOURCES}
+    assert {name.split()[0] for name in (*EXAMPLES, *DEVICES)} == {kind.scheme for kind in SOURCES}
 
 
 def test_batches_agree_with_the_description(source: Source) -> None:
     description = source.description
     assert description.name
-    count, last_ns = 0, -1
+    count, first_ns, last_ns = 0, 0, -1
     for batch in source.batches():
         imu = batch.imu
         assert len(imu) > 0
@@ -111,8 +137,9 @@ def test_batches_agree_with_the_description(source: Source) -> None:
         assert imu.t_ns[0] > last_ns, "batches come in order of time"
         assert (imu.mag_ut is not None) == description.mag_present
         assert (imu.pressure_pa is not None) == description.barometer_present
+        first_ns = first_ns if count else int(imu.t_ns[0])
         count, last_ns = count + len(imu), int(imu.t_ns[-1])
-    assert count / (last_ns * 1e-9) == pytest.approx(description.rate_hz, rel=0.05)
+    assert count / ((last_ns - first_ns) * 1e-9) == pytest.approx(description.rate_hz, rel=0.05)
     source.close()
 
 
@@ -123,8 +150,8 @@ def test_other_samples_come_with_the_batch_of_their_time(source: Source) -> None
 
 
 def test_a_second_reading_is_the_same_to_the_last_bit(source: Source) -> None:
-    if isinstance(source, BusSource):
-        pytest.skip("what was said once on the bus is not said again")
+    if isinstance(source, BusSource) or source.is_live:
+        pytest.skip("what was said once on the bus, or by hardware, is not said again")
     for first, second in zip(source.batches(), source.batches(), strict=True):
         assert first.imu.t_ns.tobytes() == second.imu.t_ns.tobytes()
         assert first.imu.accel_mps2.tobytes() == second.imu.accel_mps2.tobytes()
@@ -150,6 +177,15 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("simulated:stairs?seed=x", "seed is 'x'"),
         ("simulated:stairs?worn_on=hat", "known are foot, shank, hip, chest"),
         ("simulated:stairs?speed=2", "unknown option 'speed'"),
+        ("ximu3:ttyACM0", "ximu3:/dev/ttyACM0"),
+        ("ximu3:tcp://", "tcp://HOST:PORT"),
+        ("ximu3:tcp://10.0.0.1:70000", "tcp://HOST:PORT"),
+        ("ximu3:tcp://10.0.0.1/x", "tcp://HOST:PORT"),
+        ("ximu3:tcp://10.0.0.1?baud=9600", "leave it out"),
+        ("ximu3:/dev/ttyACM0?baud=115201", "this machine knows"),
+        ("ximu3:/dev/ttyACM0?baud=fast", "from 50 to"),
+        ("ximu3:/dev/ttyACM0?rate=4000", "from 10 to 400"),
+        ("ximu3:/dev/ttyACM0?speed=2", "unknown option 'speed'"),
     ],
 )
 def test_a_text_that_names_no_source_is_explained(text: str, said: str) -> None:

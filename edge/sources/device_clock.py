@@ -1,0 +1,114 @@
+"""Lays a device's own clock onto this machine's, by when its messages come.
+
+A message comes after it was meant, never before: the least delay of the last seconds is the
+offset, give or take what the quickest message took.  The offset follows the device's drift a little
+at a time, so that intervals between samples stay the device's own.  A clock that was set, started
+anew or wrapped is laid on again, and that is told; one message is not believed, because noise on a
+line says any time.
+"""
+
+from __future__ import annotations
+
+from shared.clock import NS_PER_S
+
+_JUMP_NS = NS_PER_S  # more than this ahead of now is another clock
+_BACK_NS = NS_PER_S // 10  # less is a message that was overtaken
+_WINDOW_NS = 10 * NS_PER_S
+_SLEW = 0.002  # of elapsed time: far less than scale errors, far more than a crystal is off
+
+
+class DeviceClock:
+    """``place`` the times of messages as they come; what it gives only ever goes forward."""
+
+    def __init__(self) -> None:
+        self._offset_ns: int | None = None
+        self._last_device_ns: int | None = None
+        self._last_ns: int | None = None
+        self._doubted_ns: int | None = None  # a time that the next message may confirm
+        self._since_ns = 0  # device time at which the window began
+        self._least_ns = self._least_before_ns = 0  # delay and offset in one
+        self._told: list[str] = []
+        self.repeated = 0  # messages of a time that had been
+        self.doubted = 0  # messages whose time fitted nothing
+
+    def reopened(self) -> None:
+        """The line was cut: how late messages come is to be learnt anew."""
+        self._offset_ns = None
+        self._doubted_ns = None
+
+    def told(self) -> list[str]:
+        """What happened to the device's clock since the last call, for a person."""
+        told, self._told = self._told, []
+        return told
+
+    def place(self, device_ns: int, arrival_ns: int) -> int | None:
+        """This machine's monotonic time of a sample; None of one that has no place."""
+        if self._last_device_ns is not None and not self._goes_on(device_ns, arrival_ns):
+            return None
+        self._note(device_ns, arrival_ns)
+        assert self._offset_ns is not None
+        t_ns = device_ns + self._offset_ns
+        if self._last_ns is not None and t_ns <= self._last_ns:
+            self._offset_ns += self._last_ns + 1 - t_ns
+            t_ns = self._last_ns + 1
+        self._last_ns = t_ns
+        return t_ns
+
+    def _goes_on(self, device_ns: int, arrival_ns: int) -> bool:
+        """Whether the sample can be placed; after a jump, from the second one on."""
+        assert self._last_device_ns is not None
+        step_ns = device_ns - self._last_device_ns
+        back = step_ns < -_BACK_NS
+        ahead = self._offset_ns is not None and (
+            device_ns + self._offset_ns - arrival_ns > _JUMP_NS and step_ns > _JUMP_NS
+        )
+        if back or ahead:
+            if not self._is_confirmed(device_ns):
+                self._doubted_ns = device_ns
+                self.doubted += 1
+                return False
+            self._tell_jump(step_ns)
+            self._offset_ns = None
+            return True
+        self._doubted_ns = None
+        if step_ns <= 0:
+            self.repeated += 1
+            return False
+        return True
+
+    def _is_confirmed(self, device_ns: int) -> bool:
+        return self._doubted_ns is not None and 0 < device_ns - self._doubted_ns < _JUMP_NS
+
+    def _tell_jump(self, step_ns: int) -> None:
+        self._doubted_ns = None
+        if step_ns < 0:
+            far = f"went back by {-step_ns / NS_PER_S:.1f} s"
+            self._told.append(
+                f"its clock {far}: it was started anew, or set; time goes on from now"
+            )
+        else:
+            far = f"went ahead by {step_ns / NS_PER_S:.1f} s"
+            self._told.append(f"its clock {far}: it was set; time goes on from now")
+
+    def _note(self, device_ns: int, arrival_ns: int) -> None:
+        """Take in how late this message came, and follow."""
+        late_ns = arrival_ns - device_ns
+        if self._offset_ns is None or self._last_device_ns is None:
+            self._offset_ns = self._least_ns = self._least_before_ns = late_ns
+            self._since_ns = self._last_device_ns = device_ns
+            return
+        if device_ns - self._since_ns > _WINDOW_NS:
+            self._since_ns = device_ns
+            self._least_before_ns, self._least_ns = self._least_ns, late_ns
+        self._least_ns = min(self._least_ns, late_ns)
+        apart_ns = min(self._least_ns, self._least_before_ns) - self._offset_ns
+        if apart_ns > _JUMP_NS:
+            self._told.append(
+                f"its samples have come {apart_ns / NS_PER_S:.1f} s late for "
+                f"{_WINDOW_NS // NS_PER_S} s: the line is too slow for them, or its clock was set"
+            )
+            self._offset_ns += apart_ns
+        else:
+            most_ns = round(_SLEW * (device_ns - self._last_device_ns))
+            self._offset_ns += max(-most_ns, min(most_ns, apart_ns))
+        self._last_device_ns = device_ns
