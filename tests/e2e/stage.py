@@ -6,7 +6,7 @@ from playwright.sync_api import Browser, Page
 
 from base_station.api.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.played_station import PlayedStation, answers
+from tests.e2e.played_station import Answers, PlayedStation, answers
 
 SCREENS = {
     "laptop": (1280, 800),
@@ -36,11 +36,13 @@ class Stage:
         self._browser = browser
         self._pages: list[Page] = []
 
-    def open(self, picture: Snapshot, screen: str = "laptop") -> tuple[Page, PlayedStation]:
+    def open(
+        self, picture: Snapshot, screen: str = "laptop", answers: Answers = ANSWERS
+    ) -> tuple[Page, PlayedStation]:
         width, height = SCREENS[screen]
         page = self._browser.new_page(viewport={"width": width, "height": height})
         self._pages.append(page)
-        station = PlayedStation(page, picture, ANSWERS)
+        station = PlayedStation(page, picture, answers)
         station.open()
         page.get_by_role("heading", level=1).wait_for()
         return page, station
