@@ -1,4 +1,4 @@
-"""What commands do with a station's folder, beside a running station or without one."""
+"""What is done with a station's folder beside a running station, or without one."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.recordings.desk import RecordingDesk
+from base_station.standby.places import Place
+from base_station.standby.setting_aside import set_aside
 from shared.clock import SystemClock
 from shared.errors import UserError
 from shared.mcap_log import recover_log
@@ -54,6 +56,17 @@ def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
             return project_whole_log(store, folder.log, on_progress)
     finally:
         lock.close()
+
+
+def cut_log(data: Path, place: Place, on_progress: Callable[[float], None]) -> None:
+    """Set aside what the log has behind a place, and make the projections again without it."""
+    folder = DataFolder(data)
+    lock = folder.lock()
+    try:
+        set_aside(folder, place)
+    finally:
+        lock.close()
+    rebuild(data, on_progress)  # what is queried must not know of it either
 
 
 def forget(
