@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
 from queue import SimpleQueue
-from threading import Thread
+from threading import Thread, current_thread
 from typing import Any
+from weakref import WeakSet
 
 import zenoh
 
@@ -36,9 +37,12 @@ __all__ = ["ClientEndpoint", "Endpoint", "StationEndpoint", "UnitEndpoint", "Zen
 logger = logging.getLogger(__name__)
 
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
+_QUERIES_WAITING = 1024
 _REPLIES_WAITING = 1024  # to one question
+_ENDING_S = 2.0  # for a thread to see that its channel has ended; a handler may be slow
 
 _Samples = zenoh.handlers.Handler[zenoh.Sample]
+_Queries = zenoh.handlers.Handler[zenoh.Query]
 _Replies = zenoh.handlers.Handler[zenoh.Reply]
 
 
@@ -58,6 +62,7 @@ class ZenohBus:
         except zenoh.ZError as error:
             raise _in_words(endpoint, str(error)) from error
         self._watched: dict[str, zenoh.Publisher] = {}
+        self._threads: WeakSet[Thread] = WeakSet()
 
     def publish(self, key: str, payload: bytes, qos: Qos) -> None:
         self._require_open()
@@ -78,7 +83,7 @@ class ZenohBus:
         subscriber = self._session.declare_subscriber(
             key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING)
         )
-        Thread(target=_hand_over, args=(subscriber, gate), name="bus-samples", daemon=True).start()
+        self._start_thread("bus-samples", partial(_hand_over, subscriber, gate))
         return _Declared(gate, subscriber)
 
     def declare_alive(self, key: str) -> Subscription:
@@ -104,17 +109,12 @@ class ZenohBus:
         self._require_open()
         gate = HandlerGate(require_key_expression(key_expression), handler)
 
-        def on_query(query: zenoh.Query) -> None:
-            with query:
-                payload = b"" if query.payload is None else query.payload.to_bytes()
-                key = str(query.key_expr)
-                for reply in gate.replies(key, str(query.parameters), payload):
-                    query.reply(key, reply)
-
-        # A thread of its own: making the replies must not hold up what else the link brings.
-        return _Declared(
-            gate, self._session.declare_queryable(key_expression, zenoh.handlers.Callback(on_query))
+        queryable = self._session.declare_queryable(
+            key_expression, zenoh.handlers.FifoChannel(_QUERIES_WAITING)
         )
+        # A thread of its own: making the replies must not hold up what else the link brings.
+        self._start_thread("bus-queries", partial(_answer, queryable, gate))
+        return _Declared(gate, queryable)
 
     def query(self, selector: str, payload: bytes, timeout_s: float) -> Iterable[bytes]:
         replies: SimpleQueue[bytes | None] = SimpleQueue()
@@ -145,8 +145,7 @@ class ZenohBus:
             timeout=timeout_s,
             payload=payload,
         )
-        taking = partial(_hand_replies_over, replies, on_reply)
-        Thread(target=taking, name="bus-replies", daemon=True).start()
+        self._start_thread("bus-replies", partial(_hand_replies_over, replies, on_reply))
 
     def is_linked(self) -> bool:
         if self._session.is_closed():
@@ -169,6 +168,15 @@ class ZenohBus:
             self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub leaves it open
         except zenoh.ZError as error:  # it waits for a link that leads nowhere, but not for ever
             logger.debug("closing the bus: %s", error)
+        # One that comes back out of Zenoh while the interpreter ends would abort the program.
+        for thread in tuple(self._threads):
+            if thread is not current_thread():
+                thread.join(_ENDING_S)
+
+    def _start_thread(self, name: str, target: Callable[[], None]) -> None:
+        thread = Thread(target=target, name=name, daemon=True)
+        self._threads.add(thread)
+        thread.start()
 
     def _require_open(self) -> None:
         if self._session.is_closed():
@@ -196,20 +204,34 @@ def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> Non
     in one go.
     """
     samples = subscriber.handler  # the subscriber itself could not be closed while it receives
-    try:
+    with suppress(zenoh.ZError):
         while True:
             sample: zenoh.Sample | None = samples.recv()
             while sample is not None:
                 if sample.kind == zenoh.SampleKind.PUT:
                     gate(str(sample.key_expr), sample.payload.to_bytes())
                 sample = samples.try_recv()
-    except zenoh.ZError:
-        return
 
 
-def _hand_replies_over(
-    replies: zenoh.handlers.Handler[zenoh.Reply], on_reply: ReplyHandler
-) -> None:
+def _answer(queryable: zenoh.Queryable[_Queries], gate: HandlerGate) -> None:
+    """Until nobody can ask any more."""
+    queries = queryable.handler  # as above
+    while True:
+        try:
+            asked = queries.recv()
+        except zenoh.ZError:
+            return
+        with asked as query:
+            payload = b"" if query.payload is None else query.payload.to_bytes()
+            key = str(query.key_expr)
+            try:
+                for reply in gate.replies(key, str(query.parameters), payload):
+                    query.reply(key, reply)
+            except zenoh.ZError as error:  # who asked has gone, or the link
+                logger.debug("an answer under %s does not get away: %s", key, error)
+
+
+def _hand_replies_over(replies: _Replies, on_reply: ReplyHandler) -> None:
     """Until no more come; in a thread of its own for the same reason: live data comes over the
     same link, behind the replies.
     """

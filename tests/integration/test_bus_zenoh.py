@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from contextlib import closing
 
 import pytest
@@ -36,6 +38,21 @@ def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(addr
         for start in ("first start", "restart"):
             with closing(ZenohBus(StationEndpoint((address,)))) as station:
                 publish_until_heard(unit, station, f"a message after the {start}")
+
+
+def test_a_closed_bus_leaves_no_thread_that_could_abort_the_program_as_it_ends(
+    address: str,
+) -> None:
+    before = set(threading.enumerate())
+    with closing(ZenohBus(StationEndpoint((address,)))) as station:
+        kept = station.subscribe("muster/v1/anna/up/**", print)
+        station.subscribe("muster/v1/bert/up/**", print).close()
+        station.serve("muster/v1/anna/journal", lambda *_: iter(())).close()
+        station.serve("muster/v1/bert/journal", lambda *_: iter(()))
+        station.ask("muster/v1/bert/journal", b"", 30.0, lambda _: time.sleep(0.2))
+        assert set(threading.enumerate()) > before
+    assert set(threading.enumerate()) <= before
+    kept.close()
 
 
 def test_a_taken_port_is_said_in_words(address: str) -> None:
