@@ -52,12 +52,14 @@ def played(imu: ImuBatch, binary: bool = False) -> Iterator[tuple[float, bytes]]
 
 
 class TcpDevice:
-    """Each of ``sessions`` is said to one connection, which then ends."""
+    """Each of ``sessions`` is said to one connection, which then ends, or ``hangs`` until the other
+    end has enough of it.
+    """
 
-    def __init__(self, *sessions: Iterable[bytes], port: int = 0) -> None:
+    def __init__(self, *sessions: Iterable[bytes], port: int = 0, hangs: bool = False) -> None:
+        self._hangs = hangs
         self._server = socket.create_server(("127.0.0.1", port))
         self._sessions = sessions
-        self._closed = Event()
         self.port: int = self._server.getsockname()[1]
         self._thread = Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -67,7 +69,6 @@ class TcpDevice:
         return f"tcp://127.0.0.1:{self.port}"
 
     def close(self) -> None:
-        self._closed.set()
         with suppress(OSError):
             self._server.shutdown(socket.SHUT_RDWR)
         self._server.close()
@@ -80,6 +81,9 @@ class TcpDevice:
                 with connection, suppress(ConnectionError):
                     for part in session:
                         connection.sendall(part)
+                    if self._hangs:
+                        connection.settimeout(30.0)
+                        connection.recv(1)
 
 
 class PtyDevice:
