@@ -1,17 +1,22 @@
 """The root command ``muster``: its subcommands are the entry points ``muster.commands``.
 
 Entry points keep the sides apart: an agent's machine never imports the station, and only
-the command that was asked for is loaded.
+the command that was asked for is loaded; for lists of commands, what each says of itself is read
+from its source.
 """
 
 from __future__ import annotations
 
+import ast
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
-from typing import NoReturn
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NoReturn
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from shared.errors import MusterError
 
@@ -20,51 +25,86 @@ _GROUP_HELP = {"bench": "Measure this build on this machine."}
 
 def main() -> NoReturn:
     """Run the command line; a MusterError becomes one sentence on stderr and exit code 2."""
-    commands = tuple(sorted(entry_points(group="muster.commands"), key=lambda point: point.name))
-    app = build_app(_asked_for(commands, sys.argv[1:]))
+    program = build_program(entry_points(group="muster.commands"))
     try:
-        app(prog_name="muster")
+        program(prog_name="muster")
     except MusterError as error:
         print(f"muster: {error}", file=sys.stderr)
         sys.exit(2)
     sys.exit(0)
 
 
-def build_app(commands: Sequence[EntryPoint]) -> typer.Typer:
-    """A typer application of the given entry points, loading each."""
-    app = _group("Responder tracking: edge agents, base station, replay.")
-    groups: dict[str, typer.Typer] = {}
-    for point in commands:
+def build_program(points: Iterable[EntryPoint]) -> TyperGroup:
+    """A command of the given entry points, none of which it has loaded yet."""
+    program = _group(
+        "muster", "Responder tracking: edge agents, base station, replay.", completes=True
+    )
+    groups = {"": program}
+    for point in sorted(points, key=lambda point: point.name):
         group_name, _, name = point.name.rpartition(".")
-        parent = app
-        if group_name:
-            if group_name not in groups:
-                groups[group_name] = _group(_GROUP_HELP[group_name])
-                app.add_typer(groups[group_name], name=group_name)
-            parent = groups[group_name]
-        command = point.load()
+        if group_name not in groups:
+            groups[group_name] = _group(group_name, _GROUP_HELP[group_name])
+            program.add_command(groups[group_name])
+        groups[group_name].add_command(_Listed(name, point))
+    return program
+
+
+class _Listed(TyperCommand):
+    """Stands in a list for a command that is not loaded."""
+
+    def __init__(self, name: str, point: EntryPoint) -> None:
+        super().__init__(name)
+        self._point = point
+
+    def loaded(self) -> TyperCommand | TyperGroup:
+        holder = typer.Typer()
+        command = self._point.load()
         if isinstance(command, typer.Typer):
-            parent.add_typer(command, name=name)
+            holder.add_typer(command, name=self.name)
         else:
-            parent.command(name)(command)
-    return app
+            holder.command(self.name)(command)
+        (made,) = typer.main.get_group(holder).commands.values()
+        assert isinstance(made, TyperCommand | TyperGroup)
+        return made
+
+    def describe(self) -> None:
+        """A function's help is read in its source; anything else is loaded to be asked."""
+        self.help = _docstring(self._point) or self.loaded().help
 
 
-def _asked_for(commands: Sequence[EntryPoint], arguments: Sequence[str]) -> tuple[EntryPoint, ...]:
-    """The entry point that the arguments name; all of them for help and for a mistyped name."""
-    typed = (".".join(arguments[:depth]) for depth in (2, 1))
-    for name in typed:
-        found = tuple(point for point in commands if point.name == name)
-        if found:
-            return found
-    return tuple(commands)
+class _Commands(TyperGroup):
+    """Loads the command that is to run."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        found = super().get_command(ctx, cmd_name)
+        if isinstance(found, _Listed):
+            found.describe()
+        return found
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        name, found, rest = super().resolve_command(ctx, args)
+        return name, found.loaded() if isinstance(found, _Listed) else found, rest
 
 
-def _group(description: str) -> typer.Typer:
-    app = typer.Typer(help=description, no_args_is_help=True, pretty_exceptions_enable=False)
-    # A callback keeps a group with a single command a group.
-    app.callback()(_nothing)
-    return app
+def _docstring(point: EntryPoint) -> str | None:
+    """Of the function that a point names, where it is one; nothing but its packages is imported."""
+    spec = find_spec(point.module)
+    if spec is None or spec.origin is None:
+        return None
+    for node in ast.parse(Path(spec.origin).read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and node.name == point.attr:
+            return ast.get_docstring(node)
+    return None
+
+
+def _group(name: str, description: str, *, completes: bool = False) -> _Commands:
+    app = typer.Typer(
+        name=name, cls=_Commands, help=description, no_args_is_help=True, add_completion=completes
+    )
+    app.callback()(_nothing)  # makes it a group
+    group = typer.main.get_command(app)
+    assert isinstance(group, _Commands)
+    return group
 
 
 def _nothing() -> None:

@@ -10,7 +10,7 @@ import pytest
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from shared.command_line import build_app
+from shared.command_line import build_program
 from tests.conftest import PROJECT_ROOT
 
 PAGES = [PROJECT_ROOT / "README.md", *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
@@ -19,9 +19,7 @@ TYPED = re.compile(r"(?:^|[`/ ])muster (?P<words>[a-z][^`\n#&|;]*)", flags=re.MU
 
 @pytest.fixture(scope="module")
 def program() -> TyperGroup:
-    program = typer.main.get_command(build_app(tuple(entry_points(group="muster.commands"))))
-    assert isinstance(program, TyperGroup)
-    return program
+    return build_program(entry_points(group="muster.commands"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -50,7 +48,7 @@ def found(program: TyperGroup, words: list[str]) -> tuple[TyperGroup | TyperComm
     for index, word in enumerate(words):
         if not isinstance(command, TyperGroup) or word not in command.commands:
             return command, words[index:]
-        below = command.commands[word]
+        _, below, _ = command.resolve_command(typer.Context(command), [word])
         assert isinstance(below, TyperGroup | TyperCommand)
         command = below
     return command, []

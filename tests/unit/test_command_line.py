@@ -6,9 +6,9 @@ import subprocess
 import sys
 from importlib.metadata import EntryPoint
 
-from typer.testing import CliRunner
+import pytest
 
-from shared.command_line import build_app
+from shared.command_line import build_program
 
 
 def commands(**values: str) -> tuple[EntryPoint, ...]:
@@ -18,22 +18,32 @@ def commands(**values: str) -> tuple[EntryPoint, ...]:
     )
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+def run(*arguments: str, python: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "shared.command_line", *arguments],
+        [sys.executable, *python, "-m", "shared.command_line", *arguments],
         capture_output=True,
         text=True,
         check=False,
     )
 
 
-def test_a_dotted_name_stands_below_its_group():
-    app = build_app(commands(messages="shared.message_reference:messages",
-                             bench__messages="shared.message_reference:messages"))  # fmt: skip
-    for arguments in (["messages"], ["bench", "messages"]):
-        result = CliRunner().invoke(app, arguments)
-        assert result.exit_code == 0, result.output
-        assert "# Channels and messages" in result.output
+@pytest.mark.parametrize("arguments", [["messages"], ["bench", "messages"]])
+def test_a_dotted_name_stands_below_its_group(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+):
+    point = "shared.message_reference:messages"
+    program = build_program(commands(messages=point, bench__messages=point))
+    program(arguments, standalone_mode=False)
+    assert "# Channels and messages" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["bench", "--help"], ["bench", "messagse"]])
+def test_a_list_says_what_each_command_is_for_and_loads_none(arguments: list[str]):
+    """And a mistyped name is answered in the time that a list takes."""
+    result = run(*arguments, python=("-X", "importtime"))
+    loaded = {line.rpartition("|")[2].strip() for line in result.stderr.splitlines()}
+    assert "typer" in loaded
+    assert not loaded & {"numpy", "zenoh", "sqlalchemy", "shared.messages"}
 
 
 def test_help_names_every_command():
@@ -41,6 +51,8 @@ def test_help_names_every_command():
     assert result.returncode == 0, result.stderr
     for name in ("edge", "base", "bench", "demo", "track"):
         assert name in result.stdout
+    for words in ("One agent for each wearable.", "Measure this build", "Track a recorded walk"):
+        assert words in result.stdout
 
 
 def test_a_mistyped_command_is_answered_with_the_nearest():
