@@ -1,0 +1,56 @@
+"""An agent with an x-IMU3, as a process, before the sensor is there and after it went."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+from base_station.bench.station import free_port
+from edge.warm_up import compile_trackers
+from shared.bus_zenoh import StationEndpoint, ZenohBus
+from shared.channels import COMMAND, ROOT, parse_key
+from shared.codec import decode
+from shared.messages import EventKind, Message, Position, Status, UnitEvent
+from tests.station_command import Agent
+from tests.waiting import until
+from tests.ximu3_device import TcpDevice, at_rest, paced
+
+SECONDS = 4
+
+
+def at_its_pace() -> Iterator[bytes]:
+    """Every 50 ms what came meanwhile."""
+    parts = [b"".join(at_rest(20, first=k)) for k in range(0, 400 * SECONDS, 20)]
+    return paced((0.05 * number, part) for number, part in enumerate(parts, start=1))
+
+
+def test_the_agent_outlives_its_sensor_and_says_why(port: int, tmp_path: Path) -> None:
+    compile_trackers()
+    heard: list[Message] = []
+
+    def take(key: str, payload: bytes) -> None:
+        channel = parse_key(key)[1]
+        if channel is not COMMAND:
+            heard.append(decode(channel, payload))
+
+    def faults() -> str:
+        events = [message for message in list(heard) if isinstance(message, UnitEvent)]
+        return "\n".join(e.detail for e in events if e.kind is EventKind.SENSOR_FAULT)
+
+    sensor_port = free_port()
+    flags = ("--unit", "u1", "--source", f"ximu3:tcp://127.0.0.1:{sensor_port}")
+    where = ("--data", str(tmp_path / "data"), "--connect", f"tcp/127.0.0.1:{port}")
+    with closing(ZenohBus(StationEndpoint((f"tcp/127.0.0.1:{port}",)))) as station:
+        station.subscribe(f"{ROOT}/u1/**", take)
+        with Agent(tmp_path / "agent.txt", *flags, *where) as agent:
+            until(lambda: "the connection is refused" in faults(), "the reason")
+            with closing(TcpDevice(at_its_pace(), port=sensor_port)):
+                until(lambda: any(isinstance(one, Position) for one in list(heard)), "a position")
+                until(lambda: "it has ended the connection" in faults(), "that it is gone")
+            assert agent.process.poll() is None
+            assert agent.stop() == 0
+    positions = [one for one in heard if isinstance(one, Position)]
+    assert all(0 < one.header.t_mono_ns < time.monotonic_ns() for one in positions)
+    assert any(one.battery == 0.875 for one in heard if isinstance(one, Status))
