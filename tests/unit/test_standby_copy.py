@@ -1,18 +1,15 @@
-"""A standby's copy of the log: served from any place, fetched, cut, and confirmed."""
+"""A standby's copy of the log: served from any place, fetched, and cut."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
 
 from base_station.data_folder import DataFolder
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
-from base_station.live.sinks import ActionDone
 from base_station.recorder import Recorder
-from base_station.standby.confirming import LeadersGate, OtherCopy
 from base_station.standby.following import Follower, Leader
 from base_station.standby.places import BEGINNING, Place, events_behind
 from base_station.standby.setting_aside import mark_told, parts, read_part, set_aside
@@ -20,12 +17,11 @@ from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from shared.bus_memory import MemoryRouter
-from shared.channels import ALARM, EVENT, FUSED, OPERATOR, POSITION, TICK, backfilled_key
+from shared.channels import ALARM, FUSED, OPERATOR, TICK
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
-from shared.errors import StoreError
 from shared.messages import STATION_ID, Header, OperatorAction
-from shared.messages.station import Action, CloseIncident, ForgetWearers, TakeOver
+from shared.messages.station import ForgetWearers, TakeOver
 from tests.waiting import until
 
 Record = tuple[int, str, bytes]
@@ -292,107 +288,3 @@ def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     assert kept == events(12)
     said = [[payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)]
     assert said == [[b"once"], [b"twice"]]
-
-
-class TestFeed:
-    """What the drive takes, before this station leads and after."""
-
-    @pytest.fixture
-    def clock(self) -> ManualClock:
-        return ManualClock()
-
-    @pytest.fixture
-    def feed(self, clock: ManualClock) -> StandbyFeed:
-        return StandbyFeed(LiveFeed(SteadyClock(clock)), clock)
-
-    def test_the_other_log_comes_first_then_what_was_heard_then_the_bus(
-        self, feed: StandbyFeed
-    ) -> None:
-        feed.offer(EVENT.key("u"), b"heard")
-        feed.deliver(events(2))
-        feed.lead()
-        assert list(feed.take(1.0)) == events(2)
-        follows = [feed.follows]
-        assert [r[1:] for r in feed.take(1.0)] == [(backfilled_key("u", EVENT.suffix), b"heard")]
-        follows.append(feed.follows)
-        assert follows == [True, False]
-        feed.offer(POSITION.key("u"), b"live")
-        assert [r[1:] for r in feed.take(1.0)] == [(POSITION.key("u"), b"live")]
-
-    def test_only_the_last_of_the_bus_is_kept(self, feed: StandbyFeed, clock: ManualClock) -> None:
-        feed.offer(EVENT.key("u"), b"long ago")
-        clock.advance(31.0)
-        feed.offer(EVENT.key("u"), b"just now")
-        feed.lead()
-        assert [payload for _, _, payload in feed.take(1.0)] == [b"just now"]
-
-    def test_nobody_but_units_is_kept(self, feed: StandbyFeed) -> None:
-        feed.offer(TICKED, b"forged")
-        feed.offer("muster/v1/u/command/send", b"the other station said it")
-        feed.lead()
-        assert list(feed.take(0.0)) == []
-
-
-class Drive:
-    """An ``OperatorGate`` that does everything at once."""
-
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
-        done: Future[ActionDone] = Future()
-        done.set_result(ActionDone("x", 1, None))
-        return done
-
-
-class TestConfirming:
-    @pytest.fixture
-    def clock(self) -> ManualClock:
-        return ManualClock()
-
-    @pytest.fixture
-    def copy(self, clock: ManualClock) -> OtherCopy:
-        self.place = Place(5, 1)
-        return OtherCopy(clock, lambda: self.place, confirm_s=1.0)
-
-    def act(self, copy: OtherCopy, refusal: str | None = None) -> Future[ActionDone]:
-        return LeadersGate(Drive(), copy, lambda: refusal).submit("ada", CloseIncident("i"))
-
-    def test_without_a_standby_an_action_is_confirmed_at_once(self, copy: OtherCopy) -> None:
-        assert self.act(copy).done()
-
-    def test_an_action_waits_until_the_standby_has_it(self, copy: OtherCopy) -> None:
-        copy.note(Place(4, 1))
-        told = self.act(copy)
-        assert not told.done()
-        copy.note(Place(5, 1))
-        assert told.done()
-
-    def test_it_does_not_wait_for_long_and_that_is_said(
-        self, copy: OtherCopy, clock: ManualClock
-    ) -> None:
-        copy.note(Place(4, 1))
-        told = self.act(copy)
-        clock.advance(0.9)
-        copy.check()
-        assert not told.done()
-        clock.advance(0.2)
-        copy.check()
-        assert told.done()
-        clock.advance(2.0)
-        copy.check()
-        assert copy.is_behind
-
-    def test_nobody_acts_at_a_standby(self, copy: OtherCopy) -> None:
-        with pytest.raises(StoreError, match="this is the standby"):
-            self.act(copy, "this is the standby").result(0.0)
-
-    def test_units_may_forget_only_what_both_have(self, copy: OtherCopy) -> None:
-        copy.report_comes()  # of what stands up to 5
-        copy.note(Place(5, 1))
-        assert not copy.has_report_before()
-        self.place = Place(6, 1)
-        copy.report_comes()
-        assert copy.has_report_before()
-        self.place = Place(7, 1)
-        copy.report_comes()
-        assert not copy.has_report_before()
-        copy.note(Place(6, 1))
-        assert copy.has_report_before()

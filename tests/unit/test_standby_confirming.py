@@ -1,0 +1,79 @@
+"""What operators do at a leader is confirmed once the standby has it."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+import pytest
+
+from base_station.live.sinks import ActionDone
+from base_station.standby.confirming import LeadersGate, OtherCopy
+from base_station.standby.places import Place
+from shared.clock import ManualClock
+from shared.errors import StoreError
+from shared.messages.station import Action, CloseIncident
+
+
+class Drive:
+    """An ``OperatorGate`` that does everything at once."""
+
+    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+        done: Future[ActionDone] = Future()
+        done.set_result(ActionDone("x", 1, None))
+        return done
+
+
+class TestConfirming:
+    @pytest.fixture
+    def clock(self) -> ManualClock:
+        return ManualClock()
+
+    @pytest.fixture
+    def copy(self, clock: ManualClock) -> OtherCopy:
+        self.place = Place(5, 1)
+        return OtherCopy(clock, lambda: self.place, confirm_s=1.0)
+
+    def act(self, copy: OtherCopy, refusal: str | None = None) -> Future[ActionDone]:
+        return LeadersGate(Drive(), copy, lambda: refusal).submit("ada", CloseIncident("i"))
+
+    def test_without_a_standby_an_action_is_confirmed_at_once(self, copy: OtherCopy) -> None:
+        assert self.act(copy).done()
+
+    def test_an_action_waits_until_the_standby_has_it(self, copy: OtherCopy) -> None:
+        copy.note(Place(4, 1))
+        told = self.act(copy)
+        assert not told.done()
+        copy.note(Place(5, 1))
+        assert told.done()
+
+    def test_it_does_not_wait_for_long_and_that_is_said(
+        self, copy: OtherCopy, clock: ManualClock
+    ) -> None:
+        copy.note(Place(4, 1))
+        told = self.act(copy)
+        clock.advance(0.9)
+        copy.check()
+        assert not told.done()
+        clock.advance(0.2)
+        copy.check()
+        assert told.done()
+        clock.advance(2.0)
+        copy.check()
+        assert copy.is_behind
+
+    def test_nobody_acts_at_a_standby(self, copy: OtherCopy) -> None:
+        with pytest.raises(StoreError, match="this is the standby"):
+            self.act(copy, "this is the standby").result(0.0)
+
+    def test_units_may_forget_only_what_both_have(self, copy: OtherCopy) -> None:
+        copy.report_comes()  # of what stands up to 5
+        copy.note(Place(5, 1))
+        assert not copy.has_report_before()
+        self.place = Place(6, 1)
+        copy.report_comes()
+        assert copy.has_report_before()
+        self.place = Place(7, 1)
+        copy.report_comes()
+        assert not copy.has_report_before()
+        copy.note(Place(6, 1))
+        assert copy.has_report_before()

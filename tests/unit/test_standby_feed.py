@@ -1,0 +1,47 @@
+"""What a station's drive takes, before it leads and after."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.feed import LiveFeed, SteadyClock
+from base_station.standby.standby_feed import StandbyFeed
+from shared.channels import EVENT, POSITION, TICK, backfilled_key
+from shared.clock import ManualClock
+from shared.messages import STATION_ID
+
+TICKED = TICK.key(STATION_ID)
+EVENTS = [(1000, TICKED, b"event 0"), (1001, TICKED, b"event 1")]
+
+
+@pytest.fixture
+def feed(clock: ManualClock) -> StandbyFeed:
+    return StandbyFeed(LiveFeed(SteadyClock(clock)), clock)
+
+
+def test_the_other_log_comes_first_then_what_was_heard_then_the_bus(feed: StandbyFeed) -> None:
+    feed.offer(EVENT.key("u"), b"heard")
+    feed.deliver(EVENTS)
+    feed.lead()
+    assert list(feed.take(1.0)) == EVENTS
+    follows = [feed.follows]
+    assert [r[1:] for r in feed.take(1.0)] == [(backfilled_key("u", EVENT.suffix), b"heard")]
+    follows.append(feed.follows)
+    assert follows == [True, False]
+    feed.offer(POSITION.key("u"), b"live")
+    assert [r[1:] for r in feed.take(1.0)] == [(POSITION.key("u"), b"live")]
+
+
+def test_only_the_last_of_the_bus_is_kept(feed: StandbyFeed, clock: ManualClock) -> None:
+    feed.offer(EVENT.key("u"), b"long ago")
+    clock.advance(31.0)
+    feed.offer(EVENT.key("u"), b"just now")
+    feed.lead()
+    assert [payload for _, _, payload in feed.take(1.0)] == [b"just now"]
+
+
+def test_nobody_but_units_is_kept(feed: StandbyFeed) -> None:
+    feed.offer(TICKED, b"forged")
+    feed.offer("muster/v1/u/command/send", b"the other station said it")
+    feed.lead()
+    assert list(feed.take(0.0)) == []
