@@ -14,7 +14,7 @@ from shared.clock import NS_PER_S
 _JUMP_NS = NS_PER_S  # more than this ahead of now is another clock
 _BACK_NS = NS_PER_S // 10  # less is a message that was overtaken
 _WINDOW_NS = 10 * NS_PER_S
-_SLEW = 0.002  # of elapsed time: far less than scale errors, far more than a crystal is off
+_SLEW = 0.001  # of elapsed time: far less than scale errors, far more than a crystal is off
 
 
 class DeviceClock:

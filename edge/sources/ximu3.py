@@ -123,8 +123,7 @@ class Ximu3Source:
                 return
             arrival_ns = self._clock.monotonic_ns()
             before = self.taken
-            for frame in frames.push(said or b""):
-                self._take_frame(frame, arrival_ns)
+            self._take_all(self._messages(frames.push(said or b"")), arrival_ns)
             if self.taken > before:
                 last_ns = arrival_ns
                 self._say_back()
@@ -136,14 +135,26 @@ class Ximu3Source:
             if len(self._rows) and (said is None or self._rows.span_ns >= _BATCH_NS):
                 yield self._rows.cut()
 
-    def _take_frame(self, frame: bytes, arrival_ns: int) -> None:
-        try:
-            message = message_of(frame)
-        except WireError as error:
-            self._watch.note_garbled(frame, error)
-            return
-        self._watch.note(message)
-        self._take(message, arrival_ns)
+    def _messages(self, frames: list[bytes]) -> list[Message]:
+        messages = []
+        for frame in frames:
+            try:
+                message = message_of(frame)
+            except WireError as error:
+                self._watch.note_garbled(frame, error)
+                continue
+            self._watch.note(message)
+            messages.append(message)
+        return messages
+
+    def _take_all(self, messages: list[Message], arrival_ns: int) -> None:
+        """Of messages that came at once the newest says how late they are: others had to wait."""
+        newest_us = max((one.t_us for one in messages if isinstance(one, Inertial)), default=0)
+        for message in messages:
+            waited_ns = 0
+            if isinstance(message, Inertial):
+                waited_ns = 1000 * (newest_us - message.t_us)
+            self._take(message, arrival_ns - (waited_ns if waited_ns < NS_PER_S else 0))
 
     def _take(self, message: Message, arrival_ns: int) -> None:
         match message:

@@ -1,0 +1,63 @@
+"""A recorded walk as an x-IMU3 would have said it is tracked to the path of the recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch
+from edge.sources.recording import RecordingSource
+from edge.sources.ximu3 import Ximu3Source
+from edge.sources.ximu3_place import Place
+from edge.track_command import run_tracker
+from shared.clock import ManualClock
+from tests.ximu3_device import played
+
+CHUNK = 16  # messages that come at once
+
+
+class PlayedLine:
+    """What was recorded comes as time goes by; at its end the source is closed."""
+
+    def __init__(self, imu: ImuBatch, binary: bool) -> None:
+        self.clock = ManualClock()
+        self.clock.advance(1000.0)
+        self.source = Ximu3Source("/dev/played", self.clock)
+        said = list(played(imu, binary))
+        self._chunks = [said[k : k + CHUNK] for k in range(0, len(said), CHUNK)]
+        self._now_s = 0.0
+
+    def read(self) -> bytes | None:
+        if not self._chunks:
+            self.source.close()
+            return None
+        chunk = self._chunks.pop(0)
+        due_s = chunk[-1][0]
+        self.clock.advance(max(0.0, due_s - self._now_s))
+        self._now_s = max(self._now_s, due_s)
+        return b"".join(message for _, message in chunk)
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_the_path_is_that_of_the_recording(
+    binary: bool, walks: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = RecordingSource(walks / "xio" / "short_walk")
+    line = PlayedLine(recording.imu, binary)
+    monkeypatch.setattr(Place, "open", lambda _: line)
+    live = run_tracker(line.source, "eskf", quiet=True)
+    meant = run_tracker(recording, "eskf", quiet=True)
+    distinct = len(np.unique(recording.imu.t_ns))
+    assert line.source.taken == distinct
+    assert line.source.repeated == len(recording.imu) - distinct
+    assert (line.source.garbled, line.source.take_faults()) == (0, ())
+    assert live.steps[-1] == meant.steps[-1]
+    since_s, meant_s = ((t - t[0]) * 1e-9 for t in (live.t_ns, meant.t_ns))
+    for axis in range(3):
+        there_m = np.interp(meant_s, since_s, live.position_n_m[:, axis])
+        assert np.abs(there_m - meant.position_n_m[:, axis]).max() < 0.05
