@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import assert_never
 
-import msgspec
-
 from base_station import accountability
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
 from base_station.assessment.trust import note_trust
+from base_station.checkpoint import Checkpoint
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import (
@@ -65,15 +64,6 @@ MOST_STRANGERS = 200  # units that nobody registered: more are counted only
 _COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
 
 
-class Checkpoint(msgspec.Struct, frozen=True):
-    """Everything the pipeline remembers."""
-
-    state: StationState
-    fuser: str
-    fusers: dict[str, bytes]
-    pinned: dict[str, bytes]
-
-
 class StationPipeline:
     """``step`` it with events in the order of the log."""
 
@@ -99,14 +89,8 @@ class StationPipeline:
 
     def checkpoint(self) -> bytes:
         """To start again from here; ``read_checkpoint`` reads it."""
-        return msgspec.msgpack.encode(
-            Checkpoint(
-                self.state,
-                self._fuser_kind.name,
-                self._positioning.save(),
-                self._positioning.save_pinned(),
-            )
-        )
+        saved, pinned = self._positioning.save(), self._positioning.save_pinned()
+        return Checkpoint(self.state, self._fuser_kind.name, saved, pinned).to_bytes()
 
     def step(self, event: StationEvent) -> list[Output]:
         """What follows from one event.  Never raises for what a sender or a person may do."""
@@ -291,14 +275,6 @@ class StationPipeline:
         state = self.state
         state.seq += 1
         return Header(STATION_ID, state.boot_id, state.seq, state.t_ns, t_utc_ns=state.t_ns)
-
-
-def read_checkpoint(saved: bytes) -> Checkpoint | None:
-    """None where another version of the program wrote it: the log has everything that matters."""
-    try:
-        return msgspec.msgpack.decode(saved, type=Checkpoint)
-    except (msgspec.MsgspecError, UnicodeDecodeError):
-        return None
 
 
 def _news(sender: Sender, event: Received, channel: Channel, t_ns: int) -> News:

@@ -8,6 +8,7 @@ from typing import Self
 
 from base_station.alarms import ALARMS
 from base_station.api.wire import Delta, Snapshot
+from base_station.checkpoint import Checkpoint
 from base_station.commands.downlink import Downlink
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed, SteadyClock
@@ -17,7 +18,7 @@ from base_station.live.sinks import ActionDone, Projection
 from base_station.live.surroundings import Surroundings
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
-from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
 from base_station.views import StationFacts
 from shared.bus_memory import MemoryRouter

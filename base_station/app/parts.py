@@ -8,6 +8,7 @@ from pathlib import Path
 from base_station.alarms import ALARMS
 from base_station.api.hub import Hub
 from base_station.api.replays import StartReplay
+from base_station.checkpoint import Checkpoint
 from base_station.db.accounts import Accounts
 from base_station.db.models import Incident
 from base_station.db.projecting import project_into
@@ -21,7 +22,7 @@ from base_station.live.sinks import Projection
 from base_station.past.playback import Archive
 from base_station.past.rebuild import project_log
 from base_station.past.replay import ReplaySession, Window
-from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.pipeline import StationPipeline
 from base_station.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
 from shared.mcap_log import SegmentReader, segment_paths

@@ -16,7 +16,7 @@ import zstandard
 
 import base_station
 import shared
-from base_station.pipeline import Checkpoint, read_checkpoint
+from base_station.checkpoint import Checkpoint, read_checkpoint
 from shared.clock import NS_PER_S
 
 SUFFIX = ".checkpoint"

@@ -11,9 +11,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from base_station.checkpoint import Checkpoint
 from base_station.events import Output, Received, StationEvent, event_of
 from base_station.past.checkpoints import Checkpoints
-from base_station.pipeline import Checkpoint, StationPipeline
+from base_station.pipeline import StationPipeline
 from shared.channels import ALARM, FUSED
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from base_station.alarms import ALARMS
+from base_station.checkpoint import read_checkpoint
 from base_station.fusion import FUSERS
 from base_station.past.playback import Playback, compare, is_decision
-from base_station.pipeline import StationPipeline, read_checkpoint
+from base_station.pipeline import StationPipeline
 from shared.channels import OPERATOR, Qos, channel_of
 from shared.codec import decode, encode
 from shared.messages import (

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from base_station.pipeline import read_checkpoint
+from base_station.checkpoint import read_checkpoint
 from shared.messages import (
     AlarmChange,
     AlarmState,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
 from base_station.past.playback import compare
-from base_station.pipeline import read_checkpoint
 from shared.channels import channel_of
 from shared.codec import encode
 from shared.messages import STATION_ID, FusedPosition

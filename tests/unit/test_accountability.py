@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
 from base_station.live_state import Duty, UnitState
-from base_station.pipeline import read_checkpoint
 from shared.clock import NS_PER_S
 from shared.messages import AlarmChange, AlarmState, CommandKind, CommandState, EventKind
 from shared.messages.station import (

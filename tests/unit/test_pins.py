@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from base_station.checkpoint import read_checkpoint
 from base_station.events import PinsTouched, Refused, TrailFilled
-from base_station.pipeline import read_checkpoint
 from shared.messages.pins import (
     RemovePin,
     SetMeeting,

@@ -6,10 +6,11 @@ import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
+from base_station.checkpoint import read_checkpoint
 from base_station.events import TrailFilled, event_of
 from base_station.fusion import FUSERS
 from base_station.live.projector import Projector
-from base_station.pipeline import StationPipeline, read_checkpoint
+from base_station.pipeline import StationPipeline
 from shared.channels import NO_TRACKER, POSITION, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
