@@ -109,6 +109,13 @@ class Ximu3Source:
             if len(self._rows):
                 yield self._rows.cut()
             self._closed.wait(_AGAIN_S)
+        logger.info(
+            "%s: %d samples; %d messages could not be read or placed, %d came twice",
+            self._place,
+            self.taken,
+            self.garbled,
+            self.repeated,
+        )
 
     def _listened(self, line: Line) -> Iterator[SensorBatch]:
         """From a line that has just been opened, until it is of no use any more."""
