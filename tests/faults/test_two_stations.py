@@ -26,6 +26,13 @@ def closing() -> Iterator[ExitStack]:
         yield closing
 
 
+def two_stations(folder: Path, places: tuple[Place, Place], closing: ExitStack) -> TwoStations:
+    """They are ended with ``closing``, and what they said is shown with a test that fails."""
+    two = TwoStations(folder, places, closing)
+    closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
+    return two
+
+
 def texts(station: Station) -> list[str]:
     return [command["text"] for command in station.get("/commands")]
 
@@ -55,7 +62,7 @@ def end_and_compare(two: TwoStations, ends_first: Station) -> None:
 def test_the_other_station_takes_over_and_the_first_comes_back(
     tmp_path: Path, closing: ExitStack
 ) -> None:
-    two = TwoStations(tmp_path, (Place(), Place()), closing)
+    two = two_stations(tmp_path, (Place(), Place()), closing)
     two.start()
     two.start_unit("anna", two.first)
     two.start_unit("bert", two.second)
@@ -82,8 +89,8 @@ def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TwoStation
             link = LossyLink(5, closing)
         except BusError as error:
             pytest.skip(str(error))
-        places = [Place(one.address, one) for one in (link.station, link.units)]
-        two = TwoStations(tmp_path_factory.mktemp("two"), places, closing)
+        first, second = (Place(one.address, one) for one in (link.station, link.units))
+        two = two_stations(tmp_path_factory.mktemp("two"), (first, second), closing)
         two.start()
         two.start_unit("anna", two.first)
         two.wait_heard(two.first)
