@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 from threading import Event, Thread
 
@@ -81,24 +81,30 @@ LIVE_SAMPLES = 360  # less than a second of them, which come at once
 def source(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Source]:
     if request.param in DEVICES:
         with closing(DEVICES[request.param](at_rest(LIVE_SAMPLES))) as device:
-            yield _listening(f"ximu3:{device.source}?field=50")
-        return
-    source = open_source(EXAMPLES[request.param](tmp_path))
-    if isinstance(source, BusSource):
-        _say_everything(source)
-    yield source
+            with _listening(f"ximu3:{device.source}?field=50") as source:
+                yield source
+    else:
+        source = open_source(EXAMPLES[request.param](tmp_path))
+        if isinstance(source, BusSource):
+            _say_everything(source)
+        yield source
 
 
-def _listening(text: str) -> Source:
+@contextmanager
+def _listening(text: str) -> Iterator[Source]:
     source = open_source(text)
     assert isinstance(source, Ximu3Source)
+    is_tested = Event()
 
     def end() -> None:
-        until(lambda: source.taken == LIVE_SAMPLES, "everything is taken")
+        until(lambda: source.taken == LIVE_SAMPLES or is_tested.is_set(), "everything is taken")
         source.close()
 
-    Thread(target=end, daemon=True).start()
-    return source
+    ending = Thread(target=end, daemon=True)
+    ending.start()
+    yield source
+    is_tested.set()
+    ending.join()
 
 
 def _say_everything(source: BusSource) -> None:
