@@ -80,9 +80,11 @@ LIVE_SAMPLES = 360  # less than a second of them, which come at once
 @pytest.fixture(params=[*EXAMPLES, *DEVICES])
 def source(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Source]:
     if request.param in DEVICES:
-        with closing(DEVICES[request.param](at_rest(LIVE_SAMPLES))) as device:
-            with _listening(f"ximu3:{device.source}?field=50") as source:
-                yield source
+        with (
+            closing(DEVICES[request.param](at_rest(LIVE_SAMPLES))) as device,
+            _listening(f"ximu3:{device.source}?field=50") as source,
+        ):
+            yield source
     else:
         source = open_source(EXAMPLES[request.param](tmp_path))
         if isinstance(source, BusSource):
