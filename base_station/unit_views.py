@@ -21,11 +21,10 @@ from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
 from base_station.site.plan import Ring
 from base_station.site.roaming import RADII_95, roamed_m
 from base_station.trail import TrailStep
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Activity, FusedPosition, Heartbeat, Status
 from shared.quality import Quality
 
-NS_PER_MS = 1_000_000
 _ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by number
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 _GREEN = TrustView("green", "")

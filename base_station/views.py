@@ -23,7 +23,8 @@ from base_station.commands.state import Delivery, SentCommand
 from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
 from base_station.pins.pin import WAITING, Pin
-from base_station.unit_views import NS_PER_MS, ms_of, trail_view, unit_views
+from base_station.unit_views import ms_of, trail_view, unit_views
+from shared.clock import NS_PER_MS
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 

@@ -11,8 +11,8 @@ from fastapi import Path, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from base_station.db.records import FOREVER_NS, Window
+from shared.clock import NS_PER_MS
 
-NS_PER_MS = 1_000_000
 MOST_BYTES = 65_536  # of a form
 MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
 LAST_MS = FOREVER_NS // NS_PER_MS

@@ -15,9 +15,7 @@ import msgspec
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from shared.clock import NS_PER_S
-
-_NS_PER_MS = 1_000_000
+from shared.clock import NS_PER_MS, NS_PER_S
 
 
 class _PositionSeen(msgspec.Struct):
@@ -146,10 +144,10 @@ def latencies_ms(
     for unit_id, times_ns in sent_ns.items():
         first_seen: dict[int, int] = {}
         for t_ms, seen_ns in shown.get(unit_id, {}).items():
-            nearest_ns = _nearest(times_ns, t_ms * _NS_PER_MS)
+            nearest_ns = _nearest(times_ns, t_ms * NS_PER_MS)
             if nearest_ns is not None and seen_ns >= nearest_ns:
                 first_seen[nearest_ns] = min(seen_ns, first_seen.get(nearest_ns, seen_ns))
-        latencies += [(seen_ns - t_ns) / _NS_PER_MS for t_ns, seen_ns in first_seen.items()]
+        latencies += [(seen_ns - t_ns) / NS_PER_MS for t_ns, seen_ns in first_seen.items()]
     return latencies
 
 

@@ -30,11 +30,10 @@ from base_station.db import models
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.live.sinks import ActionDone, LiveSink
-from shared.clock import NS_PER_S, Clock
+from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import StoreError
 from shared.messages.station import Action
 
-_NS_PER_MS = 1_000_000
 _RECENT_NS = 3600 * NS_PER_S  # of trails, and of alarms where no incident is open
 _TRAIL_EVERY_S = 5
 _RADIUS_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's standard deviation
@@ -87,7 +86,7 @@ class LastKnown:
         stored = self._stored = self._stored or self._read()
         return msgspec.structs.replace(
             stored,
-            now_ms=self._clock.utc_ns() // _NS_PER_MS,
+            now_ms=self._clock.utc_ns() // NS_PER_MS,
             health=msgspec.structs.replace(stored.health, reading=self._share),
         )
 
@@ -109,7 +108,7 @@ class LastKnown:
         plan, anchor = self._records.plan(), self._records.anchor()
         return Snapshot(
             seq=0,
-            now_ms=now_ns // _NS_PER_MS,
+            now_ms=now_ns // NS_PER_MS,
             incident=None if incident is None else _incident(incident),
             units=tuple(
                 self._unit(unit, worn, trails.get(unit.unit_id, []), open_alarms)
@@ -165,7 +164,7 @@ def _position(sample: TrackSample) -> PositionView:
     """The larger error on both axes: the tables have no more of the region."""
     radius_m = _RADIUS_95 * max(sample.std_north_m, sample.std_east_m)
     return PositionView(
-        t_ms=sample.t_ns // _NS_PER_MS,
+        t_ms=sample.t_ns // NS_PER_MS,
         north_m=sample.north_m,
         east_m=sample.east_m,
         down_m=sample.down_m,
@@ -187,12 +186,12 @@ def _position(sample: TrackSample) -> PositionView:
 
 
 def _point(sample: TrackSample) -> TrailPoint:
-    return TrailPoint(sample.t_ns // _NS_PER_MS, sample.north_m, sample.east_m, sample.floor)
+    return TrailPoint(sample.t_ns // NS_PER_MS, sample.north_m, sample.east_m, sample.floor)
 
 
 def _incident(incident: models.Incident) -> IncidentView:
     """Nobody's check-in counts down while nothing is live."""
-    opened_ms = incident.opened_ns // _NS_PER_MS
+    opened_ms = incident.opened_ns // NS_PER_MS
     return IncidentView(incident.incident_id, incident.name, opened_ms, None, 0.0, 0.0, 0.0)
 
 
@@ -210,10 +209,10 @@ def _alarm(alarm: models.Alarm) -> AlarmView:
         level=alarm.level,
         text=alarm.text,
         by=alarm.by,
-        raised_ms=alarm.raised_ns // _NS_PER_MS,
-        changed_ms=alarm.changed_ns // _NS_PER_MS,
+        raised_ms=alarm.raised_ns // NS_PER_MS,
+        changed_ms=alarm.changed_ns // NS_PER_MS,
     )
 
 
 def _ms(t_ns: int | None) -> int | None:
-    return None if t_ns is None else t_ns // _NS_PER_MS
+    return None if t_ns is None else t_ns // NS_PER_MS

@@ -10,7 +10,7 @@ from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
 from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
 from base_station.live.sinks import LiveSink, PhotoUrls
 from base_station.pipeline import StationPipeline
-from base_station.unit_views import NS_PER_MS, trail_view, unit_views
+from base_station.unit_views import trail_view, unit_views
 from base_station.views import (
     StationFacts,
     alarm_view,
@@ -20,6 +20,7 @@ from base_station.views import (
     pin_views,
     snapshot,
 )
+from shared.clock import NS_PER_MS
 from shared.messages import AlarmChange, FusedPosition
 
 

@@ -24,7 +24,7 @@ from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback
 from base_station.pins.pinning import evidence_of_all, floors_along, ties_of
 from base_station.site.floor_grid import FloorGrid
-from shared.clock import NS_PER_S, Clock
+from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.quality import Quality
 
 _log = logging.getLogger(__name__)
@@ -129,7 +129,7 @@ class Hindsight:
         report = assess(
             incident.incident_id,
             self._smoother.name,
-            self._clock.utc_ns() // 1_000_000,
+            self._clock.utc_ns() // NS_PER_MS,
             known.state,
             known.solution.verdicts,
             live,

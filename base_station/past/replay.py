@@ -12,8 +12,7 @@ from base_station.api.wire import ReplayView, Snapshot
 from base_station.live.picture import Picture
 from base_station.live.sinks import LiveSink, PhotoUrls
 from base_station.past.playback import Archive, Playback
-from base_station.unit_views import NS_PER_MS
-from shared.clock import NS_PER_S, Clock
+from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import UserError
 
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes

@@ -7,9 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel
 
-from base_station.api.forms import LAST_MS, NS_PER_MS, UntilMs, to_ms
+from base_station.api.forms import LAST_MS, UntilMs, to_ms
 from base_station.api.security import Administrator
 from base_station.api.services import Station
+from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["audit"])
 

@@ -10,11 +10,12 @@ import msgspec
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.forms import LAST_MS, NS_PER_MS, Form, Id, Metres, Note, UnitIdText, Word
+from base_station.api.forms import LAST_MS, Form, Id, Metres, Note, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import BeaconView, PinView
+from shared.clock import NS_PER_MS
 from shared.messages.pins import (
     PlaceBeacon,
     RemoveBeacon,

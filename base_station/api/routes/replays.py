@@ -8,12 +8,13 @@ from typing import Annotated
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 
-from base_station.api.forms import LAST_MS, NS_PER_MS, Form, Id, PersonIdText
+from base_station.api.forms import LAST_MS, Form, Id, PersonIdText
 from base_station.api.problems import Problem
 from base_station.api.replays import OpenReplay
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
+from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["replays"])
 

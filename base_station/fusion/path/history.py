@@ -30,7 +30,7 @@ from base_station.fusion.path.points import (
 )
 from base_station.fusion.path.straight import Straight
 from base_station.fusion.port import Estimate, PlaceFix, Start
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_MS, NS_PER_S
 from shared.geo import rotate
 from shared.messages import Position
 from shared.quality import Quality
@@ -104,7 +104,7 @@ class PathHistory(msgspec.Struct):
         if not flags & (BREAK | RESTART):
             stepped_m = abs(tip.north_m - before_north_m) + abs(tip.east_m - before_east_m)
             if stepped_m > MOVING_M:
-                tip.moving_ms += (tip.t_ns - before_ns) // 1_000_000
+                tip.moving_ms += (tip.t_ns - before_ns) // NS_PER_MS
 
     def fill(self, position: Position, t_ns: int) -> None:
         """A position that came late, where none near it is known."""
