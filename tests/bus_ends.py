@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Protocol
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.bus_zenoh import StationEndpoint, UnitEndpoint, ZenohBus

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position

@@ -6,7 +6,7 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus

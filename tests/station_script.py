@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from base_station.alarms import ALARMS
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.events import Output, Received, event_of
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline

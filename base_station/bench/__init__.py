@@ -1,1 +1,1 @@
-"""``muster bench bus`` and ``muster bench fusion``: this station measured on this machine."""
+"""``muster bench ...``: this station measured on this machine; a file or folder a command."""

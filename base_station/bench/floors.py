@@ -20,11 +20,11 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from base_station.alarms import ALARMS
-from base_station.bench.incident_bound import ENGINE_STD_M
-from base_station.bench.incident_run import Person, draw_incident
-from base_station.bench.incident_scores import FloorScores
-from base_station.bench.incident_sensors import mono_ns, position_of
-from base_station.bench.said import position
+from base_station.bench.incident.bound import ENGINE_STD_M
+from base_station.bench.incident.run import Person, draw_incident
+from base_station.bench.incident.scores import FloorScores
+from base_station.bench.incident.sensors import mono_ns, position_of
+from base_station.bench.rig.said import position
 from base_station.events import Received
 from base_station.fusion import FUSERS
 from base_station.fusion.port import PlaceFix

@@ -15,10 +15,10 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station.bench.compressed import compressed_station
-from base_station.bench.console import Console
-from base_station.bench.station import free_port, station_process
-from base_station.bench.units import unit_names
+from base_station.bench.rig.compressed import compressed_station
+from base_station.bench.rig.console import Console
+from base_station.bench.rig.station import free_port, station_process
+from base_station.bench.rig.units import unit_names
 from base_station.data_folder import DataFolder
 from base_station.drive import CHECKPOINT_NS
 from shared.bench_figures import FiguresFile, write_figures

@@ -1,186 +1,142 @@
-"""A real station as a process of its own, on free ports and a folder of its own."""
+"""``muster bench station``: messages a second that one core takes through a station, and whether
+its memory stays as it is.
+"""
 
 from __future__ import annotations
 
-import secrets
-import signal
-import socket
-import sqlite3
-import subprocess
-import sys
 import time
-from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import closing, contextmanager
-from functools import cached_property
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from tempfile import TemporaryDirectory
+from typing import Annotated
 
+import numpy as np
 import psutil
 import typer
+from rich.console import Console as Terminal
+from rich.progress import Progress
+from rich.table import Table
 
-from base_station.bench.console import Api
-from base_station.data_folder import DataFolder
-from base_station.pki.folder import PkiFolder
-from shared.bus_zenoh import UnitEndpoint
-from shared.channels import parse_key
-from shared.clock import NS_PER_S
-from shared.codec import decode
-from shared.errors import StoreError, WireError
-from shared.mcap_log import read_log
-from shared.messages import STATION_ID, FusedPosition
-from shared.tls import TlsIdentity
+from base_station import collector
+from base_station.bench.rig.compressed import CompressedStation, compressed_station
+from base_station.bench.rig.units import unit_names
+from shared.bench_figures import FiguresFile, write_figures
 
-_SAID = "station.err"
-_START_TIMEOUT_S = 60.0
-_STOP_TIMEOUT_S = 30.0
+_TO_REACH_HZ = 20_000.0  # messages a second and core
+_FLAT_MB_PER_MINUTE = 0.5
+_WARM_S = 5.0
 
 
-PlainTcp = Annotated[bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")]
+@dataclass(frozen=True, slots=True)
+class ThroughputReport:
+    units: int
+    rate_hz: float  # of each unit
+    consoles: int
+    minutes: float  # of the station's time
+    messages: int
+    cpu_us: dict[str, float]  # by part, a message
+    per_core_hz: float
+    times_real: float  # how much faster than time goes by, on this machine now
+    memory_mb: tuple[float, ...]  # once a minute of the station's time, the first at the start
+    memory_slope_mb_per_minute: float  # over the last third: by then trails are full
+    console_messages: int
 
 
-class Recorded(NamedTuple):
-    """What the log and the database hold after the run."""
-
-    from_units: int  # messages, each counted once
-    repeated: int
-    damage: int
-    track_points_due: int  # of the log's fused positions, one a second and unit
-    track_points: int  # in the database
-
-
-class StationProcess:
-    def __init__(self, data: Path, process: subprocess.Popen[str], patience_s: float) -> None:
-        self._data = DataFolder(data)
-        self._process = process
-        self._usage = psutil.Process(process.pid)
-        self._cpu_s = 0.0
-        self._since = 0.0
-        self._url = _ready_url(process, data / _SAID, patience_s)
-
-    @cached_property
-    def api(self) -> Api:
-        return Api(self._url, *_first_login(self._data.first_login))
-
-    def begin_measuring(self) -> None:
-        self._cpu_s, self._since = self.cpu_s(), time.perf_counter()
-
-    def cpu_share(self) -> float:
-        """Of one core, since ``begin_measuring``, children included."""
-        return (self.cpu_s() - self._cpu_s) / (time.perf_counter() - self._since)
-
-    def memory_mb(self) -> float:
-        processes = (self._usage, *self._usage.children(recursive=True))
-        return sum(float(process.memory_info().rss) for process in processes) / 1e6
-
-    @property
-    def pid(self) -> int:
-        return self._process.pid
-
-    def stop(self) -> int:
-        """In order; its exit code."""
-        self._process.send_signal(signal.SIGINT)
-        return self._process.wait(_STOP_TIMEOUT_S)
-
-    @property
-    def log(self) -> Path:
-        return self._data.log
-
-    def recorded(self) -> Recorded:
-        """Read after ``stop``."""
-        messages: Counter[tuple[str, int, int]] = Counter()
-        seconds: set[tuple[str, int]] = set()
-        damage: list[str] = []
-        for _, key, payload in read_log(self._data.log, on_damage=damage.append):
-            try:
-                unit_id, channel = parse_key(key)
-                message = decode(channel, payload)
-            except WireError as error:
-                damage.append(str(error))
-                continue
-            if isinstance(message, FusedPosition):
-                seconds.add((message.unit_id, message.t_meas_ns // NS_PER_S))
-            elif unit_id != STATION_ID:
-                messages[unit_id, message.header.boot_id, message.header.seq] += 1
-        with closing(sqlite3.connect(self._data.database)) as database:
-            [(points,)] = database.execute("SELECT count(*) FROM tracks").fetchall()
-        repeated = sum(messages.values()) - len(messages)
-        return Recorded(len(messages), repeated, len(damage), len(seconds), int(points))
-
-    def cpu_s(self) -> float:
-        """Spent since it began, children included."""
-        processes = (self._usage, *self._usage.children(recursive=True))
-        return sum(sum(process.cpu_times()[:2]) for process in processes)
-
-
-class Membership:
-    """Where the station's bus is and with what each unit gets in: its certificate, or nothing."""
-
-    def __init__(self, data: Path, unit_ids: Sequence[str], *, plain: bool) -> None:
-        self.address = f"{'tcp' if plain else 'tls'}/127.0.0.1:{free_port()}"
-        self._identities: dict[str, TlsIdentity] = {}
-        if not plain:
-            authority = PkiFolder(data)
-            authority.create("bench", hosts=[], connect=[self.address])
-            self._identities = {one: authority.enroll(one).identity for one in unit_ids}
-
-    def endpoint_of(self, unit_id: str) -> UnitEndpoint:
-        return UnitEndpoint((self.address,), self._identities.get(unit_id))
-
-
-@contextmanager
-def station_process(
-    data: Path,
-    bus_address: str,
-    inside: Sequence[str] = (),
-    patience_s: float = _START_TIMEOUT_S,
-) -> Iterator[StationProcess]:
-    """Runs ``muster base serve``; ended hard where ``stop`` was not called.
-
-    ``inside``: what to put before the command so that it runs in another network.
+def bench_station(
+    units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 500,
+    rate: Annotated[float, typer.Option(min=0.1, help="Messages a second of each wearer.")] = 7.0,
+    minutes: Annotated[float, typer.Option(min=0.05, help="Of the station's time.")] = 0.5,
+    consoles: Annotated[int, typer.Option(min=0, help="Consoles that watch.")] = 3,
+    json_file: FiguresFile = None,
+) -> None:
+    """What a message costs a station: log, pipeline, database and consoles, without the network,
+    at full speed.  With --minutes 30 it tells whether memory grows.
     """
-    command = "from base_station.cli import app; app()"
-    arguments = ["serve", "--data", str(data), "--listen", bus_address]
-    arguments += ["--http", f"127.0.0.1:{free_port()}"]
+    with Progress(transient=True) as progress:
+        report = measure(units, rate, minutes, consoles, progress)
+    Terminal().print(_table(report))
+    write_figures(json_file, report)
+
+
+def measure(
+    units: int, rate_hz: float, minutes: float, consoles: int, progress: Progress
+) -> ThroughputReport:
+    collector.relax()  # as the station does
+    task = progress.add_task(f"{units} units", total=minutes)
     with (
-        (data / _SAID).open("a") as said,
-        subprocess.Popen(
-            [*inside, sys.executable, "-c", command, *arguments],
-            stdout=subprocess.PIPE,
-            stderr=said,
-            text=True,
-        ) as process,
+        TemporaryDirectory(prefix="muster-bench-") as folder,
+        compressed_station(Path(folder), unit_names(units), rate_hz, consoles) as station,
     ):
-        try:
-            yield StationProcess(data, process, patience_s)
-        finally:
-            if process.poll() is None:
-                process.kill()
+        station.run(_WARM_S)
+        collector.settle()
+        messages, spent_s, began = station.messages, station.cpu_s(), time.perf_counter()
+        memory_mb = [_memory_mb()]
+        while (left := minutes - (len(memory_mb) - 1)) > 0.0:
+            station.run(60.0 * min(left, 1.0))
+            memory_mb.append(_memory_mb())
+            progress.advance(task, min(left, 1.0))
+        took_s, messages = time.perf_counter() - began, station.messages - messages
+        cpu_us = _cost_us(station, spent_s, messages)
+        shown = station.console_messages
+    return ThroughputReport(
+        units=units,
+        rate_hz=rate_hz,
+        consoles=consoles,
+        minutes=minutes,
+        messages=messages,
+        cpu_us=cpu_us,
+        per_core_hz=1e6 / sum(cpu_us.values()),
+        times_real=minutes * 60.0 / took_s,
+        memory_mb=tuple(memory_mb),
+        memory_slope_mb_per_minute=_slope(memory_mb),
+        console_messages=shown,
+    )
 
 
-def free_port() -> int:
-    """Below those that the system gives out, so that nobody is given it before it is used."""
-    while True:
-        port = secrets.choice(range(12_000, 32_000))
-        with socket.socket() as probe:
-            try:
-                probe.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-            return port
+def _cost_us(
+    station: CompressedStation, before_s: dict[str, float], messages: int
+) -> dict[str, float]:
+    now_s = station.cpu_s()
+    return {part: (now_s[part] - before_s.get(part, 0.0)) * 1e6 / messages for part in now_s}
 
 
-def _ready_url(process: subprocess.Popen[str], said: Path, patience_s: float) -> str:
-    assert process.stdout is not None
-    deadline = time.monotonic() + patience_s
-    for line in process.stdout:
-        if "ready http" in line:
-            return line.split("ready ", 1)[1].strip()
-        if time.monotonic() > deadline:
-            break
-    raise StoreError(f"the station to be measured did not start: {said.read_text()[-2000:]}")
+def _memory_mb() -> float:
+    return float(psutil.Process().memory_info().rss) / 1e6
 
 
-def _first_login(note: Path) -> tuple[str, str]:
-    fields = dict(line.split(": ", 1) for line in note.read_text(encoding="utf-8").splitlines())
-    return fields["username"], fields["password"]
+def _slope(memory_mb: list[float]) -> float:
+    """Of the last third, by least squares; a run of a few minutes tells nothing."""
+    late = memory_mb[2 * len(memory_mb) // 3 :]
+    if len(late) < 3:
+        return float("nan")
+    return float(np.polyfit(np.arange(len(late)), late, 1)[0])
+
+
+def _table(report: ThroughputReport) -> Table:
+    table = Table(
+        title=f"{report.units} units at {report.rate_hz:g} messages a second each, "
+        f"{report.consoles} consoles, {report.minutes:g} min",
+        caption="Time of the processor; making the messages is not counted.",
+    )
+    for title in ("", "measured", "to reach"):
+        table.add_column(title, justify="left" if title == "" else "right")
+    rows = [("messages", f"{report.messages:,}", "")]
+    rows += [(part, f"{cost_us:.1f} us a message", "") for part, cost_us in report.cpu_us.items()]
+    rows += [
+        ("a core takes", f"{report.per_core_hz:,.0f} /s", f"{_TO_REACH_HZ:,.0f} /s"),
+        ("faster than time goes by", f"{report.times_real:.1f} times", ""),
+        ("to consoles", f"{report.console_messages:,}", ""),
+        ("memory at first, most, at last", _extremes(report.memory_mb), ""),
+        (
+            "memory grows, last third",
+            f"{report.memory_slope_mb_per_minute:.2f} MB/min",
+            f"{_FLAT_MB_PER_MINUTE:.2f} MB/min",
+        ),
+    ]
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def _extremes(memory_mb: tuple[float, ...]) -> str:
+    return f"{memory_mb[0]:.0f}, {max(memory_mb):.0f}, {memory_mb[-1]:.0f} MB"

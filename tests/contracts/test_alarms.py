@@ -9,7 +9,7 @@ import pytest
 
 from base_station.alarms import ALARMS
 from base_station.alarms.port import AlarmRule, Clear, Finding
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, UnitState
 from shared.channels import NO_TRACKER

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.bench.fusion_walks import Receiver, Walk
+from base_station.bench.fusion.walks import Receiver, Walk
 from base_station.fusion import FUSERS
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start

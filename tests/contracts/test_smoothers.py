@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.bench.fusion_walks import RATE_HZ, Receiver, Walk
+from base_station.bench.fusion.walks import RATE_HZ, Receiver, Walk
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS

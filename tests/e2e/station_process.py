@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from tests.station_command import Command
 
 

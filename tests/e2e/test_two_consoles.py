@@ -7,8 +7,8 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
-from base_station.bench.one_of_two import Place, Station
-from base_station.bench.two_stations import TwoStations
+from base_station.bench.standby.one_of_two import Place, Station
+from base_station.bench.standby.two_stations import TwoStations
 
 PATIENCE_MS = 60_000
 COPIED_MS = 3_000  # by then the other station knows the ticket

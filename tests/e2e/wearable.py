@@ -7,7 +7,7 @@ import threading
 from queue import SimpleQueue
 from typing import Self
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from edge.commands import CommandDesk
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, channel_of

@@ -7,8 +7,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from base_station.bench.lossy_link import LossyLink
-from base_station.bench.site import Site, site
+from base_station.bench.faults.site import Site, site
+from base_station.bench.rig.lossy_link import LossyLink
 from shared.errors import BusError
 from tests.recorded_unit import RecordedUnit
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.bench.faults import suffer
-from base_station.bench.site import MessageId, Site
-from base_station.bench.troubles import FAULTS, BadLink
+from base_station.bench.faults.command import suffer
+from base_station.bench.faults.site import MessageId, Site
+from base_station.bench.faults.troubles import FAULTS, BadLink
 
 PATIENCE_S = 90.0
 # The others are for `muster bench faults`.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log

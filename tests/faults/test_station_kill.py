@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from threading import Event, Thread
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from shared.channels import TEMPERATURE
 from shared.clock import NS_PER_S
 from shared.codec import decode

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.bench.faults import suffer
-from base_station.bench.site import Site
-from base_station.bench.troubles import FAULTS, BadLink, Clone, Fault
+from base_station.bench.faults.command import suffer
+from base_station.bench.faults.site import Site
+from base_station.bench.faults.troubles import FAULTS, BadLink, Clone, Fault
 from shared.messages import AlarmState
 
 PATIENCE_S = 90.0

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.lossy_link import CLEAN, DARK, LossyLink
-from base_station.bench.one_of_two import Place, Station
-from base_station.bench.two_stations import TwoStations
-from base_station.bench.waiting import wait_until
+from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
+from base_station.bench.rig.waiting import wait_until
+from base_station.bench.standby.one_of_two import Place, Station
+from base_station.bench.standby.two_stations import TwoStations
 from shared.errors import BusError
 
 pytestmark = pytest.mark.timeout(300)

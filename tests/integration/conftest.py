@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from shared.clock import ManualClock
 from tests.station import DeskStation
 from tests.station_command import Command, Unit

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.progress import Progress
 
-from base_station.bench.bus import measure
-from base_station.bench.console import latencies_ms
+from base_station.bench.bus.command import measure
+from base_station.bench.rig.console import latencies_ms
 
 MS = 1_000_000
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from rich.progress import Progress
 
-from base_station.bench.compressed import compressed_station
-from base_station.bench.throughput import measure
-from base_station.bench.units import unit_names
+from base_station.bench.rig.compressed import compressed_station
+from base_station.bench.rig.units import unit_names
+from base_station.bench.station import measure
 from shared.channels import FUSED, POSITION, parse_key
 from shared.mcap_log import read_log
 from shared.messages import STATION_ID

@@ -9,7 +9,7 @@ from contextlib import closing
 import pytest
 import zenoh
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 from shared.errors import BusError

@@ -12,7 +12,7 @@ import pytest
 from alembic import command
 from sqlalchemy import inspect
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.db.migrate import alembic_config
 from base_station.db.models import Base, Person
 from base_station.db.projection import SqlProjection

@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from edge.warm_up import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, parse_key

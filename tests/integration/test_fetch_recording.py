@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.cli import app
 from edge.sources.black_box import BlackBoxSource
 from edge.warm_up import compile_trackers

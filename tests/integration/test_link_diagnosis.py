@@ -11,7 +11,7 @@ from threading import Thread
 
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import StationEndpoint, ZenohBus

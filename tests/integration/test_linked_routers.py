@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.router.router import Router
 from tests.waiting import until
 

@@ -239,3 +239,12 @@ def test_raw_samples_wait_for_the_description(air: Air) -> None:
     air.send(said[:2])
     air.send(end_of_run())
     assert len(air.track()) > 50
+
+
+def test_a_run_that_ended_before_it_was_described_holds_up_none_after_it(air: Air) -> None:
+    undescribed = [message for message in weak_unit() if isinstance(message, RawImu)]
+    air.send(undescribed[:60])
+    air.send(weak_unit(boot_id=8))
+    air.send(weak_unit(boot_id=9)[:40])
+    assert contents(air.track()) == contents(positions(strong_unit()))
+    assert air.listener.dropped == 60

@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.folder import PkiFolder
 from base_station.router.process import RouterProcess
 from base_station.router.router import Router, station_endpoint

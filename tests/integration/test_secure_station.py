@@ -11,7 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.folder import PkiFolder
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.folder import PkiFolder
 from edge.commands import CommandDesk
 from shared.bus_zenoh import UnitEndpoint, ZenohBus

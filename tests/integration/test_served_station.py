@@ -11,7 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder

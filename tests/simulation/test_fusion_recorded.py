@@ -1,5 +1,5 @@
 """The fuser on the tracks of recorded walks, with satellite fixes cut in: the recipe is that of
-``base_station.bench.fusion_recorded``.
+``base_station.bench.fusion.recorded``.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from base_station.bench.fusion_recorded import (
+from base_station.bench.fusion.recorded import (
     WITH_GPS,
     Tracked,
     fuse_recorded,
     print_recorded,
     turned,
 )
-from base_station.bench.fusion_walks import RATE_HZ, Receiver, Scores, Walk, run
+from base_station.bench.fusion.walks import RATE_HZ, Receiver, Scores, Walk, run
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from edge.sources.recording import RecordingSource, read_truth

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from base_station.bench.fusion_walks import Floats, Receiver, Scores, Walk
-from base_station.bench.incident_run import (
+from base_station.bench.fusion.walks import Floats, Receiver, Scores, Walk
+from base_station.bench.incident.run import (
     Known,
     Person,
     Run,
@@ -17,7 +17,7 @@ from base_station.bench.incident_run import (
     fuse,
     fuse_all,
 )
-from base_station.bench.incident_scores import CHI2_95_2DOF
+from base_station.bench.incident.scores import CHI2_95_2DOF
 from base_station.fusion import FUSERS
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Fuser, FuserKind

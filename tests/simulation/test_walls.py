@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from base_station.bench.incident_run import Floats, Person, Run, Timing, draw_incident, fuse
-from base_station.bench.incident_scores import CHI2_95_2DOF
-from base_station.bench.incident_sensors import position_of
+from base_station.bench.incident.run import Floats, Person, Run, Timing, draw_incident, fuse
+from base_station.bench.incident.scores import CHI2_95_2DOF
+from base_station.bench.incident.sensors import position_of
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind, Start
 from base_station.site.floor_grid import FloorGrid

@@ -12,7 +12,7 @@ from base_station.assessment.figures import (
     stated_figures,
 )
 from base_station.assessment.trust import conflicts_of, trust_of
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.db.records import TrackSample
 from base_station.live_state import StationState, UnitState
 from base_station.pins.pin import Pin, PinVerdict

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from base_station.bench import smoothing
-from base_station.bench.fusion import WITH_PLAN, bench_fusion
-from base_station.bench.incident_people import LASTS_S
-from base_station.bench.incident_run import Timing, draw_incident, fuse
+from base_station.bench.fusion import smoothing
+from base_station.bench.fusion.command import WITH_PLAN, bench_fusion
+from base_station.bench.incident.people import LASTS_S
+from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan

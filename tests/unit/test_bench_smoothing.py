@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from base_station.bench.fusion import WITHOUT
-from base_station.bench.incident_run import Timing, draw_incident, fuse
-from base_station.bench.smoothing import RecordingKind, SmoothingScores, tables_of
+from base_station.bench.fusion.command import WITHOUT
+from base_station.bench.fusion.smoothing import RecordingKind, SmoothingScores, tables_of
+from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.fusion.smoother import SMOOTHERS
 

@@ -9,7 +9,7 @@ import pytest
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.live.foxglove_topics import FoxgloveTopics
 from shared.clock import NS_PER_S
 from shared.geo import Anchor

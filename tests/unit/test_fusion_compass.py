@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from base_station.bench.fusion_walks import Receiver, Walk
+from base_station.bench.fusion.walks import Receiver, Walk
 from base_station.fusion import FUSERS
 from base_station.fusion.plane.compass import bearing_of, turn_by
 from base_station.fusion.port import Bearing, Fuser, Start

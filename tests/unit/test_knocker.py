@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from base_station.bench.station import free_port
+from base_station.bench.rig.station import free_port
 from edge.knocker import Knocker
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.events import PinsTouched, TrailFilled
 from base_station.past.playback import compare
 from base_station.pins.late import Late, note_late, take_due

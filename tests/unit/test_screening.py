@@ -7,7 +7,7 @@ import math
 import msgspec
 import pytest
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.port import FixVerdict, PlaceFix
 from shared.geo import Anchor

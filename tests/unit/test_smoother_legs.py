@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from base_station.bench.said import position
+from base_station.bench.rig.said import position
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS

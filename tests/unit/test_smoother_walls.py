@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.bench.said import position
+from base_station.bench.rig.said import position
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS

@@ -8,7 +8,7 @@ import math
 
 import pytest
 
-from base_station.bench import said
+from base_station.bench.rig import said
 from base_station.events import Refused
 from base_station.views import StationFacts, snapshot
 from edge.simulation.building import plan_path

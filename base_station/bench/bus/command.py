@@ -1,0 +1,192 @@
+"""``muster bench bus``: what a station takes in, and how soon a console shows it."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+import psutil
+import typer
+from rich.console import Console as Terminal
+from rich.progress import Progress
+
+from base_station.bench.bus.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
+from base_station.bench.bus.onlookers import Onlookers, Seen
+from base_station.bench.bus.recording import recording_hz
+from base_station.bench.bus.report import BusReport, latency_of, table_of
+from base_station.bench.rig.console import Console, latencies_ms
+from base_station.bench.rig.station import (
+    Membership,
+    PlainTcp,
+    Recorded,
+    StationProcess,
+    free_port,
+    station_process,
+)
+from base_station.bench.rig.units import BenchUnit, speak_in_turn, unit_names
+from base_station.bench.rig.waiting import PATIENCE_S, wait_until
+from shared.bench_figures import FiguresFile, write_figures
+from shared.errors import StoreError
+
+_SETTLE_S = 2.0
+_STEADY_S = 5.0
+_FLOOD_S = 2.0
+_RECORDED = 200_000  # messages
+
+
+def bench_bus(
+    units: Annotated[int, typer.Option(min=1, help="Simulated units.")] = 100,
+    rate: Annotated[
+        float, typer.Option(min=0.1, help="Messages a second of each unit, positions mostly.")
+    ] = 10.0,
+    seconds: Annotated[float, typer.Option(min=1.0, help="How long they speak.")] = 30.0,
+    consoles: Annotated[int, typer.Option(min=1, help="Consoles that watch.")] = 3,
+    onlookers: Annotated[
+        int, typer.Option(min=0, help="Further consoles that only count what they get.")
+    ] = 0,
+    slow: Annotated[int, typer.Option(min=0, help="Further consoles that hardly read.")] = 0,
+    plain: PlainTcp = False,
+    json_file: FiguresFile = None,
+) -> None:
+    """Messages a second and latency from sensor to WebSocket through a real station, beside a
+    bare Zenoh publisher and subscriber in the same run.
+    """
+    with Progress(transient=True) as progress:
+        report = measure(
+            units, rate, seconds, consoles, progress, beside=(onlookers, slow), plain=plain
+        )
+    Terminal().print(table_of(report))
+    for problem in report.problems:
+        Terminal().print(f"the station says: {problem}")
+    write_figures(json_file, report)
+
+
+def measure(
+    units: int,
+    rate_hz: float,
+    seconds: float,
+    consoles: int,
+    progress: Progress,
+    *,
+    beside: tuple[int, int] = (0, 0),
+    plain: bool = False,
+) -> BusReport:
+    """Bare Zenoh over plain TCP first, then the station, both on this machine.
+
+    ``beside`` the consoles: onlookers that read, and that hardly do.
+    """
+    total_hz = units * rate_hz
+    steady_s, flood_s = min(_STEADY_S, seconds), min(_FLOOD_S, seconds)
+    task = progress.add_task("bare Zenoh", total=steady_s + flood_s + seconds)
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with bare_subscriber(address) as far_end:
+        steady = measure_steady(address, far_end, total_hz, steady_s)
+        progress.advance(task, steady_s)
+        flood = measure_flood(address, far_end, flood_s)
+        progress.advance(task, flood_s)
+    progress.update(task, description=f"{units} units")
+    with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
+        names = unit_names(units)
+        members = Membership(Path(folder), names, plain=plain)
+        station = closing.enter_context(station_process(Path(folder), members.address))
+        speakers = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
+        return _run_station(
+            station,
+            speakers,
+            total_hz,
+            seconds,
+            consoles,
+            beside,
+            (steady, flood),
+            progress,
+            closing,
+        )
+
+
+def _run_station(
+    station: StationProcess,
+    units: list[BenchUnit],
+    total_hz: float,
+    seconds: float,
+    console_count: int,
+    beside: tuple[int, int],
+    bare: tuple[BareFigures, BareFigures],
+    progress: Progress,
+    closing: ExitStack,
+) -> BusReport:
+    for unit in units:
+        station.api.post("/units", {"unit_id": unit.unit_id})
+    wait_until("the station listens", lambda: all(unit.is_heard for unit in units))
+    watching = [Console(station.api, closing) for _ in range(console_count)]
+    if not all(console.wait_ready(PATIENCE_S) for console in watching):
+        raise StoreError("the station to be measured shows nothing at its consoles")
+    onlookers = Onlookers(station.api, *beside)
+    for unit in units:
+        unit.introduce()
+    time.sleep(_SETTLE_S)
+
+    station.begin_measuring()
+    [task] = progress.task_ids
+    rate_hz = speak_in_turn(units, total_hz, seconds, lambda: progress.advance(task))
+    cpu_share, memory_mb = station.cpu_share(), station.memory_mb()
+    time.sleep(_SETTLE_S)
+
+    stepped = station.api.get("/health")["messages"]
+    quick, slow = onlookers.close()
+    for console in watching:
+        console.close()
+    station.stop()
+    sent = sum(unit.sent.messages for unit in units)
+    return _report(
+        station.recorded(),
+        bare,
+        watching[0],
+        units,
+        (quick, slow),
+        units=len(units),
+        consoles=console_count,
+        rate_wanted_hz=total_hz,
+        rate_hz=rate_hz,
+        seconds=seconds,
+        sent=sent,
+        stepped=stepped,
+        cpu_share=cpu_share,
+        memory_mb=memory_mb,
+    )
+
+
+def _report(
+    recorded: Recorded,
+    bare: tuple[BareFigures, BareFigures],
+    console: Console,
+    speakers: list[BenchUnit],
+    onlookers: tuple[Seen, Seen],
+    **measured: float,
+) -> BusReport:
+    steady, flood = bare
+    positions = {unit.unit_id: unit.sent.position_times_ns for unit in speakers}
+    shown = latencies_ms(positions, console.shown)
+    return BusReport(
+        **measured,  # type: ignore[arg-type]  # counts are ints
+        recorded=recorded.from_units,
+        lost=int(measured["sent"]) - recorded.from_units,
+        repeated=recorded.repeated,
+        positions_sent=sum(map(len, positions.values())),
+        positions_shown=len(shown),
+        latency=latency_of(shown),
+        track_points_due=recorded.track_points_due,
+        track_points=recorded.track_points,
+        console_gaps=console.gaps,
+        console_kbit_s=console.bytes_received * 8e-3 / measured["seconds"],
+        onlookers=onlookers[0],
+        slow=onlookers[1],
+        problems=console.problems,
+        bare_latency=latency_of(steady.latencies_ms),
+        bare_lost=steady.sent - steady.received,
+        bare_flood_hz=flood.rate_hz,
+        recording_hz=recording_hz(_RECORDED),
+        cores=psutil.cpu_count() or 1,
+    )

@@ -1,0 +1,1 @@
+"""``muster bench faults``: what troubles cost a station and its units."""

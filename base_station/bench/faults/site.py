@@ -1,0 +1,194 @@
+"""A station and its units as processes in networks of their own, to be troubled and measured."""
+
+from __future__ import annotations
+
+import resource
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from base_station.bench.rig.lossy_link import LossyLink
+from base_station.bench.rig.station import StationProcess, station_process
+from base_station.pki.folder import PkiFolder
+from shared.channels import Direction, Qos, is_backfilled, parse_key
+from shared.codec import decode
+from shared.errors import BusError
+from shared.mcap_log import read_log
+from shared.messages import AlarmChange
+
+UNIT = "anna"
+START_PATIENCE_S = 200.0  # the first agent on a machine compiles its tracker
+_PORT = 7447
+_LOOK_EVERY_S = 0.5
+_AGENT = "from edge.cli import app; app()"
+# The machine's clock is set by a day while the agent runs.
+_AGENT_OF_JUMPS = """
+import time
+began_s, utc_ns = time.monotonic(), time.time_ns
+time.time_ns = lambda: utc_ns() + (86_400 * 10**9 * {days} if time.monotonic() - began_s > {after_s} else 0)
+""".strip()  # noqa: E501
+
+MessageId = tuple[int, int]  # boot id, sequence number
+
+
+class Logged(NamedTuple):
+    """A message of the unit in the station's log."""
+
+    message: MessageId
+    t_ns: int  # when the station wrote it
+    said_ns: int
+    live: bool
+    alert: bool
+
+
+class Agent:
+    """``muster edge run`` of the unit, or of another machine under its name."""
+
+    def __init__(self, link: LossyLink, folder: Path, enrolment: Path) -> None:
+        self.journal = folder / UNIT / "journal.sqlite"
+        self._said = folder.with_suffix(".txt")
+        arguments = ["run", "--enrolment", str(enrolment), "--data", str(folder)]
+        self._arguments = [*arguments, "--source", "simulated:search-ground-floor"]
+        self._inside = link.units.inside()
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self, before: str = "") -> None:
+        """``before``: what Python is to do first."""
+        code = f"{before}\n{_AGENT}"
+        command = [*self._inside, sys.executable, "-c", code, *self._arguments]
+        with self._said.open("ab") as said:
+            self._process = subprocess.Popen(command, stdout=said, stderr=said)
+
+    def start_with_jumping_clock(self, days: int, after_s: float) -> None:
+        self.start(_AGENT_OF_JUMPS.format(days=days, after_s=after_s))
+
+    def kill(self) -> None:
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            self._process = None
+
+    def set_disk_full(self, *, full: bool) -> None:
+        assert self._process is not None
+        _set_disk_full(self._process.pid, full=full)
+
+    def said(self) -> set[MessageId]:
+        """All that it has ever said, by its journal."""
+        if not self.journal.exists():
+            return set()
+        with closing(sqlite3.connect(f"file:{self.journal}?mode=ro", uri=True)) as journal:
+            laid_out = journal.execute("SELECT 1 FROM sqlite_master WHERE name = 'message'")
+            if laid_out.fetchone() is None:  # the agent has only just made the file
+                return set()
+            rows = journal.execute(
+                "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
+            ).fetchall()
+        return {(boot_id % 2**64, seq) for boot_id, seq in rows}
+
+
+class Site:
+    """A station and a unit that are at it already."""
+
+    def __init__(self, folder: Path, link: LossyLink, address: str, stack: ExitStack) -> None:
+        self.link = link
+        self.agent = Agent(link, folder / "units", folder / "unit.toml")
+        self.clone = Agent(link, folder / "clone", folder / "unit.toml")
+        for agent in (self.agent, self.clone):
+            stack.callback(agent.kill)
+        self._data = folder / "station"
+        self._address = address
+        self._running = stack.enter_context(ExitStack())
+        self.station: StationProcess
+        self.start_station()
+
+    def start_station(self) -> None:
+        inside = self.link.station.inside()
+        self.station = self._running.enter_context(
+            station_process(self._data, self._address, inside)
+        )
+
+    def kill_station(self) -> None:
+        self._running.close()
+
+    def set_station_disk_full(self, *, full: bool) -> None:
+        _set_disk_full(self.station.pid, full=full)
+
+    def ask_par(self) -> None:
+        """The wearer answers some seconds later; the answers are alerts."""
+        order = {"kind": "par_request", "target": {"unit_id": UNIT}, "expires_s": 900}
+        self.link.station.call(lambda: self.station.api.post("/commands", order))
+
+    def said(self) -> set[MessageId]:
+        return self.agent.said() | self.clone.said()
+
+    def logged(self) -> Iterator[Logged]:
+        for t_ns, key, payload in read_log(self._data / "log"):
+            unit_id, channel = parse_key(key)
+            if unit_id != UNIT or channel.direction is not Direction.UP:
+                continue
+            header = decode(channel, payload).header
+            yield Logged(
+                message=(header.boot_id, header.seq),
+                t_ns=t_ns,
+                said_ns=header.t_utc_ns,
+                live=not is_backfilled(key),
+                alert=channel.qos is Qos.ALERT,
+            )
+
+    def alarms(self, rule: str) -> list[AlarmChange]:
+        """What has become of the unit's alarms of a rule."""
+        changes = []
+        for _, key, payload in read_log(self._data / "log"):
+            message = decode(parse_key(key)[1], payload) if key.endswith("/alarm") else None
+            if isinstance(message, AlarmChange) and message.rule == rule:
+                changes.append(message)
+        return changes
+
+    def wait_heard(self, patience_s: float, since_ns: int = 0) -> bool:
+        """Until a message comes live; False when the patience is over."""
+        end_s = time.monotonic() + patience_s
+        while not any(one.live and one.t_ns > since_ns for one in self.logged()):
+            if time.monotonic() > end_s:
+                return False
+            time.sleep(_LOOK_EVERY_S)
+        return True
+
+    def wait_logged(self, wanted: set[MessageId], patience_s: float) -> None:
+        """Or until the patience is over; what is missing then is lost."""
+        end_s = time.monotonic() + patience_s
+        while time.monotonic() < end_s:
+            if wanted <= {one.message for one in self.logged()}:
+                return
+            time.sleep(_LOOK_EVERY_S)
+
+
+@contextmanager
+def site(folder: Path, seed: int) -> Iterator[Site]:
+    """Station and unit, each in its namespace and linked; ended hard.
+
+    Raises BusError where network namespaces are not allowed, or when the unit is never heard.
+    """
+    with ExitStack() as stack:
+        link = LossyLink(seed, stack)
+        data = folder / "station"
+        data.mkdir()
+        address = f"tls/{link.station.address}:{_PORT}"
+        pki = PkiFolder(data)
+        pki.create("bench", hosts=[link.station.address], connect=[address])
+        pki.enroll(UNIT).write(folder / "unit.toml")
+        one = Site(folder, link, address, stack)
+        one.agent.start()
+        if not one.wait_heard(START_PATIENCE_S):
+            raise BusError("the unit to be measured is not heard")
+        yield one
+
+
+def _set_disk_full(process: int, *, full: bool) -> None:
+    """From here on the kernel lets the process make no file longer."""
+    _, hard = resource.prlimit(process, resource.RLIMIT_FSIZE)
+    resource.prlimit(process, resource.RLIMIT_FSIZE, (0 if full else hard, hard))

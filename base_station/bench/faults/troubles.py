@@ -1,0 +1,174 @@
+"""What is done to a station and a unit, one after the other: ``FAULTS``."""
+
+from __future__ import annotations
+
+import random
+import time
+from dataclasses import dataclass
+from typing import Protocol
+
+from base_station.bench.faults.site import START_PATIENCE_S, Site
+from base_station.bench.rig.forwarder import Conditions
+from base_station.bench.rig.lossy_link import CLEAN, DARK
+
+THIN = Conditions(delay_s=0.05, rate_bps=20_000.0)
+POOR = Conditions(loss=0.1, delay_s=0.03, jitter_s=0.1)
+_WRITTEN_S = 1.0  # until what had to wait for the disk is in the journal
+_DAY_AFTER_S = 15.0  # from the start of an agent to the jump of its clock
+
+
+class Fault(Protocol):
+    """One row of the table."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts, about."""
+        ...
+
+    @property
+    def is_long(self) -> bool:
+        """Too long for the suite."""
+        ...
+
+    @property
+    def after(self) -> Conditions:
+        """The link from then on, until all that was said has arrived."""
+        ...
+
+    def happen(self, site: Site) -> None:
+        """Returns when it is over."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class BadLink:
+    name: str
+    link: Conditions  # both ways
+    seconds: float
+    after: Conditions = CLEAN
+    is_long: bool = False
+
+    def happen(self, site: Site) -> None:
+        site.link.set(self.link)
+        if not self.link.dark:
+            site.ask_par()
+        time.sleep(self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class Kills:
+    """``kill -9`` at random instants, over a poor link."""
+
+    name: str
+    agent: bool
+    station: bool
+    rounds: int
+    is_long: bool = False
+    after: Conditions = CLEAN
+
+    @property
+    def seconds(self) -> float:
+        return 10.0 * self.rounds
+
+    def happen(self, site: Site) -> None:
+        chance = random.Random(self.name)  # noqa: S311  # no secret
+        site.link.set(POOR)
+        for _ in range(self.rounds):
+            time.sleep(3.0 * chance.random())
+            if self.agent:
+                site.agent.kill()
+            if self.station:
+                site.kill_station()
+            time.sleep(chance.random())
+            began_ns = time.time_ns()
+            if self.station:
+                site.start_station()
+            if self.agent:
+                site.agent.start()
+            site.wait_heard(START_PATIENCE_S, began_ns)
+
+
+@dataclass(frozen=True, slots=True)
+class Clone:
+    """Another machine with a copy of the enrolment speaks, through an outage too."""
+
+    name: str = "cloned unit"
+    seconds: float = 25.0
+    is_long: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        before = site.clone.said()
+        site.clone.start()
+        end_s = time.monotonic() + START_PATIENCE_S
+        while time.monotonic() < end_s and len(site.clone.said() - before) < 50:
+            time.sleep(0.5)
+        time.sleep(10.0)
+        site.link.set(DARK)
+        time.sleep(6.0)
+        site.link.set(CLEAN)
+        site.wait_logged(site.said(), START_PATIENCE_S)  # once it is gone nobody can fetch the rest
+        site.clone.kill()
+
+
+@dataclass(frozen=True, slots=True)
+class ClockJump:
+    """The unit's clock is set by a day while it runs, and the link goes for a while."""
+
+    name: str
+    days: int
+    seconds: float = 25.0
+    is_long: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        site.agent.kill()
+        began_ns = time.time_ns()
+        site.agent.start_with_jumping_clock(self.days, _DAY_AFTER_S)
+        site.wait_heard(START_PATIENCE_S, began_ns)
+        site.link.set(DARK)
+        time.sleep(self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class FullDisk:
+    name: str
+    agent: bool
+    station: bool
+    seconds: float = 6.0
+    is_long: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        self._set(site, full=True)
+        time.sleep(self.seconds)
+        self._set(site, full=False)
+        time.sleep(_WRITTEN_S)
+
+    def _set(self, site: Site, *, full: bool) -> None:
+        if self.agent:
+            site.agent.set_disk_full(full=full)
+        if self.station:
+            site.set_station_disk_full(full=full)
+
+
+FAULTS: tuple[Fault, ...] = (
+    BadLink("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
+    BadLink("outage of 1 s", DARK, 1.0),
+    BadLink("outage of 30 s", DARK, 30.0, is_long=True),
+    BadLink("20 kbit/s", THIN, 10.0, after=THIN),
+    BadLink("outage of 10 s at 20 kbit/s", DARK, 10.0, after=THIN),
+    BadLink("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, is_long=True),
+    BadLink("outage of 600 s", DARK, 600.0, is_long=True),
+    FullDisk("disk full at the unit", agent=True, station=False),
+    FullDisk("disk full at the station", agent=False, station=True),
+    Clone(),
+    ClockJump("clock a day ahead", 1, is_long=True),
+    ClockJump("clock a day back", -1, is_long=True),
+    Kills("kill -9 of the agent", agent=True, station=False, rounds=3, is_long=True),
+    Kills("kill -9 of the station", agent=False, station=True, rounds=3, is_long=True),
+    Kills("kill -9 of both", agent=True, station=True, rounds=2),
+)

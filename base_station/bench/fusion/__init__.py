@@ -1,0 +1,1 @@
+"""``muster bench fusion``: how well the station knows where people are."""

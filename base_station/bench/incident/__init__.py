@@ -1,0 +1,1 @@
+"""Simulated incidents, six people in a building each; for ``fusion`` and ``floors``."""

@@ -1,0 +1,1 @@
+"""What benchmarks, and tests, drive a real station with: processes, units, consoles, bad links."""

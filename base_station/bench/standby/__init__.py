@@ -1,0 +1,1 @@
+"""``muster bench standby``: two stations, and what it costs when one of them is gone."""
