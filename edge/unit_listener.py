@@ -42,7 +42,7 @@ class UnitListener:
         self._descriptions: dict[int, UnitDescription] = {}  # by boot; the newest few
         self._declared = ExitStack()
         self._bus: Bus | None = None
-        self.dropped = 0  # messages that came faster than they were taken
+        self.dropped = 0  # messages that came faster than they were taken, or of no known sensor
         self.not_understood = 0
 
     def open(self, stop: Event) -> bool:
@@ -138,8 +138,16 @@ class UnitListener:
             return
         assert isinstance(raw, RawImu)
         with self._changed:
+            if self._waiting and self._waiting[-1].header.boot_id != raw.header.boot_id:
+                self._leave_out_undescribed()
             if len(self._waiting) >= _KEPT:
                 self.dropped += 1
                 return
             self._waiting.append(raw)
             self._changed.notify_all()
+
+    def _leave_out_undescribed(self) -> None:
+        """A run that is over without having said what its sensor is will never say it."""
+        described = [one for one in self._waiting if one.header.boot_id in self._descriptions]
+        self.dropped += len(self._waiting) - len(described)
+        self._waiting = deque(described)
