@@ -40,13 +40,15 @@ class BlackBox:
         self._limit_bytes = limit_bytes
         self._clock = clock
         self._utc_offset_ns = clock.utc_ns() - clock.monotonic_ns()
+        began = datetime.fromtimestamp(clock.utc_ns() // NS_PER_S, UTC)
+        self._boot_name = f"{began:%Y%m%dT%H%M%SZ}-{description.header.boot_id:016x}"
         self._described_ns = -_DESCRIBE_EVERY_NS
         self._waiting: SimpleQueue[Raw | None] = SimpleQueue()
         self._problem: str | None = None
         try:
             self._make_room()
             self._writer = SegmentWriter(
-                folder / self._boot_name(), _POLICY, lambda _: self._try_to_make_room()
+                folder / self._boot_name, _POLICY, lambda _: self._try_to_make_room()
             )
         except OSError as error:
             raise ConfigError(f"the black box cannot be written: {error}") from error
@@ -97,10 +99,6 @@ class BlackBox:
     def _now_ns(self) -> int:
         return self._clock.monotonic_ns() + self._utc_offset_ns
 
-    def _boot_name(self) -> str:
-        began = datetime.fromtimestamp(self._clock.utc_ns() // NS_PER_S, UTC)
-        return f"{began:%Y%m%dT%H%M%SZ}-{self._description.header.boot_id:016x}"
-
     def _try_to_make_room(self) -> None:
         try:
             self._make_room()
@@ -108,8 +106,14 @@ class BlackBox:
             logger.error("old recordings cannot be removed: %s", error)
 
     def _make_room(self) -> None:
-        """Remove the oldest segments beyond the limit, and folders that are left empty."""
-        boots = sorted(path for path in self._folder.glob("*") if path.is_dir())
+        """Remove the oldest segments beyond the limit, and folders that are left empty.
+
+        This boot's are the newest, whatever date a clock that was never set has given them.
+        """
+        boots = sorted(
+            (path for path in self._folder.glob("*") if path.is_dir()),
+            key=lambda boot: (boot.name == self._boot_name, boot.name),
+        )
         segments = [segment for boot in boots for segment in segment_paths(boot)]
         sizes = [segment.stat().st_size for segment in segments]
         excess_bytes = sum(sizes) - self._limit_bytes

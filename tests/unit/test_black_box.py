@@ -111,22 +111,35 @@ def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
     assert 0.2 * whole < torn < 0.8 * whole
 
 
+def fill(folder: Path, boot_id: int, clock: ManualClock) -> Path:
+    """Record a walk where there is room for one or two; the folder of its boot."""
+    source = open_source(SCENARIO)
+    raw = RawStream("u1", boot_id)
+    description = raw.description(0, source.description, source="", tracker="")
+    box = BlackBox(folder, description, 60_000, clock)
+    for batch in spoiled(source):
+        box.write(raw.messages(batch))
+    box.close()
+    (boot,) = folder.glob(f"*{boot_id:016x}")
+    return boot
+
+
 def test_the_oldest_recordings_make_room(tmp_path):
     clock = ManualClock()
     boots = []
-    for boot in range(3):
-        folder = tmp_path / "box"
-        source = open_source(SCENARIO)
-        raw = RawStream("u1", boot)
-        description = raw.description(0, source.description, source="", tracker="")
-        box = BlackBox(folder, description, 60_000, clock)
-        for batch in spoiled(source):
-            box.write(raw.messages(batch))
-        box.close()
-        boots.append(next(folder.glob(f"*{boot:016x}")))
+    for boot_id in range(3):
+        boots.append(fill(tmp_path, boot_id, clock))
         clock.advance(100.0)
     assert not boots[0].exists()
     assert boots[2].exists()
+
+
+def test_a_clock_that_was_never_set_does_not_make_the_newest_the_oldest(tmp_path):
+    before = fill(tmp_path, 1, ManualClock())
+    new = fill(tmp_path, 2, ManualClock(utc_ns=0))
+    assert new.name < before.name
+    assert not before.exists()
+    assert new.exists()
 
 
 def test_what_is_no_black_box_is_explained(tmp_path):
