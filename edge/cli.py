@@ -17,46 +17,56 @@ app = typer.Typer(
 app.command()(calibrate)
 
 
+Config = Annotated[Path | None, typer.Option(help="TOML file with settings; flags overrule it.")]
+Unit = Annotated[str | None, typer.Option(help="Name of this unit.")]
+SamplesFrom = Annotated[
+    str | None, typer.Option(help="Where samples come from; `muster edge sources` lists the kinds.")
+]
+Sightings = Annotated[
+    str | None, typer.Option(help="A reader of beacons and tags: tcp:HOST:PORT or a device's path.")
+]
+Enrolment = Annotated[
+    Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
+]
+Connect = Annotated[
+    list[str] | None,
+    typer.Option(help="The station, tls/HOST:PORT or tcp/HOST:PORT; may be repeated."),
+]
+Data = Annotated[
+    Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
+]
+TrackedBy = Annotated[
+    str | None,
+    typer.Option(help="`muster edge trackers` lists them; none: track on another machine."),
+]
+Calibrated = Annotated[
+    Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
+]
+ForSeconds = Annotated[
+    float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0)
+]
+Speed = Annotated[
+    float | None, typer.Option(help="Play a recording at this multiple of real time.")
+]
+Unpaced = Annotated[
+    bool, typer.Option("--as-fast-as-possible", help="Play a recording without waiting.")
+]
+
+
 @app.command()
 def run(
-    config: Annotated[
-        Path | None, typer.Option(help="TOML file with settings; flags overrule it.")
-    ] = None,
-    unit: Annotated[str | None, typer.Option(help="Name of this unit.")] = None,
-    source: Annotated[
-        str | None,
-        typer.Option(help="Where samples come from; `muster edge sources` lists the kinds."),
-    ] = None,
-    sightings: Annotated[
-        str | None,
-        typer.Option(help="A reader of beacons and tags: tcp:HOST:PORT or a device's path."),
-    ] = None,
-    enrolment: Annotated[
-        Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
-    ] = None,
-    connect: Annotated[
-        list[str] | None,
-        typer.Option(help="The station, tls/HOST:PORT or tcp/HOST:PORT; may be repeated."),
-    ] = None,
-    data: Annotated[
-        Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")
-    ] = None,
-    tracker: Annotated[
-        str | None,
-        typer.Option(help="`muster edge trackers` lists them; none: track on another machine."),
-    ] = None,
-    calibration: Annotated[
-        Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
-    ] = None,
-    for_s: Annotated[
-        float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0)
-    ] = None,
-    speed: Annotated[
-        float | None, typer.Option(help="Play a recording at this multiple of real time.")
-    ] = None,
-    as_fast_as_possible: Annotated[
-        bool, typer.Option(help="Play a recording without waiting.")
-    ] = False,
+    config: Config = None,
+    unit: Unit = None,
+    source: SamplesFrom = None,
+    sightings: Sightings = None,
+    enrolment: Enrolment = None,
+    connect: Connect = None,
+    data: Data = None,
+    tracker: TrackedBy = None,
+    calibration: Calibrated = None,
+    for_s: ForSeconds = None,
+    speed: Speed = None,
+    as_fast_as_possible: Unpaced = False,
 ) -> None:
     """Run one agent until its source ends, Ctrl-C, or --for is over."""
     # Only this command needs what these import, and they take their time.

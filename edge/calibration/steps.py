@@ -116,7 +116,7 @@ class PosesStep:
         if faces:
             return (
                 f"only {len(AXES) - len(faces)} of {len(AXES)} poses: turn it until "
-                f"{_or(faces)} of the sensor points up, and hold it still for 3 s each"
+                f"{_listed(faces)} of the sensor points up, and hold it still for 3 s each"
             )
         return None
 
@@ -126,7 +126,7 @@ class PosesStep:
         told = tells_misalignment(self._directions())
         pairs = [pair for pair, known in zip(_PAIRS, told, strict=True) if not known]
         if pairs:
-            return f"lean it half way between {_or(pairs)}"
+            return f"lean it half way between {', or '.join(pairs)}"
         few = 12 - len(self.poses())
         return f"{few} more poses, leaning differently" if few > 0 else None
 
@@ -290,5 +290,5 @@ def _unit(values: Floats) -> Floats:
     return np.asarray(values / max(float(np.linalg.norm(values)), 1e-9))
 
 
-def _or(words: list[str]) -> str:
+def _listed(words: list[str]) -> str:
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]

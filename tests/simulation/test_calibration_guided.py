@@ -116,11 +116,13 @@ def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tm
 
     thread = Thread(target=wear)
     thread.start()
-    with closing(source):
-        assert source.follow(listener, Event())
-        calibrate_guided(source, tmp_path / "u.toml", "FF-01", None, with_warm_up=False)
-    done.set()
-    thread.join()
+    try:
+        with closing(source):
+            assert source.follow(listener, Event())
+            calibrate_guided(source, tmp_path / "u.toml", "FF-01", None, with_warm_up=False)
+    finally:
+        done.set()
+        thread.join()
     itself = tmp_path / "itself.toml"
     with closing(open_source("bench:3")) as bench:
         calibrate_guided(bench, itself, "FF-01", None, with_warm_up=False)
