@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from edge.samples import SensorBatch, SensorDescription
 from edge.simulation.handling import HandledUnit, cut
-from edge.sources.port import Outage
+from edge.sources.port import Played
 from shared.errors import ConfigError
 
 
-class BenchSource:
+class BenchSource(Played):
     """``text`` is the seed of the sensors' errors; the same seed is the same unit."""
 
     def __init__(self, text: str) -> None:
@@ -22,16 +22,5 @@ class BenchSource:
     def description(self) -> SensorDescription:
         return HandledUnit(self._seed).description
 
-    @property
-    def is_live(self) -> bool:
-        return False
-
-    @property
-    def radio_outages(self) -> tuple[Outage, ...]:
-        return ()
-
     def batches(self) -> Iterator[SensorBatch]:
         return cut(HandledUnit(self._seed).calibrated_by_the_book())
-
-    def close(self) -> None:
-        """Nothing is held open."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from edge.raw_stream import batch_of, sensor_of
 from edge.samples import SensorBatch, SensorDescription
-from edge.sources.port import Outage
+from edge.sources.port import Played
 from shared.channels import DESCRIPTION, Channel, parse_key
 from shared.codec import decode
 from shared.errors import RecordingError, UnknownChannelError, WireError
@@ -18,7 +18,7 @@ from shared.messages import Message, RawImu, UnitDescription
 logger = logging.getLogger(__name__)
 
 
-class BlackBoxSource:
+class BlackBoxSource(Played):
     """``path`` is a segment, or the folder of segments of one boot of one unit.
 
     A black box that is torn is played up to the tear.  Raises RecordingError for what is none.
@@ -33,14 +33,6 @@ class BlackBoxSource:
     def description(self) -> SensorDescription:
         return self._description
 
-    @property
-    def is_live(self) -> bool:
-        return False
-
-    @property
-    def radio_outages(self) -> tuple[Outage, ...]:
-        return ()
-
     def batches(self) -> Iterator[SensorBatch]:
         group: list[Message] = []
         for message in self._messages():
@@ -50,9 +42,6 @@ class BlackBoxSource:
             group.append(message)
         if group:
             yield batch_of(tuple(group))
-
-    def close(self) -> None:
-        """Nothing is held open between batches."""
 
     def _read_description(self) -> tuple[str, SensorDescription]:
         for unit_id, channel, payload in self._records():

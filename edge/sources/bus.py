@@ -8,7 +8,7 @@ from threading import Event
 
 from edge.raw_stream import batch_of
 from edge.samples import SensorBatch, SensorDescription
-from edge.sources.port import Outage
+from edge.sources.port import Played
 from edge.unit_listener import UnitListener
 from shared.channels import validate_unit_id
 from shared.errors import BusError, RecordingError, WireError
@@ -20,7 +20,7 @@ _LOOK_S = 0.1
 _HOLE_NS = 45_000_000  # a message has 50 ms of samples
 
 
-class BusSource:
+class BusSource(Played):
     """One run of the unit's program, from what came first until the unit starts again.
 
     Its times are the unit's clock, not this machine's, so it is placed in time like a recording
@@ -46,14 +46,6 @@ class BusSource:
     @property
     def description(self) -> SensorDescription:
         return self._heard()[2]
-
-    @property
-    def is_live(self) -> bool:
-        return False
-
-    @property
-    def radio_outages(self) -> tuple[Outage, ...]:
-        return ()
 
     def batches(self) -> Iterator[SensorBatch]:
         listener, boot_id, _ = self._heard()

@@ -43,6 +43,21 @@ class Source(Protocol):
     def close(self) -> None: ...
 
 
+class Played:
+    """What holds of sources that have no hardware: recordings, simulations, other units."""
+
+    @property
+    def is_live(self) -> bool:
+        return False
+
+    @property
+    def radio_outages(self) -> tuple[Outage, ...]:
+        return ()
+
+    def close(self) -> None:
+        """Nothing is held open between batches."""
+
+
 @runtime_checkable
 class TellsFaults(Protocol):
     """A source that knows what is wrong with its sensor, such as that it is not there."""

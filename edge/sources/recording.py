@@ -17,7 +17,7 @@ import numpy as np
 
 from edge.samples import Floats, ImuBatch, Nanoseconds, SensorBatch, SensorDescription
 from edge.sources.csv_table import read_table
-from edge.sources.port import Outage
+from edge.sources.port import Played
 from shared.errors import RecordingError
 
 _ACCEL = ("accel_x_mps2", "accel_y_mps2", "accel_z_mps2")
@@ -81,7 +81,7 @@ class RecordingReport:
         return f"{self.samples} samples: " + (", ".join(found) if found else "nothing unusual")
 
 
-class RecordingSource:
+class RecordingSource(Played):
     """Plays a recording from its first sample to its last; reads it whole when made.
 
     ``path`` is a trial folder or a bare CSV / CSV.gz with the same columns,
@@ -111,14 +111,6 @@ class RecordingSource:
         return self._description
 
     @property
-    def is_live(self) -> bool:
-        return False
-
-    @property
-    def radio_outages(self) -> tuple[Outage, ...]:
-        return ()
-
-    @property
     def imu(self) -> ImuBatch:
         """The whole recording at once."""
         return self._imu
@@ -126,9 +118,6 @@ class RecordingSource:
     def batches(self) -> Iterator[SensorBatch]:
         for start in range(0, len(self._imu), self._rows_per_batch):
             yield SensorBatch(self._imu.part(slice(start, start + self._rows_per_batch)))
-
-    def close(self) -> None:
-        """Nothing is held open."""
 
 
 def read_trial(path: Path | str) -> Trial:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from edge.samples import SensorBatch, SensorDescription
 from edge.simulation import open_simulation
-from edge.sources.port import Outage
+from edge.sources.port import Outage, Played
 
 
-class SimulatedSource:
+class SimulatedSource(Played):
     """``NAME`` or ``PATH.toml``, with ``?seed=N&worn_on=chest``; the truth is in ``simulation``."""
 
     def __init__(self, text: str, batch_s: float = 0.05) -> None:
@@ -21,15 +21,8 @@ class SimulatedSource:
         return self.simulation.description
 
     @property
-    def is_live(self) -> bool:
-        return False
-
-    @property
     def radio_outages(self) -> tuple[Outage, ...]:
         return tuple(Outage(*times) for times in self.simulation.scenario.radio_outages_s)
 
     def batches(self) -> Iterator[SensorBatch]:
         return self.simulation.batches(self._batch_s)
-
-    def close(self) -> None:
-        """Nothing is held open."""
