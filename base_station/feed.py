@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from threading import Condition, Lock
+from threading import Condition
 
 from shared.channels import Qos, parse_key
 from shared.clock import Clock
@@ -22,34 +22,6 @@ _BYTES_MAX = 64 * 1024 * 1024
 _LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
 _LATE_BYTES = 1024 * 1024
 _LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
-
-
-class SteadyClock:
-    """A clock whose UTC never goes back and never stands still.
-
-    It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
-    monotonic time until the other has caught up.  From any thread.
-    """
-
-    def __init__(self, clock: Clock, not_before_ns: int = 0) -> None:
-        """``not_before_ns``: UTC that was given out before this program started."""
-        self._clock = clock
-        self._lock = Lock()
-        self._offset_ns = not_before_ns - clock.monotonic_ns()
-
-    def not_before(self, utc_ns: int) -> None:
-        """Another clock has said ``utc_ns``: go on from there."""
-        with self._lock:
-            self._offset_ns = max(self._offset_ns, utc_ns - self._clock.monotonic_ns())
-
-    def monotonic_ns(self) -> int:
-        return self._clock.monotonic_ns()
-
-    def utc_ns(self) -> int:
-        with self._lock:
-            monotonic_ns = self._clock.monotonic_ns()
-            self._offset_ns = max(self._offset_ns, self._clock.utc_ns() - monotonic_ns)
-            return monotonic_ns + self._offset_ns
 
 
 class LiveFeed:

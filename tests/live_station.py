@@ -11,7 +11,7 @@ from base_station.api.wire import Delta, Snapshot
 from base_station.checkpoint import Checkpoint
 from base_station.commands.downlink import Downlink
 from base_station.drive import StationDrive
-from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.feed import LiveFeed, LogFeed
 from base_station.fusion import FUSERS
 from base_station.journals.backfill import Report
 from base_station.live.sinks import ActionDone, Projection
@@ -20,6 +20,7 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
+from base_station.steady_clock import SteadyClock
 from base_station.views import StationFacts
 from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of

@@ -14,7 +14,7 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
-from base_station.feed import LogFeed, SteadyClock
+from base_station.feed import LogFeed
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
 from base_station.forgetting.forgetter import Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
@@ -22,6 +22,7 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.recorder import Recorder
+from base_station.steady_clock import SteadyClock
 from shared.clock import Clock
 from shared.messages.station import Action
 

@@ -103,8 +103,9 @@ class _LiveStation:
         self._forgettings = self._disk.forgetting_desk(
             opened.recordings, self._act, self._save_soon, self._leads
         )
+        self._state = StationState()
         self._drive = _start_drive(
-            self._disk.log, self._surroundings(), self._side.begin, self._recovering()
+            self._disk.log, self._surroundings(), self._begin, self._recovering()
         )
         self._gate = self._side.gate_to(self._drive)
         # Ends behind the drive: the other station gets all.
@@ -217,6 +218,10 @@ class _LiveStation:
 
     # ---- what they ask and tell each other
 
+    def _begin(self, place: tuple[int, int], state: StationState) -> None:
+        self._state = state
+        self._side.begin(place, state)
+
     def _leads(self) -> bool:
         return self._side.leads
 
@@ -248,9 +253,12 @@ class _LiveStation:
         not, and the service manager hears of it.
         """
         self._manager.working()
-        opened, side = self._opened, self._side
+        opened, side, clock = self._opened, self._side, self._disk.clock
+        incident = self._state.incident
+        clock.held = not side.leads or (incident is not None and incident.closed_ns is None)
         problems = [
             *opened.config.standing_problems(),
+            *clock.problems(),
             *opened.expiry.problems(),
             *side.problems(),
             *self._forgettings.problems(),

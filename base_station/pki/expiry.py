@@ -36,9 +36,21 @@ class ExpiryWatch:
             return ()
         now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
         try:
-            return about_to_expire(self._pki.registry(), now, EXPIRY_WARNING)
+            registry = self._pki.registry()
         except ConfigError as error:
             return (str(error),)
+        return (*not_yet_valid(registry, now), *about_to_expire(registry, now, EXPIRY_WARNING))
+
+
+def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
+    """A sentence where by the clock here a certificate in use was made in the future."""
+    begins = max((e.valid_from for e in registry.entries if e.revoked is None), default=now)
+    if begins <= now:
+        return ()
+    return (
+        f"This machine's clock says {now:%Y-%m-%d}, and there are certificates that begin on "
+        f"{begins:%Y-%m-%d}: set it; no link is made with them before",
+    )
 
 
 def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tuple[str, ...]:

@@ -28,11 +28,11 @@ class Hearing:
         bus: Bus,
         clock: Clock,
         election: Election,
-        on_beat: Callable[[], None],
+        on_beat: Callable[[Beat], None],
         on_have: Callable[[Place], None],
     ) -> None:
         """``run``: of this station's program.  ``election`` hears of the other one, and
-        ``on_beat`` is called; ``on_have`` is told how far a follower of this log has it.
+        so does ``on_beat``; ``on_have`` is told how far a follower of this log has it.
         """
         self._station = station
         self._run = run
@@ -88,7 +88,7 @@ class Hearing:
             )
         else:
             self._election.hear(beat, now_ns)
-            self._on_beat()
+            self._on_beat(beat)
 
     def _hear_have(self, key: str, payload: bytes) -> None:
         try:

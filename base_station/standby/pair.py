@@ -14,7 +14,7 @@ from threading import Condition, Thread
 
 from base_station.api.wire import StandbyView
 from base_station.config import StandbyConfig
-from base_station.feed import LogFeed, SteadyClock
+from base_station.feed import LogFeed
 from base_station.standby.confirming import OtherCopy
 from base_station.standby.election import Election, Me
 from base_station.standby.following import Follower, Leader
@@ -24,6 +24,7 @@ from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.standby.words import PROTOCOL, Beat, key_of, pack
+from base_station.steady_clock import SteadyClock
 from shared.bus import Bus
 from shared.channels import OPERATOR, Qos
 from shared.clock import NS_PER_S
@@ -74,7 +75,7 @@ class Pair:
             around.bus,
             clock,
             self._election,
-            on_beat=self._wake,
+            on_beat=self._note_beat,
             on_have=self._note_copy,
         )
         self._token = around.bus.declare_alive(key_of(config.name, "alive"))
@@ -158,9 +159,10 @@ class Pair:
 
     # ---- what is heard
 
-    def _wake(self) -> None:
-        with self._told:
-            self._told.notify_all()
+    def _note_beat(self, beat: Beat) -> None:
+        """The time at a standby is that of the station that leads."""
+        if beat.role == "active" and beat.t_ns and not self.leads:
+            self._around.clock.agree(beat.t_ns)
 
     def _note_copy(self, place: Place) -> None:
         if self.leads:
@@ -251,6 +253,7 @@ class Pair:
             run=self._run_id,
             units=me.units,
             url=self._config.url,
+            t_ns=self._around.clock.utc_ns(),
         )
         self._around.bus.publish(key_of(me.station, "beat"), pack(beat), Qos.ALERT)
 

@@ -12,7 +12,7 @@ from base_station.api.standing import Standing
 from base_station.config import StandbyConfig
 from base_station.db.kept import KeptTables
 from base_station.db.records import Records
-from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.feed import LiveFeed, LogFeed
 from base_station.live.sinks import OperatorGate
 from base_station.live.surroundings import Feed, Log
 from base_station.live_state import StationState
@@ -25,6 +25,7 @@ from base_station.standby.pair import Around, Pair
 from base_station.standby.places import Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
+from base_station.steady_clock import SteadyClock
 from shared.bus import Bus
 from shared.messages import STATION_ID
 

@@ -33,6 +33,7 @@ class Beat(msgspec.Struct, frozen=True):
     run: int  # of its program; another number: it has started anew
     units: int  # that are linked, with whichever router
     url: str  # where consoles find it
+    t_ns: int = 0  # station time there; 0: it is of a version that does not say
 
 
 class Have(msgspec.Struct, frozen=True):

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from base_station.clock_server import ClockServer
-from base_station.feed import SteadyClock
+from base_station.steady_clock import SteadyClock
 from edge.clock_offset import ClockOffset, Exchange
 from edge.station_clock import StationClock
 from shared.bus import ReplyHandler

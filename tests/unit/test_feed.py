@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from threading import Thread
 
-from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.feed import LiveFeed, LogFeed
+from base_station.steady_clock import SteadyClock
 from shared.channels import EVENT, POSITION
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import SegmentWriter
@@ -24,30 +25,6 @@ class JumpingClock(ManualClock):
 
     def utc_ns(self) -> int:
         return super().utc_ns() + self.set_by_ns
-
-
-def test_station_time_goes_on_at_the_same_rate_when_utc_is_set_back() -> None:
-    machine = JumpingClock()
-    clock = SteadyClock(machine)
-    before_ns = clock.utc_ns()
-    machine.set_by_ns = -DAY_NS
-    machine.advance(2.0)
-    assert clock.utc_ns() == before_ns + 2 * NS_PER_S
-
-
-def test_station_time_follows_utc_forwards() -> None:
-    machine = JumpingClock()
-    clock = SteadyClock(machine)
-    machine.set_by_ns = DAY_NS
-    assert clock.utc_ns() == machine.utc_ns()
-
-
-def test_station_time_goes_on_behind_what_an_earlier_run_gave_out() -> None:
-    machine = JumpingClock()
-    earlier_ns = machine.utc_ns() + DAY_NS
-    clock = SteadyClock(machine, not_before_ns=earlier_ns)
-    machine.advance(1.0)
-    assert clock.utc_ns() == earlier_ns + NS_PER_S
 
 
 def test_records_come_out_in_order_with_station_time() -> None:

@@ -11,7 +11,7 @@ import pytest
 from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from base_station.pki.expiry import ExpiryWatch, about_to_expire
+from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
 from base_station.pki.folder import PkiFolder
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Enrolment, Holder
@@ -235,6 +235,16 @@ def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, cloc
     )
     assert len(said(10 * DAY)) == 3
     assert said(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
+
+
+@pytest.mark.parametrize("behind", [timedelta(days=2), timedelta(days=365 * 50)])
+def test_a_clock_behind_the_certificates_is_said(
+    pki: PkiFolder, clock: Clock, behind: timedelta
+) -> None:
+    assert not_yet_valid(pki.registry(), clock.now) == ()
+    (said,) = not_yet_valid(pki.registry(), clock.now - behind)
+    assert said.startswith(f"This machine's clock says {clock.now - behind:%Y-%m-%d}")
+    assert "set it" in said
 
 
 def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from base_station.data_folder import DataFolder
-from base_station.feed import LiveFeed, LogFeed, SteadyClock
+from base_station.feed import LiveFeed, LogFeed
 from base_station.recorder import Recorder
 from base_station.standby.following import Follower, Leader
 from base_station.standby.places import BEGINNING, Place, events_behind
@@ -16,6 +16,7 @@ from base_station.standby.setting_aside import mark_told, parts, read_part, set_
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
+from base_station.steady_clock import SteadyClock
 from shared.bus_memory import MemoryRouter
 from shared.channels import ALARM, FUSED, OPERATOR, TICK
 from shared.clock import NS_PER_S, ManualClock, SystemClock

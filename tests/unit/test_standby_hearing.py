@@ -54,7 +54,7 @@ class Ends:
     def beat(self, **changes: object) -> None:
         self.say("beat", pack(msgspec.structs.replace(OTHER, **changes)))
 
-    def _count(self) -> None:
+    def _count(self, _beat: Beat) -> None:
         self.beats += 1
 
 
