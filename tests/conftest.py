@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import hashlib
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +23,29 @@ PROJECT_ROOT = Path(__file__).resolve().parent.parent
 # How long an example takes says how busy the machine is.
 settings.register_profile("muster", deadline=None)
 settings.load_profile("muster")
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile the trackers before the first test: its time is limited, and this may take a minute.
+
+    Once after each change of them; of tests side by side the first process does it for all.
+    """
+    if session.config.option.collectonly or not session.items:
+        return
+    digest = hashlib.sha256()
+    for path in sorted((PROJECT_ROOT / "edge" / "tracker").glob("*.py")):
+        digest.update(path.read_bytes())
+    folder = PROJECT_ROOT / "build"
+    folder.mkdir(exist_ok=True)
+    with (folder / "trackers.sha256").open("a+") as stamp:
+        fcntl.flock(stamp, fcntl.LOCK_EX)
+        stamp.seek(0)
+        if stamp.read() == digest.hexdigest():
+            return
+        command = [sys.executable, "-m", "shared.command_line", "edge", "compile"]
+        if subprocess.run(command, cwd=PROJECT_ROOT, check=False).returncode == 0:  # else tests say
+            stamp.truncate(0)
+            stamp.write(digest.hexdigest())
 
 
 @pytest.fixture(scope="session")
