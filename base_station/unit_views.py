@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+from base_station.api.answer import to_ms_or_none
 from base_station.api.wire import (
     ClockView,
     DutyView,
@@ -68,13 +69,13 @@ def _unit_view(
         registered=unit.registered,
         person=person_view(unit.person, photo_urls) if unit.person else None,
         link=unit.link,
-        last_heard_ms=ms_of(unit.heard_ns),
+        last_heard_ms=to_ms_or_none(unit.heard_ns),
         status=_status_view(unit, status) if status else None,
-        status_ms=ms_of(unit.status_ns) if unit.status else None,
+        status_ms=to_ms_or_none(unit.status_ns) if unit.status else None,
         ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
         heat_level=levels.get("heat", ""),
         position=_position_view(state, unit.fused, unit.reach) if unit.fused else None,
-        inside_since_ms=ms_of(unit.inside_since_ns),
+        inside_since_ms=to_ms_or_none(unit.inside_since_ns),
         duty=_duty_view(unit.duty) if unit.duty else None,
         alarms=tuple([alarm.alarm_id for alarm in open_alarms]),
         trust=TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
@@ -104,10 +105,10 @@ def _duty_view(duty: Duty) -> DutyView:
         checked_in_ms=duty.checked_in_ns // NS_PER_MS,
         checked_in_by=duty.checked_in_by,
         due_ms=duty.due_ns // NS_PER_MS,
-        asked_ms=ms_of(duty.asked_ns),
-        work_since_ms=ms_of(duty.work_since_ns),
-        rest_since_ms=ms_of(duty.rest_since_ns),
-        rest_due_ms=ms_of(duty.rest_due_ns),
+        asked_ms=to_ms_or_none(duty.asked_ns),
+        work_since_ms=to_ms_or_none(duty.work_since_ns),
+        rest_since_ms=to_ms_or_none(duty.rest_since_ns),
+        rest_due_ms=to_ms_or_none(duty.rest_due_ns),
     )
 
 
@@ -167,7 +168,3 @@ def trail_view(trail: Iterable[TrailStep]) -> tuple[TrailPoint, ...]:
         )
         for step in trail
     )
-
-
-def ms_of(t_ns: int | None) -> int | None:
-    return None if t_ns is None else t_ns // NS_PER_MS

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from base_station.accountability import warning_s
+from base_station.api.answer import to_ms, to_ms_or_none
 from base_station.api.wire import (
     AlarmView,
     AnchorView,
@@ -20,11 +21,11 @@ from base_station.api.wire import (
     StandbyView,
 )
 from base_station.commands.state import Delivery, SentCommand
+from base_station.db.models import Alarm as StoredAlarm
 from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
 from base_station.pins.pin import WAITING, Pin
-from base_station.unit_views import ms_of, trail_view, unit_views
-from shared.clock import NS_PER_MS
+from base_station.unit_views import trail_view, unit_views
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 
@@ -44,19 +45,19 @@ class StationFacts(msgspec.Struct, frozen=True):
     recordings: tuple[RecordingView, ...] = ()
 
 
-def alarm_view(alarm: Alarm | AlarmChange) -> AlarmView:
-    changed_ns = alarm.changed_ns if isinstance(alarm, Alarm) else alarm.header.t_utc_ns
+def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm) -> AlarmView:
+    changed_ns = alarm.header.t_utc_ns if isinstance(alarm, AlarmChange) else alarm.changed_ns
     return AlarmView(
         alarm_id=alarm.alarm_id,
         rule=alarm.rule,
         unit_id=alarm.unit_id,
         priority=alarm.priority,
-        state=alarm.state.name.lower(),
+        state=alarm.state if isinstance(alarm, StoredAlarm) else alarm.state.name.lower(),
         level=alarm.level,
         text=alarm.text,
         by=alarm.by,
-        raised_ms=alarm.raised_ns // NS_PER_MS,
-        changed_ms=changed_ns // NS_PER_MS,
+        raised_ms=to_ms(alarm.raised_ns),
+        changed_ms=to_ms(changed_ns),
     )
 
 
@@ -66,8 +67,8 @@ def command_view(command: SentCommand) -> CommandView:
         kind=command.kind.name.lower(),
         text=command.text,
         issued_by=command.issued_by,
-        issued_ms=command.issued_ns // NS_PER_MS,
-        expires_ms=command.expires_ns // NS_PER_MS,
+        issued_ms=to_ms(command.issued_ns),
+        expires_ms=to_ms(command.expires_ns),
         asks_wearer=command.asks_wearer,
         open=command.is_open,
         units=tuple(_delivery_view(command, one) for one in command.deliveries.values()),
@@ -78,9 +79,9 @@ def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
     return DeliveryView(
         unit_id=delivery.unit_id,
         state=command.state_of(delivery),
-        sent_ms=ms_of(delivery.sent_ns),
-        received_ms=ms_of(delivery.received_ns),
-        acknowledged_ms=ms_of(delivery.acknowledged_ns),
+        sent_ms=to_ms_or_none(delivery.sent_ns),
+        received_ms=to_ms_or_none(delivery.received_ns),
+        acknowledged_ms=to_ms_or_none(delivery.acknowledged_ns),
         acknowledged_by=delivery.acknowledged_by,
         reason=delivery.reason,
     )
@@ -90,8 +91,8 @@ def incident_view(incident: Incident) -> IncidentView:
     return IncidentView(
         incident_id=incident.incident_id,
         name=incident.name,
-        opened_ms=incident.opened_ns // NS_PER_MS,
-        closed_ms=ms_of(incident.closed_ns),
+        opened_ms=to_ms(incident.opened_ns),
+        closed_ms=to_ms_or_none(incident.closed_ns),
         par_interval_s=incident.par_interval_s,
         par_warning_s=warning_s(incident),
         work_limit_s=incident.work_limit_s,
@@ -112,7 +113,7 @@ def _pin_view(state: StationState, pin: Pin) -> PinView:
         kind=pin.kind,
         unit_id=pin.unit_id,
         other_id=pin.other_id,
-        t_ms=pin.t_ns // NS_PER_MS,
+        t_ms=to_ms(pin.t_ns),
         north_m=seen_at.north_m,
         east_m=seen_at.east_m,
         floor=seen_at.floor,
@@ -121,7 +122,7 @@ def _pin_view(state: StationState, pin: Pin) -> PinView:
         heading_std_rad=pin.heading_std_rad,
         note=pin.note,
         by=pin.by,
-        set_ms=pin.set_ns // NS_PER_MS,
+        set_ms=to_ms(pin.set_ns),
         state=verdict.state,
         residual_m=verdict.residual_m,
         sigmas=verdict.sigmas,
@@ -139,7 +140,7 @@ def beacon_views(state: StationState) -> tuple[BeaconView, ...]:
             floor=beacon.floor,
             std_m=beacon.std_m,
             reach_m=beacon.reach_m,
-            seen_ms=ms_of(beacon.seen_ns),
+            seen_ms=to_ms_or_none(beacon.seen_ns),
         )
         for beacon in state.beacons.values()
     )
@@ -183,7 +184,7 @@ def snapshot(
     shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
     return Snapshot(
         seq=seq,
-        now_ms=state.t_ns // NS_PER_MS,
+        now_ms=to_ms(state.t_ns),
         incident=incident_view(state.incident) if state.incident else None,
         units=unit_views(state, state.units.values(), photo_urls),
         alarms=tuple(map(alarm_view, shown)),
@@ -194,11 +195,11 @@ def snapshot(
         pins=pin_views(state),
         beacons=beacon_views(state),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
-        anchor=_anchor_view(state.anchor) if state.anchor else None,
+        anchor=anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),
         replay=replay,
     )
 
 
-def _anchor_view(anchor: Anchor) -> AnchorView:
+def anchor_view(anchor: Anchor) -> AnchorView:
     return AnchorView(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.rotation_rad)

@@ -48,11 +48,3 @@ UntilMs = Annotated[int, Query(ge=0, le=LAST_MS)]
 def window(from_ms: FromMs = 0, until_ms: UntilMs = LAST_MS) -> Window:
     """Dependency: a window of time from the query."""
     return Window(from_ms * NS_PER_MS, until_ms * NS_PER_MS)
-
-
-def to_ms(t_ns: int) -> int:
-    return t_ns // NS_PER_MS
-
-
-def to_ms_or_none(t_ns: int | None) -> int | None:
-    return None if t_ns is None else t_ns // NS_PER_MS

@@ -13,10 +13,12 @@ from typing import Literal
 
 import msgspec
 
+from base_station.api.answer import Answer
+
 Link = Literal["live", "stale", "lost", "never"]
 
 
-class PersonView(msgspec.Struct, frozen=True):
+class PersonView(Answer, frozen=True):
     person_id: str
     name: str
     crew: str
@@ -24,7 +26,7 @@ class PersonView(msgspec.Struct, frozen=True):
     photo_url: str | None
 
 
-class StatusView(msgspec.Struct, frozen=True):
+class StatusView(Answer, frozen=True):
     activity: str  # lower-case name of shared.messages.Activity
     motionless_s: float
     battery: float | None  # 0..1
@@ -33,7 +35,7 @@ class StatusView(msgspec.Struct, frozen=True):
     distance_m: float
 
 
-class PositionView(msgspec.Struct, frozen=True):
+class PositionView(Answer, frozen=True):
     t_ms: int  # the time to which the position belongs
     north_m: float
     east_m: float
@@ -55,7 +57,7 @@ class PositionView(msgspec.Struct, frozen=True):
     # not heard can have walked to, walls considered; empty: the ellipse is all that is known
 
 
-class AlarmView(msgspec.Struct, frozen=True):
+class AlarmView(Answer, frozen=True):
     alarm_id: str
     rule: str
     unit_id: str
@@ -68,7 +70,7 @@ class AlarmView(msgspec.Struct, frozen=True):
     changed_ms: int
 
 
-class DutyView(msgspec.Struct, frozen=True):
+class DutyView(Answer, frozen=True):
     """While an incident is open: when somebody vouched for the wearer, and work and rest."""
 
     checked_in_ms: int
@@ -80,21 +82,21 @@ class DutyView(msgspec.Struct, frozen=True):
     rest_due_ms: int | None
 
 
-class TrustView(msgspec.Struct, frozen=True):
+class TrustView(Answer, frozen=True):
     """How far the place of a unit can be trusted, as a light."""
 
     level: str  # green | amber | red
     reason: str  # for a person; empty: green
 
 
-class ClockView(msgspec.Struct, frozen=True):
+class ClockView(Answer, frozen=True):
     """What a unit knows of the station's time."""
 
     ahead_ms: float  # the unit's own UTC less the station's
     std_ms: float
 
 
-class PinView(msgspec.Struct, frozen=True):
+class PinView(Answer, frozen=True):
     """Where somebody was, as a person or a beacon told, and what became of it."""
 
     pin_id: str
@@ -117,7 +119,7 @@ class PinView(msgspec.Struct, frozen=True):
     text: str  # for a person: what it conflicts with, or what it waits for
 
 
-class BeaconView(msgspec.Struct, frozen=True):
+class BeaconView(Answer, frozen=True):
     """A beacon or tag that hangs at a known place."""
 
     beacon_id: str
@@ -130,7 +132,7 @@ class BeaconView(msgspec.Struct, frozen=True):
     seen_ms: int | None  # when a unit last saw it
 
 
-class UnitView(msgspec.Struct, frozen=True):
+class UnitView(Answer, frozen=True):
     """Everything a card and the plan show of one unit; a delta carries it whole."""
 
     unit_id: str
@@ -152,7 +154,7 @@ class UnitView(msgspec.Struct, frozen=True):
     cloned: bool  # two machines speak under its name; one of them is shown
 
 
-class DeliveryView(msgspec.Struct, frozen=True):
+class DeliveryView(Answer, frozen=True):
     """How far a command has got with one unit."""
 
     unit_id: str
@@ -164,7 +166,7 @@ class DeliveryView(msgspec.Struct, frozen=True):
     reason: str  # of a refusal
 
 
-class CommandView(msgspec.Struct, frozen=True):
+class CommandView(Answer, frozen=True):
     """What units were told; a delta carries it whole."""
 
     command_id: str
@@ -178,7 +180,7 @@ class CommandView(msgspec.Struct, frozen=True):
     units: tuple[DeliveryView, ...]
 
 
-class IncidentView(msgspec.Struct, frozen=True):
+class IncidentView(Answer, frozen=True):
     incident_id: str
     name: str
     opened_ms: int
@@ -188,7 +190,7 @@ class IncidentView(msgspec.Struct, frozen=True):
     work_limit_s: float
 
 
-class StandbyView(msgspec.Struct, frozen=True):
+class StandbyView(Answer, frozen=True):
     """Which of two stations this is."""
 
     station: str  # its name
@@ -200,7 +202,7 @@ class StandbyView(msgspec.Struct, frozen=True):
     in_step: bool  # the standby has what the active station has
 
 
-class RecordingView(msgspec.Struct, frozen=True):
+class RecordingView(Answer, frozen=True):
     """A unit's raw recording that somebody asked for, on its way over the bus."""
 
     fetch_id: str
@@ -211,7 +213,7 @@ class RecordingView(msgspec.Struct, frozen=True):
     total_bytes: int  # 0: not known yet
 
 
-class HealthView(msgspec.Struct, frozen=True):
+class HealthView(Answer, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
     problems: tuple[str, ...]
@@ -228,7 +230,7 @@ class HealthView(msgspec.Struct, frozen=True):
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 
-class ReplayView(msgspec.Struct, frozen=True):
+class ReplayView(Answer, frozen=True):
     """Where a replay stands; absent when the console shows what is live."""
 
     incident_id: str
@@ -249,7 +251,7 @@ class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
     floor: int | None
 
 
-class AnchorView(msgspec.Struct, frozen=True):
+class AnchorView(Answer, frozen=True):
     lat_deg: float
     lon_deg: float
     height_m: float

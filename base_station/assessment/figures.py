@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
+from base_station.api.answer import Answer
 from base_station.db.records import TrackSample
 
 Floats = NDArray[np.float64]
@@ -17,7 +17,7 @@ DRAWS = 512  # of each place's normal distribution; they are the same for every 
 MOST_PLACES = 300
 
 
-class Figures(msgspec.Struct, frozen=True):
+class Figures(Answer, frozen=True):
     """Metres; half, or 95 %, of all errors are no larger."""
 
     ce50_m: float

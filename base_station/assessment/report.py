@@ -10,6 +10,7 @@ from itertools import pairwise
 import msgspec
 import numpy as np
 
+from base_station.api.answer import Answer
 from base_station.assessment.figures import (
     Figures,
     errors_against,
@@ -31,7 +32,7 @@ SETTLING_NS = 20 * NS_PER_S  # about a re-entry
 Tracks = Mapping[str, Sequence[TrackSample]]
 
 
-class PinResidual(msgspec.Struct, frozen=True):
+class PinResidual(Answer, frozen=True):
     """How far a pin lay from what was shown at its time, and lies from the smoothed trail."""
 
     pin_id: str
@@ -43,7 +44,7 @@ class PinResidual(msgspec.Struct, frozen=True):
     floor_right: bool | None  # was the floor shown the pin's?
 
 
-class TrustReport(msgspec.Struct, frozen=True):
+class TrustReport(Answer, frozen=True):
     """For how long the light was which, in seconds, and why it was not green."""
 
     green_s: float
@@ -52,7 +53,7 @@ class TrustReport(msgspec.Struct, frozen=True):
     causes: tuple[tuple[str, float], ...]  # longest first
 
 
-class UnitReport(msgspec.Struct, frozen=True):
+class UnitReport(Answer, frozen=True):
     unit_id: str
     seconds: float
     walked_m: float
@@ -68,7 +69,7 @@ class UnitReport(msgspec.Struct, frozen=True):
     people: tuple[str, ...] = ()  # who wore it; not kept, so that people can be forgotten
 
 
-class IncidentReport(msgspec.Struct, frozen=True):
+class IncidentReport(Answer, frozen=True):
     incident_id: str
     smoother: str
     made_ms: int

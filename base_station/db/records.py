@@ -9,11 +9,11 @@ import msgspec
 from sqlalchemy import delete, func, select
 from sqlalchemy.dialects.sqlite import insert
 
+from base_station.db import models
 from base_station.db.models import (
     PROJECTIONS,
     Alarm,
     AlarmLife,
-    Anchor,
     AuditEntry,
     Incident,
     LogSegment,
@@ -23,6 +23,7 @@ from base_station.db.models import (
 from base_station.db.store import Store
 from shared.clock import Clock
 from shared.errors import UserError
+from shared.geo import Anchor
 
 FOREVER_NS = 2**63 - 1
 
@@ -133,11 +134,13 @@ class Records:
     def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
         """The last one set before ``until_ns``; without one, the first set later."""
         with self._store.read() as session:
-            before = select(Anchor).where(Anchor.t_ns < until_ns).order_by(Anchor.t_ns.desc())
-            return (
-                session.scalars(before.limit(1)).first()
-                or session.scalars(select(Anchor).order_by(Anchor.t_ns).limit(1)).first()
-            )
+            t_ns = models.Anchor.t_ns
+            before = select(models.Anchor).where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
+            first = select(models.Anchor).order_by(t_ns).limit(1)
+            row = session.scalars(before).first() or session.scalars(first).first()
+        if row is None:
+            return None
+        return Anchor(row.lat_deg, row.lon_deg, row.height_m, row.plan_rotation_rad)
 
     def plan(self, until_ns: int = FOREVER_NS) -> bytes | None:
         """The last one set before ``until_ns``, as site GeoJSON."""

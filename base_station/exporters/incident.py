@@ -8,7 +8,6 @@ from base_station.db.models import Assignment, Incident
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.exporters.port import ExportPoint, IncidentTracks, WornTrack
-from shared.geo import Anchor
 
 
 def incident_tracks(
@@ -32,14 +31,10 @@ def incident_tracks(
             [one for one in assignments if one.unit_id == unit_id],
         )
     )
-    stored = records.anchor(window.until_ns)
-    anchor = None
-    if stored is not None:
-        anchor = Anchor(stored.lat_deg, stored.lon_deg, stored.height_m, stored.plan_rotation_rad)
     return IncidentTracks(
         incident_id=incident.incident_id,
         name=incident.name,
-        anchor=anchor,
+        anchor=records.anchor(window.until_ns),
         tracks=tracks,
     )
 

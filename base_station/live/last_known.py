@@ -13,9 +13,8 @@ from concurrent.futures import Future
 
 import msgspec
 
+from base_station.api.answer import to_ms, to_ms_or_none
 from base_station.api.wire import (
-    AlarmView,
-    AnchorView,
     HealthView,
     IncidentView,
     PersonView,
@@ -30,7 +29,8 @@ from base_station.db import models
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.live.sinks import ActionDone, LiveSink
-from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from base_station.views import alarm_view, anchor_view
+from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
 from shared.messages.station import Action
 
@@ -86,7 +86,7 @@ class LastKnown:
         stored = self._stored = self._stored or self._read()
         return msgspec.structs.replace(
             stored,
-            now_ms=self._clock.utc_ns() // NS_PER_MS,
+            now_ms=to_ms(self._clock.utc_ns()),
             health=msgspec.structs.replace(stored.health, reading=self._share),
         )
 
@@ -108,19 +108,19 @@ class LastKnown:
         plan, anchor = self._records.plan(), self._records.anchor()
         return Snapshot(
             seq=0,
-            now_ms=now_ns // NS_PER_MS,
+            now_ms=to_ms(now_ns),
             incident=None if incident is None else _incident(incident),
             units=tuple(
                 self._unit(unit, worn, trails.get(unit.unit_id, []), open_alarms)
                 for unit, worn in self._roster.units()
             ),
-            alarms=tuple(map(_alarm, open_alarms)),
+            alarms=tuple(map(alarm_view, open_alarms)),
             commands=(),
             trails={unit_id: tuple(map(_point, trail)) for unit_id, trail in trails.items()},
             pins=(),
             beacons=(),
             plan=None if plan is None else msgspec.Raw(plan),
-            anchor=None if anchor is None else _anchor(anchor),
+            anchor=None if anchor is None else anchor_view(anchor),
             health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False),
             replay=None,
         )
@@ -138,7 +138,7 @@ class LastKnown:
             registered=unit.registered_ns is not None,
             person=None if worn is None else self._person(worn),
             link="lost" if unit.last_heard_ns is not None else "never",
-            last_heard_ms=_ms(unit.last_heard_ns),
+            last_heard_ms=to_ms_or_none(unit.last_heard_ns),
             status=None,
             status_ms=None,
             ambient_degc=None,
@@ -164,7 +164,7 @@ def _position(sample: TrackSample) -> PositionView:
     """The larger error on both axes: the tables have no more of the region."""
     radius_m = _RADIUS_95 * max(sample.std_north_m, sample.std_east_m)
     return PositionView(
-        t_ms=sample.t_ns // NS_PER_MS,
+        t_ms=to_ms(sample.t_ns),
         north_m=sample.north_m,
         east_m=sample.east_m,
         down_m=sample.down_m,
@@ -186,33 +186,10 @@ def _position(sample: TrackSample) -> PositionView:
 
 
 def _point(sample: TrackSample) -> TrailPoint:
-    return TrailPoint(sample.t_ns // NS_PER_MS, sample.north_m, sample.east_m, sample.floor)
+    return TrailPoint(to_ms(sample.t_ns), sample.north_m, sample.east_m, sample.floor)
 
 
 def _incident(incident: models.Incident) -> IncidentView:
     """Nobody's check-in counts down while nothing is live."""
-    opened_ms = incident.opened_ns // NS_PER_MS
+    opened_ms = to_ms(incident.opened_ns)
     return IncidentView(incident.incident_id, incident.name, opened_ms, None, 0.0, 0.0, 0.0)
-
-
-def _anchor(anchor: models.Anchor) -> AnchorView:
-    return AnchorView(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.plan_rotation_rad)
-
-
-def _alarm(alarm: models.Alarm) -> AlarmView:
-    return AlarmView(
-        alarm_id=alarm.alarm_id,
-        rule=alarm.rule,
-        unit_id=alarm.unit_id,
-        priority=alarm.priority,
-        state=alarm.state,
-        level=alarm.level,
-        text=alarm.text,
-        by=alarm.by,
-        raised_ms=alarm.raised_ns // NS_PER_MS,
-        changed_ms=alarm.changed_ns // NS_PER_MS,
-    )
-
-
-def _ms(t_ns: int | None) -> int | None:
-    return None if t_ns is None else t_ns // NS_PER_MS

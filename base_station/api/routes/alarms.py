@@ -4,34 +4,26 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import msgspec
 from fastapi import APIRouter, Depends
-from pydantic import BaseModel
 
-from base_station.api.forms import Form, Id, Note, to_ms, window
+from base_station.api.answer import Answer, to_ms
+from base_station.api.forms import Form, Id, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
+from base_station.api.wire import AlarmView
 from base_station.db import models
 from base_station.db.records import Window
+from base_station.views import alarm_view
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 router = APIRouter(tags=["alarms"])
 
 
-class Alarm(BaseModel):
-    alarm_id: str
-    rule: str
-    unit_id: str
-    priority: int
-    state: str
-    level: str
-    text: str
-    by: str
-    raised_ms: int
-    changed_ms: int
+class Change(Answer, frozen=True):
+    """One in the life of an alarm."""
 
-
-class AlarmChange(BaseModel):
     t_ms: int
     state: str
     level: str
@@ -39,47 +31,30 @@ class AlarmChange(BaseModel):
     by: str
 
 
-class AlarmWithLife(Alarm):
-    changes: list[AlarmChange]
+class AlarmWithLife(AlarmView, frozen=True):
+    changes: tuple[Change, ...]  # oldest first
 
 
 class Resolution(Form):
     note: Note = ""
 
 
-def alarm_of(alarm: models.Alarm) -> Alarm:
-    return Alarm(
-        alarm_id=alarm.alarm_id,
-        rule=alarm.rule,
-        unit_id=alarm.unit_id,
-        priority=alarm.priority,
-        state=alarm.state,
-        level=alarm.level,
-        text=alarm.text,
-        by=alarm.by,
-        raised_ms=to_ms(alarm.raised_ns),
-        changed_ms=to_ms(alarm.changed_ns),
-    )
-
-
 @router.get("/alarms")
 def list_alarms(
     station: Station, _: Viewer, when: Annotated[Window, Depends(window)]
-) -> list[Alarm]:
+) -> list[AlarmView]:
     """Those raised in the window, oldest first."""
-    return [alarm_of(alarm) for alarm in station.records.alarms(when)]
+    return [alarm_view(alarm) for alarm in station.records.alarms(when)]
 
 
 @router.get("/alarms/{alarm_id}")
 def get_alarm(alarm_id: Id, station: Station, _: Viewer) -> AlarmWithLife:
     alarm = _alarm_or_404(station, alarm_id)
-    changes = [
-        AlarmChange(
-            t_ms=to_ms(life.t_ns), state=life.state, level=life.level, text=life.text, by=life.by
-        )
+    changes = tuple(
+        Change(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
         for life in station.records.alarm_life(alarm_id)
-    ]
-    return AlarmWithLife(**alarm_of(alarm).model_dump(), changes=changes)
+    )
+    return AlarmWithLife(**msgspec.structs.asdict(alarm_view(alarm)), changes=changes)
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)

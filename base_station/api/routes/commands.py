@@ -6,9 +6,8 @@ import uuid
 from enum import StrEnum
 from typing import Annotated, Literal
 
-import msgspec
 from fastapi import APIRouter
-from pydantic import BaseModel, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from base_station.api.forms import Form, Id, Note, UnitIdText, Word
 from base_station.api.problems import Problem
@@ -70,41 +69,19 @@ class Confirmation(Form):
     unit_id: UnitIdText
 
 
-class Delivery(BaseModel):
-    unit_id: str
-    state: str
-    sent_ms: int | None
-    received_ms: int | None
-    acknowledged_ms: int | None
-    acknowledged_by: str
-    reason: str
-
-
-class Command(BaseModel):
-    command_id: str
-    kind: str
-    text: str
-    issued_by: str
-    issued_ms: int
-    expires_ms: int
-    asks_wearer: bool
-    open: bool
-    units: list[Delivery]
-
-
 @router.get("/commands")
-def list_commands(station: Station, _: Viewer) -> list[Command]:
+def list_commands(station: Station, _: Viewer) -> list[CommandView]:
     """Those that are open and the last closed ones, oldest first; the audit names all."""
-    return [_command(view) for view in station.picture().commands]
+    return list(station.picture().commands)
 
 
 @router.get("/commands/{command_id}")
-def get_command(command_id: Id, station: Station, _: Viewer) -> Command:
+def get_command(command_id: Id, station: Station, _: Viewer) -> CommandView:
     return _command_or_404(station, command_id)
 
 
 @router.post("/commands", status_code=201)
-def send(new: NewCommand, station: Station, who: Commander) -> Command:
+def send(new: NewCommand, station: Station, who: Commander) -> CommandView:
     """It is sent to each unit until that answers, ``expires_s`` from now at the latest."""
     action = SendCommand(
         command_id=uuid.uuid4().hex,
@@ -127,12 +104,8 @@ def confirm(command_id: Id, by_voice: Confirmation, station: Station, who: Comma
     station.act(who.username, ConfirmCommand(command_id, by_voice.unit_id))
 
 
-def _command_or_404(station: Services, command_id: str) -> Command:
+def _command_or_404(station: Services, command_id: str) -> CommandView:
     for view in station.picture().commands:
         if view.command_id == command_id:
-            return _command(view)
+            return view
     raise Problem(404, "There is no such command.")
-
-
-def _command(view: CommandView) -> Command:
-    return Command.model_validate(msgspec.to_builtins(view))

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import msgspec
 from fastapi import APIRouter
-from pydantic import BaseModel
 
-from base_station.api.forms import to_ms
+from base_station.api.answer import Answer, to_ms
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Station
+from base_station.api.wire import HealthView
 
 router = APIRouter(tags=["health"])
 
 
-class Segment(BaseModel):
+class Segment(Answer, frozen=True):
+    """A file of the log."""
+
     name: str
     first_ms: int
     last_ms: int
@@ -22,18 +25,11 @@ class Segment(BaseModel):
     note: str  # what recovery had to say
 
 
-class Health(BaseModel):
-    problems: list[str]
-    messages: int
-    undecodable: int
-    unknown_units: int
-    log_bytes: int
-    disk_free_bytes: int
-    messages_per_s: float
-    repeated: int
-    insecure: bool
+class Health(HealthView, frozen=True, kw_only=True):
+    """As the consoles see it, and who watches, and what the log is made of."""
+
     consoles: int
-    segments: list[Segment]
+    segments: tuple[Segment, ...]
 
 
 @router.get("/health")
@@ -42,25 +38,17 @@ def get_health(station: Station, _: Viewer) -> Health:
     if view is None:
         raise Problem(503, "The station has just started; ask again in a second.")
     return Health(
-        problems=list(view.problems),
-        messages=view.messages,
-        undecodable=view.undecodable,
-        unknown_units=view.unknown_units,
-        log_bytes=view.log_bytes,
-        disk_free_bytes=view.disk_free_bytes,
-        messages_per_s=view.messages_per_s,
-        repeated=view.repeated,
-        insecure=view.insecure,
+        **msgspec.structs.asdict(view),
         consoles=station.hub.watchers,
-        segments=[
+        segments=tuple(
             Segment(
-                name=segment.name,
-                first_ms=to_ms(segment.first_ns),
-                last_ms=to_ms(segment.last_ns),
-                messages=segment.messages,
-                size_bytes=segment.size_bytes,
-                note=segment.note,
+                segment.name,
+                to_ms(segment.first_ns),
+                to_ms(segment.last_ns),
+                segment.messages,
+                segment.size_bytes,
+                segment.note,
             )
             for segment in station.records.segments()
-        ],
+        ),
     )

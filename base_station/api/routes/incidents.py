@@ -8,14 +8,16 @@ from datetime import UTC, datetime
 from fastapi import APIRouter
 from pydantic import BaseModel
 
-from base_station.api.forms import Form, Id, Name, to_ms, to_ms_or_none
+from base_station.api.answer import to_ms, to_ms_or_none
+from base_station.api.forms import Form, Id, Name
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
-from base_station.api.routes.alarms import Alarm, alarm_of
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
+from base_station.api.wire import AlarmView
 from base_station.db import models
 from base_station.db.records import FOREVER_NS, Window
+from base_station.views import alarm_view
 from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 
@@ -81,10 +83,10 @@ def close_incident(incident_id: Id, station: Station, who: Commander) -> None:
 
 
 @router.get("/incidents/{incident_id}/alarms")
-def incident_alarms(incident_id: Id, station: Station, _: Viewer) -> list[Alarm]:
+def incident_alarms(incident_id: Id, station: Station, _: Viewer) -> list[AlarmView]:
     """What was raised while the incident was open, oldest first."""
     window = window_of(incident_or_404(station, incident_id))
-    return [alarm_of(alarm) for alarm in station.records.alarms(window)]
+    return [alarm_view(alarm) for alarm in station.records.alarms(window)]
 
 
 def _incident(incident: models.Incident) -> Incident:

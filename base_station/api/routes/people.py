@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Body, Response
-from pydantic import BaseModel
 
 from base_station.api.forms import MOST_UPLOADED_BYTES, Form, Id, Name, Word
 from base_station.api.photos import clean_photo
 from base_station.api.problems import Problem
 from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Services, Station
+from base_station.api.wire import PersonView
 from base_station.db import models
 from shared.messages.station import Assign
 
@@ -20,22 +20,14 @@ router = APIRouter(tags=["people"], route_class=AfterLogin)
 _NO_PERSON = "There is no such person."
 
 
-class Person(BaseModel):
-    person_id: str
-    name: str
-    crew: str
-    role: str
-    photo_url: str | None
-
-
 class PersonForm(Form):
     name: Name
     crew: Word = ""
     role: Word = ""
 
 
-def _person(person: models.Person, station: Services) -> Person:
-    return Person(
+def _person(person: models.Person, station: Services) -> PersonView:
+    return PersonView(
         person_id=person.person_id,
         name=person.name,
         crew=person.crew,
@@ -45,19 +37,19 @@ def _person(person: models.Person, station: Services) -> Person:
 
 
 @router.get("/people")
-def list_people(station: Station, _: Viewer) -> list[Person]:
+def list_people(station: Station, _: Viewer) -> list[PersonView]:
     return [_person(person, station) for person in station.roster.people()]
 
 
 @router.post("/people", status_code=201)
-def add_person(form: PersonForm, station: Station, who: Commander) -> Person:
+def add_person(form: PersonForm, station: Station, who: Commander) -> PersonView:
     person = station.roster.add_person(form.name, form.crew, form.role)
     station.records.audit(who.username, "AddedPerson", f"{person.person_id} {form.name}")
     return _person(person, station)
 
 
 @router.get("/people/{person_id}")
-def get_person(person_id: Id, station: Station, _: Viewer) -> Person:
+def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
     person = station.roster.person(person_id)
     if person is None:
         raise Problem(404, _NO_PERSON)
@@ -65,7 +57,7 @@ def get_person(person_id: Id, station: Station, _: Viewer) -> Person:
 
 
 @router.put("/people/{person_id}")
-def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> Person:
+def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> PersonView:
     """Whoever wears a unit is shown with the new name at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:

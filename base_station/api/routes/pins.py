@@ -6,9 +6,8 @@ import math
 import uuid
 from typing import Annotated
 
-import msgspec
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from base_station.api.forms import LAST_MS, Form, Id, Metres, Note, UnitIdText, Word
 from base_station.api.problems import Problem
@@ -26,6 +25,9 @@ from shared.messages.pins import (
 )
 
 router = APIRouter(tags=["pins"])
+
+_NO_PIN = "There is no such pin."
+_NO_BEACON = "There is no such beacon."
 
 Milliseconds = Annotated[int, Field(ge=0, le=LAST_MS)]
 Std = Annotated[float, Field(gt=0.0, le=1000.0)]
@@ -72,46 +74,14 @@ class BeaconForm(Form):
     reach_m: Annotated[float, Field(ge=0.0, le=100.0)] = 3.0
 
 
-class Pin(BaseModel):
-    pin_id: str
-    kind: str
-    unit_id: str
-    other_id: str
-    t_ms: int
-    north_m: float | None
-    east_m: float | None
-    floor: int | None
-    std_m: float
-    heading_rad: float | None
-    heading_std_rad: float
-    note: str
-    by: str
-    set_ms: int
-    state: str
-    residual_m: float | None
-    sigmas: float | None
-    text: str
-
-
-class Beacon(BaseModel):
-    beacon_id: str
-    label: str
-    north_m: float
-    east_m: float
-    floor: int | None
-    std_m: float
-    reach_m: float
-    seen_ms: int | None
-
-
 @router.get("/pins")
-def list_pins(station: Station, _: Viewer) -> list[Pin]:
+def list_pins(station: Station, _: Viewer) -> list[PinView]:
     """In the order of setting, with what became of each."""
-    return [_pin(view) for view in station.picture().pins]
+    return list(station.picture().pins)
 
 
 @router.post("/pins", status_code=201)
-def set_pin(form: PinForm, station: Station, who: Commander) -> Pin:
+def set_pin(form: PinForm, station: Station, who: Commander) -> PinView:
     """This unit was here then: its whole past is solved again."""
     pin_id = uuid.uuid4().hex
     station.act(who.username, _place_pin(station, pin_id, form))
@@ -119,17 +89,17 @@ def set_pin(form: PinForm, station: Station, who: Commander) -> Pin:
 
 
 @router.post("/pins/start", status_code=201)
-def start_together(form: StartForm, station: Station, who: Commander) -> list[Pin]:
+def start_together(form: StartForm, station: Station, who: Commander) -> list[PinView]:
     """These units were together here then: all start at the engine."""
     pin_id = uuid.uuid4().hex
     said = form.model_dump(exclude={"t_ms", "unit_ids"})
     action = StartTogether(pin_id, tuple(form.unit_ids), form.t_ms * NS_PER_MS, **said)
     station.act(who.username, action)
-    return [_pin(view) for view in station.picture().pins if view.pin_id.startswith(f"{pin_id}:")]
+    return [view for view in station.picture().pins if view.pin_id.startswith(f"{pin_id}:")]
 
 
 @router.post("/pins/meeting", status_code=201)
-def set_meeting(form: MeetingForm, station: Station, who: Commander) -> Pin:
+def set_meeting(form: MeetingForm, station: Station, who: Commander) -> PinView:
     """Two people met; nobody has to know where."""
     pin_id = uuid.uuid4().hex
     t_ns = _time(station, form.t_ms)
@@ -139,7 +109,7 @@ def set_meeting(form: MeetingForm, station: Station, who: Commander) -> Pin:
 
 
 @router.put("/pins/{pin_id}")
-def move_pin(pin_id: Id, form: PinForm, station: Station, who: Commander) -> Pin:
+def move_pin(pin_id: Id, form: PinForm, station: Station, who: Commander) -> PinView:
     """Take the pin back and set it as said now; without a time, the time stays."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
@@ -153,29 +123,31 @@ def move_pin(pin_id: Id, form: PinForm, station: Station, who: Commander) -> Pin
 @router.delete("/pins/{pin_id}", status_code=204)
 def remove_pin(pin_id: Id, station: Station, who: Commander) -> None:
     """Everything is then as if it had never been set."""
-    if not any(one.pin_id.split(":")[0] == pin_id or one.pin_id == pin_id
-               for one in station.picture().pins):  # fmt: skip
-        raise Problem(404, "There is no such pin.")
+    pins = station.picture().pins
+    if not any(pin_id in (one.pin_id, one.pin_id.partition(":")[0]) for one in pins):
+        raise Problem(404, _NO_PIN)
     station.act(who.username, RemovePin(pin_id))
 
 
 @router.get("/beacons")
-def list_beacons(station: Station, _: Viewer) -> list[Beacon]:
-    return [_beacon(view) for view in station.picture().beacons]
+def list_beacons(station: Station, _: Viewer) -> list[BeaconView]:
+    return list(station.picture().beacons)
 
 
 @router.put("/beacons/{beacon_id}")
-def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, who: Commander) -> Beacon:
+def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, who: Commander) -> BeaconView:
     """Say where a beacon or tag hangs, or that it hangs elsewhere than was said."""
     station.act(who.username, PlaceBeacon(beacon_id, **form.model_dump()))
-    found = next(one for one in station.picture().beacons if one.beacon_id == beacon_id)
-    return _beacon(found)
+    for view in station.picture().beacons:
+        if view.beacon_id == beacon_id:
+            return view
+    raise Problem(404, _NO_BEACON)  # somebody else has just removed it
 
 
 @router.delete("/beacons/{beacon_id}", status_code=204)
 def remove_beacon(beacon_id: Id, station: Station, who: Commander) -> None:
     if all(one.beacon_id != beacon_id for one in station.picture().beacons):
-        raise Problem(404, "There is no such beacon.")
+        raise Problem(404, _NO_BEACON)
     station.act(who.username, RemoveBeacon(beacon_id))
 
 
@@ -188,16 +160,8 @@ def _time(station: Services, t_ms: int | None) -> int:
     return station.clock.utc_ns() if t_ms is None else t_ms * NS_PER_MS
 
 
-def _pin_or_404(station: Services, pin_id: str) -> Pin:
+def _pin_or_404(station: Services, pin_id: str) -> PinView:
     for view in station.picture().pins:
         if view.pin_id == pin_id:
-            return _pin(view)
-    raise Problem(404, "There is no such pin.")
-
-
-def _pin(view: PinView) -> Pin:
-    return Pin.model_validate(msgspec.to_builtins(view))
-
-
-def _beacon(view: BeaconView) -> Beacon:
-    return Beacon.model_validate(msgspec.to_builtins(view))
+            return view
+    raise Problem(404, _NO_PIN)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated
 
+import msgspec
 from fastapi import APIRouter, Request
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from base_station.api.forms import LAST_MS, Form, Id, PersonIdText
 from base_station.api.problems import Problem
@@ -14,6 +15,7 @@ from base_station.api.replays import OpenReplay
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
+from base_station.api.wire import ReplayView
 from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["replays"])
@@ -34,14 +36,8 @@ class ReplayChange(Form):
     playing: bool | None = None
 
 
-class Replay(BaseModel):
+class Replay(ReplayView, frozen=True, kw_only=True):
     replay_id: str
-    incident_id: str
-    start_ms: int
-    end_ms: int
-    at_ms: int
-    speed: float
-    playing: bool
 
 
 @router.get("/replays")
@@ -89,13 +85,5 @@ def _replay_or_404(station: Services, replay_id: str) -> OpenReplay:
 
 
 def _replay(replay: OpenReplay) -> Replay:
-    view = replay.player.view()
-    return Replay(
-        replay_id=replay.replay_id,
-        incident_id=view.incident_id,
-        start_ms=view.start_ms,
-        end_ms=view.end_ms,
-        at_ms=view.at_ms,
-        speed=view.speed,
-        playing=view.playing,
-    )
+    view = msgspec.structs.asdict(replay.player.view())
+    return Replay(**view, replay_id=replay.replay_id)

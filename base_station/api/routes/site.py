@@ -7,13 +7,15 @@ from typing import Annotated, Any
 
 import msgspec
 from fastapi import APIRouter, Response
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from base_station.api.forms import MOST_UPLOADED_BYTES, Form
 from base_station.api.problems import Problem
 from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Station
+from base_station.api.wire import AnchorView
 from base_station.site.plan import read_plan
+from base_station.views import anchor_view
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 
@@ -29,24 +31,10 @@ class AnchorForm(Form):
     plan_rotation_rad: Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)] = 0.0
 
 
-class Anchor(BaseModel):
-    lat_deg: float
-    lon_deg: float
-    height_m: float
-    plan_rotation_rad: float
-
-
 @router.get("/site/anchor")
-def get_anchor(station: Station, _: Viewer) -> Anchor | None:
+def get_anchor(station: Station, _: Viewer) -> AnchorView | None:
     anchor = station.records.anchor()
-    if anchor is None:
-        return None
-    return Anchor(
-        lat_deg=anchor.lat_deg,
-        lon_deg=anchor.lon_deg,
-        height_m=anchor.height_m,
-        plan_rotation_rad=anchor.plan_rotation_rad,
-    )
+    return None if anchor is None else anchor_view(anchor)
 
 
 @router.put("/site/anchor", status_code=204)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import msgspec
 from fastapi import APIRouter, Response
 from pydantic import BaseModel
 
@@ -10,18 +9,9 @@ from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.api.standing import Standing
+from base_station.api.wire import StandbyView
 
 router = APIRouter(tags=["standby"])
-
-
-class Standby(BaseModel):
-    station: str
-    role: str  # active | standby | waiting
-    url: str
-    other: str
-    other_role: str
-    other_url: str
-    in_step: bool
 
 
 class Leads(BaseModel):
@@ -29,8 +19,8 @@ class Leads(BaseModel):
 
 
 @router.get("/standby")
-def get_standby(station: Station, _: Viewer) -> Standby:
-    return Standby.model_validate(msgspec.to_builtins(_standing_or_404(station).view()))
+def get_standby(station: Station, _: Viewer) -> StandbyView:
+    return _standing_or_404(station).view()
 
 
 @router.get("/standby/leads")

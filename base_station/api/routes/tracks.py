@@ -6,9 +6,9 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, Depends, Query, Response
-from pydantic import BaseModel
 
-from base_station.api.forms import Id, UnitId, to_ms, window
+from base_station.api.answer import Answer, to_ms
+from base_station.api.forms import Id, UnitId, window
 from base_station.api.routes.incidents import incident_or_404, window_of
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
@@ -19,7 +19,7 @@ router = APIRouter(tags=["tracks"])
 EverySeconds = Annotated[int, Query(ge=1, le=3600)]
 
 
-class TrackPoint(BaseModel):
+class TrackPoint(Answer, frozen=True):
     """NED metres about the site anchor."""
 
     t_ms: int
@@ -34,9 +34,9 @@ class TrackPoint(BaseModel):
     quality: str
 
 
-class Track(BaseModel):
+class Track(Answer, frozen=True):
     unit_id: str
-    points: list[TrackPoint]
+    points: tuple[TrackPoint, ...]
 
 
 @router.get("/units/{unit_id}/track", response_model=Track)
@@ -60,26 +60,26 @@ def incident_tracks(
     return _json([_track(station, unit_id, when, every_s) for unit_id in units])
 
 
-def _track(station: Services, unit_id: str, when: Window, every_s: int) -> dict[str, object]:
+def _track(station: Services, unit_id: str, when: Window, every_s: int) -> Track:
     points = station.records.track(unit_id, when, every_s)
-    return {"unit_id": unit_id, "points": [_point(point) for point in points]}
+    return Track(unit_id, tuple(map(_point, points)))
 
 
-def _point(point: TrackSample) -> dict[str, object]:
-    return {
-        "t_ms": to_ms(point.t_ns),
-        "north_m": point.north_m,
-        "east_m": point.east_m,
-        "down_m": point.down_m,
-        "std_north_m": point.std_north_m,
-        "std_east_m": point.std_east_m,
-        "std_down_m": point.std_down_m,
-        "heading_rad": point.heading_rad,
-        "floor": point.floor,
-        "quality": point.quality,
-    }
+def _point(point: TrackSample) -> TrackPoint:
+    return TrackPoint(
+        t_ms=to_ms(point.t_ns),
+        north_m=point.north_m,
+        east_m=point.east_m,
+        down_m=point.down_m,
+        std_north_m=point.std_north_m,
+        std_east_m=point.std_east_m,
+        std_down_m=point.std_down_m,
+        heading_rad=point.heading_rad,
+        floor=point.floor,
+        quality=point.quality,
+    )
 
 
-def _json(tracks: object) -> Response:
+def _json(tracks: Track | list[Track]) -> Response:
     """Straight to bytes: an hour of a hundred units is 360,000 points."""
     return Response(msgspec.json.encode(tracks), media_type="application/json")

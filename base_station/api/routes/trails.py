@@ -8,9 +8,9 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, Query, Response
-from pydantic import BaseModel
 
-from base_station.api.forms import Id, to_ms
+from base_station.api.answer import Answer, to_ms
+from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
@@ -31,16 +31,19 @@ class TrailKind(StrEnum):
     SMOOTHED = "smoothed"  # the best that is known afterwards
 
 
-class Trail(BaseModel):
+Point = tuple[int, float, float, int | None]  # t_ms, north_m, east_m, floor
+
+
+class Trail(Answer, frozen=True):
     unit_id: str
-    points: list[tuple[int, float, float, int | None]]  # t_ms, north_m, east_m, floor
+    points: tuple[Point, ...]
 
 
-class Trails(BaseModel):
+class Trails(Answer, frozen=True):
     incident_id: str
     kind: TrailKind
     made_ms: int  # when it was worked out
-    trails: list[Trail]
+    trails: tuple[Trail, ...]
 
 
 @router.get("/incidents/{incident_id}/trails", response_model=Trails)
@@ -54,15 +57,12 @@ def incident_trails(
     """Of every unit that moved.  The smoothed ones of an open incident are as of now."""
     incident = incident_or_404(station, incident_id)
     made_ns, tracks = trails_of(station, incident, kind)
-    body = {
-        "incident_id": incident_id,
-        "kind": kind.value,
-        "made_ms": to_ms(made_ns),
-        "trails": [
-            {"unit_id": unit_id, "points": _points(track, every_s)}
-            for unit_id, track in tracks.items()
-        ],
-    }
+    body = Trails(
+        incident_id,
+        kind,
+        to_ms(made_ns),
+        tuple(Trail(unit_id, _points(track, every_s)) for unit_id, track in tracks.items()),
+    )
     return Response(msgspec.json.encode(body), media_type="application/json")
 
 
@@ -82,14 +82,14 @@ def trails_of(station: Services, incident: models.Incident, kind: TrailKind) -> 
     return station.clock.utc_ns(), station.records.tracks_of(incident)
 
 
-def _points(
-    track: Sequence[TrackSample], every_s: int
-) -> list[tuple[int, float, float, int | None]]:
-    points, last_s = [], -1
+def _points(track: Sequence[TrackSample], every_s: int) -> tuple[Point, ...]:
+    """Of every ``every_s`` seconds the first one."""
+    points: list[Point] = []
+    last_s = -1
     for sample in track:
         bucket = sample.t_ns // (every_s * NS_PER_S)
         if bucket != last_s:
             last_s = bucket
             place = round(sample.north_m, 2), round(sample.east_m, 2)
             points.append((to_ms(sample.t_ns), *place, sample.floor))
-    return points
+    return tuple(points)

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.forms import Form, Metres, UnitId, UnitIdText, Word, to_ms_or_none
+from base_station.api.answer import to_ms_or_none
+from base_station.api.forms import Form, Metres, UnitId, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station

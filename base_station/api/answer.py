@@ -1,0 +1,35 @@
+"""What the station shows and the API answers with: written once, as a struct."""
+
+from __future__ import annotations
+
+from typing import get_type_hints
+
+import msgspec
+from pydantic import GetCoreSchemaHandler, create_model
+from pydantic_core import CoreSchema, core_schema
+
+from shared.clock import NS_PER_MS
+
+
+class Answer(msgspec.Struct, frozen=True):
+    """A struct that a route may return as it is: pydantic, and with it the OpenAPI document, learn
+    its fields here.
+    """
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, _source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        hints = get_type_hints(cls)
+        fields = {field.name: (hints[field.name], ...) for field in msgspec.structs.fields(cls)}
+        model = create_model(cls.__name__, __doc__=cls.__doc__, **fields)  # type: ignore[call-overload]
+        return core_schema.no_info_before_validator_function(msgspec.to_builtins, handler(model))
+
+
+def to_ms(t_ns: int) -> int:
+    """Since 1970, as all times of the API."""
+    return t_ns // NS_PER_MS
+
+
+def to_ms_or_none(t_ns: int | None) -> int | None:
+    return None if t_ns is None else t_ns // NS_PER_MS
