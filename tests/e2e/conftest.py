@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, sync_playwright
 
 from tests.e2e.console_files import CONSOLE, DIST
+from tests.e2e.enlisting import enlist
 from tests.e2e.stage import Stage
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
@@ -73,3 +75,39 @@ def stage(chromium: Browser) -> Iterator[Stage]:
 def wearable(station: StationProcess) -> Iterator[Wearable]:
     with Wearable(UNIT, station.bus) as wearable:
         yield wearable
+
+
+@pytest.fixture(scope="module")
+def complaints(page: Page) -> Iterator[list[str]]:
+    """What the browser complained of: broken scripts, and what the content policy refused.
+
+    At the end there must be none that a test did not expect, and take out.
+    """
+    said: list[str] = []
+
+    def note(message: ConsoleMessage) -> None:
+        if message.type == "error" and "ERR_CONNECTION" not in message.text:
+            said.append(message.text)
+
+    page.on("console", note)
+    page.on("pageerror", lambda error: said.append(str(error)))
+    yield said
+    assert said == []
+
+
+@pytest.fixture(scope="module")
+def only_the_station(page: Page, station: StationProcess) -> Iterator[None]:
+    """In the end the page has asked nobody else for anything."""
+    asked: set[str] = set()
+    page.on("request", lambda request: asked.add(urlsplit(request.url).netloc))
+    yield
+    assert asked == {station.http}
+
+
+@pytest.fixture(scope="module")
+def card(page: Page, complaints: list[str], only_the_station: None, wearable: Wearable) -> Locator:
+    """Of a responder who was enlisted through the page while the unit was sending already."""
+    card = page.locator(f"[data-unit='{UNIT}']")
+    card.wait_for()
+    enlist(page, card, UNIT)
+    return card

@@ -1,0 +1,121 @@
+"""What stands in the console's menu: users, units, people, and incidents that are over.
+
+One story in several tests: they run in the order in which they stand here.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e.conftest import UNIT
+from tests.e2e.console_page import (
+    SOON_MS,
+    answer_to,
+    barriers,
+    close,
+    confirm,
+    menu,
+    metres_north,
+)
+from tests.e2e.enlisting import INCIDENT, NAME
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
+    account = menu(page, "Account")
+    account.get_by_role("button", name="Users").click()
+    dialog = page.get_by_role("dialog", name="Users")
+    dialog.get_by_label("Name", exact=True).fill("mia")
+    dialog.get_by_label("Password, at least 10 characters").fill("long enough for mia")
+    dialog.get_by_role("button", name="Add user").click()
+    expect(dialog.get_by_label("Role of mia")).to_have_value("viewer", timeout=SOON_MS)
+    dialog.get_by_label("Role of mia").select_option("commander")
+    close(dialog)
+    menu(page, "Account").get_by_role("button", name="Audit log").click()
+    audit = page.get_by_role("dialog", name="Audit log")
+    expect(audit.get_by_role("row", name="Changed user mia: commander")).to_be_visible(
+        timeout=SOON_MS
+    )
+    expect(audit.get_by_role("row", name="Open incident")).to_be_visible()
+    close(audit)
+
+
+def test_the_units_are_looked_after_in_their_dialog(page: Page, card: Locator) -> None:
+    dialog = menu(page, "Units")
+    row = dialog.get_by_role("row", name=UNIT)
+    expect(row).to_contain_text("1 min 15 s behind ± 3 ms", timeout=SOON_MS)
+    row.get_by_role("button", name=f"Fetch the recording of {UNIT}").click()
+    expect(row).to_contain_text("waiting", timeout=SOON_MS)
+    close(dialog)
+    page.get_by_role("button", name="Station health").click()
+    health = page.get_by_role("dialog")
+    pull = health.get_by_role("region", name="Raw recordings").get_by_role("listitem")
+    expect(pull).to_contain_text(f"{UNIT}waiting")
+    assert barriers(page) == []
+    pull.get_by_role("button", name=f"Stop the recording of {UNIT}").click()
+    expect(pull).to_contain_text("stopped by a person", timeout=SOON_MS)
+    close(health)
+
+
+@pytest.mark.parametrize("name", ["Incidents", "Units", "People", "Site", "Account"])
+def test_everybody_can_use_the_dialogs(page: Page, card: Locator, name: str) -> None:
+    dialog = menu(page, name)
+    assert barriers(page) == []
+    close(dialog)
+
+
+def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locator) -> None:
+    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
+    dialog = page.get_by_role("dialog", name=INCIDENT)
+    errors = dialog.get_by_role("table", name="ISO/IEC 18305")
+    expect(errors.get_by_role("rowheader", name=f"{NAME} ({UNIT})")).to_be_visible(timeout=SOON_MS)
+    everybody = errors.get_by_role("row", name="Everybody")
+    expect(everybody).to_contain_text(re.compile(r"as promised then(\d+\.\d\sm){4}"))
+    assert barriers(page) == []
+    dialog.get_by_role("button", name="All incidents").click()
+    close(page.get_by_role("dialog", name="Incidents"))
+
+
+def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
+    dialog = menu(page, "Incidents")
+    confirm(dialog, "Close this incident")
+    expect(dialog.get_by_label("Name of the new incident")).to_be_visible(timeout=SOON_MS)
+    dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
+    banner = page.get_by_role("region", name="Replay")
+    expect(banner).to_contain_text("This is the past", timeout=SOON_MS)
+    expect(card).to_contain_text(NAME, timeout=SOON_MS)
+    banner.get_by_label("Time of the incident").press("End")
+    resolved = page.get_by_role("region", name="Open alarms").get_by_role("listitem")
+    expect(resolved).to_have_count(0, timeout=SOON_MS)
+    in_the_past_m = metres_north(card)
+    banner.get_by_role("button", name="Back to live").click()
+    expect(banner).to_have_count(0)
+    expect(card).to_contain_text("Link good", timeout=SOON_MS)
+    assert metres_north(card) > in_the_past_m
+
+
+def test_a_person_is_forgotten_by_who_writes_the_name(
+    page: Page, card: Locator, complaints: list[str]
+) -> None:
+    name = "Bo Stein"
+    dialog = menu(page, "People")
+    dialog.get_by_label("Name", exact=True).fill(name)
+    dialog.get_by_role("button", name="Add person").click()
+    row = dialog.get_by_role("row", name=name)
+    row.get_by_role("button", name=f"Forget {name}").click()
+    row.get_by_label(f"Write “{name}” to go on").fill("Bo")
+    row.get_by_role("button", name="Forget for good").click()
+    notice = page.get_by_text("The name is another")
+    expect(notice).to_have_count(1, timeout=SOON_MS)
+    assert "422" in complaints.pop()  # the browser notes the refusal, as it should
+    row.get_by_label(f"Write “{name}” to go on").fill(name)
+    row.get_by_role("button", name="Forget for good").click()
+    expect(row).to_have_count(0, timeout=SOON_MS)
+    expect(dialog.get_by_role("row", name=NAME)).to_be_visible()
+    close(dialog)
+    page.get_by_role("alert").get_by_role("button", name="OK").click()
+    assert name not in str(answer_to(page, "audit?limit=1000"))

@@ -1,0 +1,95 @@
+"""What a commander asks of people at the console, and how their answers are seen.
+
+One story in several tests: they run in the order in which they stand here.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e.console_page import (
+    SOON_MS,
+    barriers,
+    close,
+    command,
+)
+from tests.e2e.enlisting import NAME
+from tests.e2e.wearable import Wearable
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def test_a_roll_call_is_received_and_acknowledged(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
+    dialog = command(page, "PAR")
+    dialog.get_by_role("button", name="Send").click()
+    row = dialog.get_by_role("row", name=NAME)
+    expect(row).to_contain_text("received", timeout=SOON_MS)
+    close(dialog)
+    expect(card).to_contain_text("PAR", timeout=SOON_MS)
+    expect(card).to_contain_text("received")
+    bar = page.get_by_role("group", name="Commands")
+    expect(bar).to_contain_text("0 of 1 acknowledged")
+    wearable.acknowledge()
+    expect(bar).not_to_contain_text("acknowledged", timeout=SOON_MS)
+    dialog = command(page, "PAR")
+    expect(row).to_contain_text(f"acknowledged{NAME}", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_people_are_ticked_off_at_the_roll_call(page: Page, card: Locator) -> None:
+    clock = page.get_by_role("button", name="until the next check-in")
+    expect(clock).to_contain_text(re.compile(r"PAR 0?\d:\d\d"))
+    clock.click()
+    dialog = page.get_by_role("dialog")
+    row = dialog.get_by_role("listitem").filter(has_text=NAME)
+    row.get_by_role("button", name=f"Heard {NAME}").click()
+    expect(row).to_contain_text("by admin", timeout=SOON_MS)
+    close(dialog)
+    expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"), timeout=SOON_MS)
+
+
+def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name=NAME).click()
+    actions = card.get_by_role("group", name=f"For {NAME}")
+    actions.get_by_role("button", name="To rest").click()
+    expect(card).to_contain_text("Resting for", timeout=SOON_MS)
+    actions.get_by_role("button", name="Back to work").click()
+    expect(card).to_contain_text("Inside for", timeout=SOON_MS)
+    actions.get_by_role("button", name="Locate").click()
+    dialog = command(page, "Message")
+    expect(dialog.get_by_role("table", name="Locate")).to_contain_text("received", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_an_evacuation_asks_first_and_may_be_answered_by_voice(page: Page, card: Locator) -> None:
+    dialog = command(page, "Evacuate")
+    expect(card).not_to_contain_text("Evacuate")
+    dialog.get_by_role("button", name="Evacuate now").click()
+    row = dialog.get_by_role("row", name=NAME).first
+    expect(row).to_contain_text("received", timeout=SOON_MS)
+    row.get_by_role("button", name="Answered by voice").click()
+    expect(row).to_contain_text("acknowledgedadmin", timeout=SOON_MS)
+    close(dialog)
+
+
+def test_a_message_stays_on_the_card_until_it_is_answered(page: Page, card: Locator) -> None:
+    dialog = command(page, "Message")
+    dialog.get_by_label("To").select_option(label="Ladder 1")
+    dialog.get_by_label("Message", exact=True).fill("Come to the stairs")
+    dialog.get_by_role("button", name="Send").click()
+    close(dialog)
+    expect(card).to_contain_text("Message: Come to the stairs", timeout=SOON_MS)
+
+
+def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator) -> None:
+    page.get_by_role("button", name="until the next check-in").click()
+    assert barriers(page) == []
+    close(page.get_by_role("dialog"))
+    card.get_by_role("button", name="Pin on the plan").click()
+    assert barriers(page) == []
+    page.keyboard.press("Escape")

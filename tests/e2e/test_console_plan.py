@@ -1,0 +1,163 @@
+"""What is done on the plan at the console: pins, trails, its place on the earth.
+
+One story in several tests: they run in the order in which they stand here.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e.conftest import UNIT
+from tests.e2e.console_page import (
+    SOON_MS,
+    answer_to,
+    barriers,
+    click_plan,
+    confirm,
+    drag,
+    menu,
+    painted,
+    pins,
+)
+from tests.e2e.enlisting import NAME
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name=NAME).click()
+    card.get_by_role("button", name="Pin on the plan").click()
+    form = page.get_by_role("form", name=f"Pin: {NAME}")
+    click_plan(page, -150, -80)
+    expect(form.get_by_label("North, m")).not_to_have_value("", timeout=SOON_MS)
+    form.get_by_label("Sure to within").select_option("4")
+    form.get_by_role("button", name="Set pin").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    (pin,) = pins(page)
+    assert (pin["unit_id"], pin["std_m"], pin["by"]) == (UNIT, 2.0, "admin")
+    expect(page.get_by_text("Pins 1")).to_be_visible(timeout=SOON_MS)
+    moved = drag(page, (-150, -80), (-90, -40))
+    assert moved["pin_id"] == pin["pin_id"]
+    right_m, down_m = moved["east_m"] - pin["east_m"], pin["north_m"] - moved["north_m"]
+    assert right_m > 0.5
+    assert down_m == pytest.approx(right_m * 40 / 60, rel=0.1)
+    page.get_by_role("button", name="Pins 1").click()
+    page.get_by_role("button", name=f"{NAME} here").click()
+    expect(form.get_by_label("East, m")).to_have_value(f"{moved['east_m']:.1f}", timeout=SOON_MS)
+    confirm(form, "Remove pin")
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    assert pins(page) == []
+
+
+def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
+    card.get_by_role("button", name=NAME).click()
+    page.wait_for_timeout(600)  # the plan has come to rest
+    page.get_by_role("button", name="Trails").click()
+    kinds = page.get_by_role("region", name="Trails")
+    kinds.get_by_label("As shown at the time").uncheck()  # it lies above the others
+    for word, kind, colour in (
+        ("own path", "raw", "--quiet"),
+        ("Best known since", "smoothed", "--watch"),
+    ):
+        before = painted(page, colour)
+        with page.expect_response(re.compile(rf"trails\?kind={kind}")) as said:
+            kinds.get_by_label(word).check()
+        (trail,) = said.value.json()["trails"]
+        assert (trail["unit_id"], len(trail["points"]) > 1) == (UNIT, True)
+        expect(kinds).not_to_contain_text("is worked out", timeout=SOON_MS)
+        page.wait_for_timeout(300)
+        assert painted(page, colour) > before + 50, kind
+        kinds.get_by_label(word).uncheck()
+        page.wait_for_timeout(300)
+        assert painted(page, colour) < before + 50, kind
+    kinds.get_by_label("As shown at the time").check()
+    kinds.get_by_role("button", name="Close").click()
+
+
+def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
+    page.get_by_role("button", name="All start here").click()
+    form = page.get_by_role("form", name="All start here")
+    expect(form).to_contain_text(NAME)
+    page.keyboard.press("Escape")
+    expect(form).to_have_count(0)
+
+
+def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator) -> None:
+    for _ in range(2):
+        page.get_by_role("button", name="Zoom out").click()
+    menu(page, "Site").get_by_role("button", name="By two points of the plan").click()
+    form = page.get_by_role("form", name="Place on the Earth")
+    click_plan(page, -150, 60)
+    click_plan(page, 150, -60)
+    (south_m, west_m), (north_m, east_m) = clicked_places(form)
+    per_degree_m = 111_319.5  # on the equator, east
+    fill_point(form, 0, 0.0, 16.0)
+    fill_point(
+        form, 1, 2 * (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m
+    )
+    form.get_by_role("button", name="Set place").click()
+    expect(form.get_by_role("alert")).to_contain_text("m apart on the plan")
+    fill_point(form, 1, (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m)
+    form.get_by_role("button", name="Set place").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    anchor = answer_to(page, "site/anchor")
+    assert anchor["lat_deg"] * 110_574.3 == pytest.approx(-south_m, abs=0.5)
+    assert (anchor["lon_deg"] - 16.0) * per_degree_m == pytest.approx(-west_m, abs=0.5)
+    assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.01)
+
+
+def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
+    page: Page, card: Locator, tmp_path: Path
+) -> None:
+    """Two clicks on the plan and two on the map; then the map lies behind the plan."""
+    picture, world = tmp_path / "ground.png", tmp_path / "ground.pgw"
+    Image.new("RGB", (400, 200), (60, 110, 60)).save(picture)
+    per_degree_m = 111_319.5
+    pixel = 0.5 / per_degree_m  # half a metre
+    world.write_text(f"{pixel}\n0\n0\n{-pixel}\n16.0\n0.0\n")
+    site = menu(page, "Site")
+    site.get_by_label("Picture").set_input_files(picture)
+    site.get_by_label("World file").set_input_files(world)
+    site.get_by_role("button", name="Set base map").click()
+    expect(site.get_by_role("button", name="Remove base map")).to_be_visible(timeout=SOON_MS)
+    site.get_by_role("button", name="By two points of the plan").click()
+    form = page.get_by_role("form", name="Place on the Earth")
+    click_plan(page, -150, 60)
+    click_plan(page, 150, -60)
+    (south_m, west_m), (north_m, east_m) = clicked_places(form)
+    box = form.get_by_alt_text("Base map").bounding_box()
+    assert box is not None
+    scale = box["width"] / 200.0  # pixels a metre on the screen
+    across, down = 20.0, box["height"] - 10.0
+    ground = form.get_by_alt_text("Base map")
+    for to_east_m, to_north_m in ((0.0, 0.0), (east_m - west_m, north_m - south_m)):
+        at = {"x": across + to_east_m * scale, "y": down - to_north_m * scale}
+        ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
+    form.get_by_role("button", name="Set place").click()
+    expect(form).to_have_count(0, timeout=SOON_MS)
+    anchor = answer_to(page, "site/anchor")
+    assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.05)
+    lon_m = (anchor["lon_deg"] - 16.0) * per_degree_m
+    assert lon_m == pytest.approx(across / scale - west_m, abs=2.0)
+    page.wait_for_function("document.querySelector('canvas.base-map')?.width > 0")
+    assert barriers(page) == []
+    confirm(menu(page, "Site"), "Remove base map")
+    expect(page.get_by_role("button", name="Remove base map")).to_have_count(0)
+    page.keyboard.press("Escape")
+
+
+def clicked_places(form: Locator) -> list[tuple[float, float]]:
+    """North and east, as the panel says them."""
+    found = re.findall(r"(-?[\d.]+) m north, (-?[\d.]+) m east", form.text_content() or "")
+    assert len(found) == 2
+    return [(float(north), float(east)) for north, east in found]
+
+
+def fill_point(form: Locator, index: int, lat_deg: float, lon_deg: float) -> None:
+    form.get_by_label("Latitude, °").nth(index).fill(f"{lat_deg:.9f}")
+    form.get_by_label("Longitude, °").nth(index).fill(f"{lon_deg:.9f}")
