@@ -1,6 +1,4 @@
-"""Heading and north from the magnetic field: what it gives on open ground, and that steel does no
-harm.
-"""
+"""Heading from the magnetic field: what it gives on open ground, and that steel does no harm."""
 
 from __future__ import annotations
 
@@ -8,12 +6,10 @@ from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
-import msgspec
 import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.simulation import SCENARIOS, Simulation
 from edge.tracker.config import EskfConfig
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.magnetic_field import (
@@ -30,27 +26,7 @@ from edge.tracker.magnetic_field import (
 from edge.tracker.rows import join_rows
 from edge.tracker.state import BELIEF, COMPASS, COMPASS_SIZE
 from edge.tracker.strapdown import rotate_navigation, rotation_matrix
-from shared.earth_field import EarthField
-
-SEEDS = (0, 1, 3)
-DURATION_S = 240.0
-
-
-@cache
-def simulated(seed, building=False):
-    """Samples and true attitudes of a search."""
-    scenario = next(entry for entry in SCENARIOS if entry.name == "search-ground-floor")
-    scenario = msgspec.structs.replace(scenario, duration_s=DURATION_S, building=building)
-    simulation = Simulation(scenario, seed)
-    batches = [batch.imu for batch in simulation.batches(1.0)]
-    imu = ImuBatch(
-        *(
-            np.concatenate([getattr(batch, name) for batch in batches])
-            for name in ("t_ns", "accel_mps2", "gyro_radps", "mag_ut")
-        )
-    )
-    truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
-    return simulation.description, imu, truth
+from tests.compass_walk import SEEDS, bent, rms, simulated
 
 
 def run(description, imu, cuts=()):
@@ -69,10 +45,6 @@ def heading_errors_rad(rows, truth, every=200):
         angles.append(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
     drift = np.unwrap(angles)
     return drift - drift[0]
-
-
-def rms(values):
-    return float(np.sqrt(np.mean(np.square(values))))
 
 
 @cache
@@ -126,27 +98,6 @@ def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
         assert rms(seeing[-1][late] / rows.heading_std_rad[::200][late]) < 2.5
         assert rms(seeing[-1]) < rms(blind[-1]) + np.radians(2.0)
     assert rms(np.concatenate(seeing)) < rms(np.concatenate(blind))
-
-
-def bent(imu, truth, seed, wave_m, bend_ut):
-    """The field bent by that much (root mean square, each axis) in waves of such lengths."""
-    noise = np.random.default_rng(seed)
-    waves = (
-        2.0
-        * np.pi
-        / noise.uniform(wave_m[0], wave_m[1], size=(12, 1))
-        * random_directions(noise, 12)
-    )
-    phases = noise.uniform(0.0, 2.0 * np.pi, 12)
-    amplitudes_ut = noise.normal(0.0, bend_ut / np.sqrt(6.0), (12, 3))
-    bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ amplitudes_ut
-    bend_b_ut = np.einsum("nji,nj->ni", truth.rotation_nb, bend_n_ut)
-    return replace(imu, mag_ut=imu.mag_ut + bend_b_ut)
-
-
-def random_directions(noise, count):
-    directions = noise.standard_normal((count, 3))
-    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
 @pytest.mark.parametrize("fault", ["stuck", "missing", "infinite", "absurd"])
@@ -230,94 +181,3 @@ def test_the_mount_of_the_sensor_makes_no_difference():
             for rows in (one, other)
         ]
         np.testing.assert_allclose(ways_m[0], ways_m[1], atol=1e-3)
-
-
-DECLINATION_RAD = np.arctan2(1.48, 16.07)  # of the simulated field
-EARTH = EarthField(DECLINATION_RAD, 0.007, float(np.hypot(1.48, 16.07)), 48.56, 0.133, 0.141)
-
-
-def north_errors_rad(seed, bend=None, earth=EARTH, left_ut=0.5):
-    """How far magnetic north is off where it is said, and by how much that is said to be."""
-    description, imu, truth = simulated(seed)
-    imu = replace(imu, mag_ut=calibrated_ut(seed))
-    if bend is not None:
-        imu = bend(imu, truth)
-    tracker = EskfTracker(replace(description, mag_iron_std_ut=left_ut))
-    if earth is not None:
-        tracker.learn_field(earth, 0)
-    rows = join_rows([tracker.push(imu), tracker.finish()])
-    known = np.flatnonzero(np.isfinite(rows.magnetic_north_std_rad))[::200]
-    rotation, errors = np.zeros((3, 3)), []
-    for k in known:
-        rotation_matrix(rows.quaternion_nb[k], rotation)
-        turn = rotation @ truth.rotation_nb[k].T
-        frame_rad = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-        errors.append(rows.magnetic_north_rad[k] - DECLINATION_RAD - frame_rad)
-    return np.angle(np.exp(1j * np.array(errors))), rows.magnetic_north_std_rad[known]
-
-
-@cache
-def calibrated_ut(seed):
-    """What a magnetometer without iron or scale says, noise apart."""
-    _, imu, truth = simulated(seed)
-    field_n_ut = np.array([16.07, 1.48, 48.56])
-    noise = np.random.default_rng(seed).normal(0.0, 0.4, (len(imu), 3))
-    return np.einsum("nji,j->ni", truth.rotation_nb, field_n_ut) + noise
-
-
-def test_a_calibrated_compass_on_open_ground_knows_north():
-    for seed in SEEDS:
-        errors_rad, stds_rad = north_errors_rad(seed)
-        assert len(errors_rad) > 0.8 * DURATION_S
-        half = len(errors_rad) // 2
-        assert np.degrees(rms(errors_rad[half:])) < 2.0
-        assert 1.0 < np.degrees(np.median(stds_rad[half:])) < 7.0
-
-
-def test_a_field_that_is_bent_all_over_shows_by_strength_and_dip():
-    for seed in SEEDS:
-        bend_n_ut = np.random.default_rng(seed).normal(0.0, 6.0, 3)
-
-        def bend(imu, truth, bend_n_ut=bend_n_ut):
-            return replace(
-                imu, mag_ut=imu.mag_ut + truth.rotation_nb.transpose(0, 2, 1) @ bend_n_ut
-            )
-
-        errors_rad, stds_rad = north_errors_rad(seed, bend)
-        assert rms(errors_rad / stds_rad) < 2.5
-        clean_rad = north_errors_rad(seed)[1]
-        assert np.median(stds_rad) > 1.5 * np.median(clean_rad)
-
-
-def test_where_the_earths_field_is_not_known_north_is_said_with_more_doubt():
-    known, unknown = (np.median(north_errors_rad(0, earth=earth)[1]) for earth in (EARTH, None))
-    assert unknown > 2.0 * known
-
-
-def test_among_heavy_steel_north_is_not_said():
-    def bend(imu, truth):
-        return bent(imu, truth, 0, wave_m=(1.0, 3.0), bend_ut=25.0)
-
-    errors_rad, _ = north_errors_rad(0, bend)
-    assert len(errors_rad) < 0.1 * DURATION_S
-
-
-def test_without_a_calibration_north_is_never_said():
-    assert len(north_errors_rad(0, left_ut=None)[0]) == 0
-
-
-def test_the_earths_field_holds_from_the_sample_that_was_named():
-    description, imu, _ = simulated(0)
-    described = replace(description, mag_iron_std_ut=0.5)
-    first = replace(imu.part(slice(0, 16_000)), mag_ut=calibrated_ut(0)[:16_000])
-
-    def rows_with(cut):
-        tracker = EskfTracker(described)
-        before = tracker.push(first.part(slice(0, cut)))
-        tracker.learn_field(EARTH, int(imu.t_ns[12_000]))
-        parts = before, tracker.push(first.part(slice(cut, None))), tracker.finish()
-        return join_rows(parts).magnetic_north_std_rad
-
-    whole, late = rows_with(0), rows_with(11_990)
-    assert np.array_equal(whole, late)
-    assert whole[11_000] > 1.5 * whole[15_000]
