@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from threading import Lock
 
 from shared.clock import NS_PER_S, Clock
@@ -15,8 +16,8 @@ class SteadyClock:
     """A clock whose UTC never goes back and never stands still.
 
     It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
-    monotonic time until the other has caught up.  While it is ``held`` it goes on likewise when
-    the machine's is set far forward: nobody is to be taken for missing since yesterday because
+    monotonic time until the other has caught up.  While it is held it goes on likewise when the
+    machine's is set far forward: nobody is to be taken for missing since yesterday because
     somebody set a clock.  From any thread.
     """
 
@@ -25,7 +26,11 @@ class SteadyClock:
         self._clock = clock
         self._lock = Lock()
         self._offset_ns = not_before_ns - clock.monotonic_ns()
-        self.held = False
+        self._is_held: Callable[[], bool] = lambda: False
+
+    def hold_while(self, is_held: Callable[[], bool]) -> None:
+        """``is_held`` may be asked from any thread."""
+        self._is_held = is_held
 
     def not_before(self, utc_ns: int) -> None:
         """Another clock has said ``utc_ns``: go on from there."""
@@ -48,7 +53,7 @@ class SteadyClock:
         with self._lock:
             monotonic_ns = self._clock.monotonic_ns()
             machine_ns = self._clock.utc_ns() - monotonic_ns
-            if machine_ns <= self._offset_ns + _STEP_NS or not self.held:
+            if machine_ns <= self._offset_ns + _STEP_NS or not self._is_held():
                 self._offset_ns = max(self._offset_ns, machine_ns)
             return monotonic_ns + self._offset_ns
 

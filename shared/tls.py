@@ -18,6 +18,7 @@ from shared.errors import ConfigError
 
 # What cryptography raises for certificates and keys that are not whole.
 DAMAGED = (ValueError, TypeError, UnsupportedAlgorithm, x509.InvalidVersion)
+_RENEWAL = "renew it at the station with `muster pki renew`"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def check_identity(identity: TlsIdentity) -> None:
         ) from error
 
 
-def validity_problem(identity: TlsIdentity, now: datetime) -> str | None:
+def validity_problem(identity: TlsIdentity, now: datetime, renewal: str = _RENEWAL) -> str | None:
     """A sentence when the certificate is not valid at ``now`` (aware); None when it is."""
     certificate = parse_certificate(identity.certificate, "certificate")
     clock = f"the clock here says {now:%Y-%m-%d %H:%M} UTC"
@@ -64,8 +65,7 @@ def validity_problem(identity: TlsIdentity, now: datetime) -> str | None:
     if now > certificate.not_valid_after_utc:
         return (
             f"the certificate of {common_name(certificate)} expired on "
-            f"{certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC and {clock}: "
-            "renew it at the station with `muster pki renew`"
+            f"{certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC and {clock}: {renewal}"
         )
     return None
 

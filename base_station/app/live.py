@@ -103,7 +103,6 @@ class _LiveStation:
         self._forgettings = self._disk.forgetting_desk(
             opened.recordings, self._act, self._save_soon, self._leads
         )
-        self._state = StationState()
         self._drive = _start_drive(
             self._disk.log, self._surroundings(), self._begin, self._recovering()
         )
@@ -219,7 +218,13 @@ class _LiveStation:
     # ---- what they ask and tell each other
 
     def _begin(self, place: tuple[int, int], state: StationState) -> None:
-        self._state = state
+        """What the log says, before the drive runs."""
+
+        def is_held() -> bool:
+            incident = state.incident
+            return not self._leads() or (incident is not None and incident.closed_ns is None)
+
+        self._disk.clock.hold_while(is_held)
         self._side.begin(place, state)
 
     def _leads(self) -> bool:
@@ -253,12 +258,10 @@ class _LiveStation:
         not, and the service manager hears of it.
         """
         self._manager.working()
-        opened, side, clock = self._opened, self._side, self._disk.clock
-        incident = self._state.incident
-        clock.held = not side.leads or (incident is not None and incident.closed_ns is None)
+        opened, side = self._opened, self._side
         problems = [
             *opened.config.standing_problems(),
-            *clock.problems(),
+            *self._disk.clock.problems(),
             *opened.expiry.problems(),
             *side.problems(),
             *self._forgettings.problems(),

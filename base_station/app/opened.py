@@ -46,7 +46,9 @@ class Opened:
 
 def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Opened:
     """Raises MusterError, before anything is made where the settings cannot work."""
-    joining = station_endpoint(config.data, config.bus.listen)
+    joining, pki = station_endpoint(config.data, config.bus.listen), PkiFolder(config.data)
+    if joining.tls is not None:
+        pki.require_valid_station()
     clock = SystemClock()
     folder = DataFolder(config.data)
     recorder = Recorder(
@@ -59,7 +61,6 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
     closing.callback(router.close)
     bus = ZenohBus(joining)
     closing.callback(bus.close)
-    pki = PkiFolder(folder.path)
     recordings = RecordingDesk(ask_over(bus), folder.recordings, disk.clock)
     closing.enter_context(recordings)
     return Opened(

@@ -55,6 +55,11 @@ def issue(
     hosts: Sequence[str] = (),
 ) -> Issued:
     """A certificate signed by ``authority``; only a station's stands for ``hosts``."""
+    if now < authority.certificate.not_valid_before_utc:
+        raise ConfigError(
+            f"this machine's clock says {now:%Y-%m-%d}, and the authority begins on "
+            f"{authority.certificate.not_valid_before_utc:%Y-%m-%d}: set the clock first"
+        )
     if now + valid > authority.certificate.not_valid_after_utc:
         raise ConfigError(
             "the certificate would outlive its authority, which ends on "

@@ -22,10 +22,11 @@ from base_station.pki.station_enrolment import StationEnrolment
 from shared.channels import validate_unit_id
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
-from shared.tls import TlsIdentity, check_identity
+from shared.tls import TlsIdentity, check_identity, validity_problem
 
 STATION_NAME = "station"
 AUTHORITY_VALID = timedelta(days=3650)
+_BEFORE_THIS_PROGRAM = datetime(2026, 1, 1, tzinfo=UTC)
 CERTIFICATE_VALID = timedelta(days=365)
 
 Clock = Callable[[], datetime]
@@ -70,6 +71,11 @@ class PkiFolder:
             raise ConfigError(
                 f"{self._folder} is there already: making a new authority would shut out "
                 "everyone enrolled; move it away if that is meant"
+            )
+        if self._now() < _BEFORE_THIS_PROGRAM:
+            raise ConfigError(
+                f"this machine's clock says {self._now():%Y-%m-%d}: set it first, certificates "
+                "would begin and end by it"
             )
         make_folder(self._folder)
         registry = Registry(organisation, _with_loopback(hosts), tuple(connect))
@@ -218,6 +224,13 @@ class PkiFolder:
                 "ones with `muster pki renew-station`"
             ) from error
         return identity
+
+    def require_valid_station(self) -> None:
+        """Nothing can link with a station whose certificate is not valid by its own clock."""
+        renewal = "make a new one with `muster pki renew-station`"
+        problem = validity_problem(self.station_identity(), self._now(), renewal)
+        if problem is not None:
+            raise ConfigError(problem)
 
     def _existing(self) -> Path:
         if not self.exists():

@@ -120,3 +120,13 @@ def test_the_console_can_be_served_with_the_stations_certificate(
     assert httpx.get(health, verify=trusting).status_code == 401  # reached, and not logged in
     with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
         httpx.get(health)
+
+
+def test_a_station_whose_certificate_has_ended_says_so_at_once(
+    serve: Callable[..., Command], data: Path
+) -> None:
+    address = f"tls/127.0.0.1:{free_port()}"
+    PkiFolder(data).create("Test", [], [address], valid=timedelta(seconds=-1))
+    station = serve("--listen", address)
+    assert station.wait() == 2
+    assert "renew-station" in station.said()

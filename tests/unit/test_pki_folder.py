@@ -237,6 +237,28 @@ def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, cloc
     assert said(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
 
 
+def test_nothing_is_issued_by_a_clock_that_is_not_set(
+    pki: PkiFolder, clock: Clock, tmp_path: Path
+) -> None:
+    clock.now = datetime(1970, 1, 1, 0, 5, tzinfo=UTC)
+    with pytest.raises(ConfigError, match=r"clock says 1970-01-01.*set the clock"):
+        pki.enroll("anna")
+    with pytest.raises(ConfigError, match=r"clock says 1970-01-01: set it first"):
+        PkiFolder(tmp_path / "new", clock).create("x", [], [])
+
+
+def test_a_station_says_that_its_certificate_is_not_valid_by_its_clock(
+    pki: PkiFolder, clock: Clock
+) -> None:
+    pki.require_valid_station()
+    begins, clock.now = clock.now, clock.now - 3 * DAY
+    with pytest.raises(ConfigError, match=r"not valid before .*: set the clock"):
+        pki.require_valid_station()
+    clock.now = begins + 366 * DAY
+    with pytest.raises(ConfigError, match=r"expired on .*muster pki renew-station"):
+        pki.require_valid_station()
+
+
 @pytest.mark.parametrize("behind", [timedelta(days=2), timedelta(days=365 * 50)])
 def test_a_clock_behind_the_certificates_is_said(
     pki: PkiFolder, clock: Clock, behind: timedelta
