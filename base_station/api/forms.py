@@ -18,18 +18,26 @@ MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
 LAST_MS = FOREVER_NS // NS_PER_MS
 
 _PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
+_NAME = r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$"
 _ID = r"^[A-Za-z0-9_.:-]{1,128}$"
+_UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
+_WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"
+_A_UNIT_ID = "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
 
-Name = Annotated[
-    str,
-    StringConstraints(
-        min_length=1, max_length=80, pattern=r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$"
-    ),
-]
+FITTING = {  # what each pattern asks for, in words
+    _PRINTABLE: "must be one line of plain characters",
+    _NAME: "must be one line of plain characters, and not blank",
+    _ID: "must be 1 to 128 letters, digits and _.:-",
+    _WHOLE_UNIT_ID: _A_UNIT_ID,
+    _UNIT_ID_OR_NONE: f"{_A_UNIT_ID}; or empty",
+}
+
+Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NAME)]
 Word = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
 Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]
 Id = Annotated[str, Path(pattern=_ID)]
-UnitIdText = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")]
+UnitIdText = Annotated[str, StringConstraints(pattern=_WHOLE_UNIT_ID)]
+UnitIdOrNone = Annotated[str, StringConstraints(pattern=_UNIT_ID_OR_NONE)]
 UnitId = Annotated[UnitIdText, Path()]
 PersonIdText = Annotated[str, StringConstraints(pattern=_ID)]
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0)]

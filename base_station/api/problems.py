@@ -12,6 +12,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
+from base_station.api.field_errors import sentence_of
 from shared.errors import ConfigError, MusterError, StoreError, UserError
 
 _log = logging.getLogger(__name__)
@@ -58,7 +59,7 @@ def handle_problems(app: FastAPI) -> None:
         sentences = (
             _what_to_send(request)
             if one["loc"] == ("body",) or one["type"] == "json_invalid"
-            else _sentence(one["loc"], one["msg"])
+            else sentence_of(one)
             for one in error.errors()
         )
         return problem_response(422, "; ".join(sentences))
@@ -92,8 +93,3 @@ def _what_to_send(request: Request) -> str:
     if kind == "application/json":
         return f"send one JSON object as the body, with the header Content-Type: {kind}"
     return f"send the file itself as the body, with the header Content-Type: {kind} or its like"
-
-
-def _sentence(location: tuple[int | str, ...], message: str) -> str:
-    where = ".".join(str(part) for part in location[1:])
-    return f"{where}: {message}" if where else message

@@ -52,7 +52,7 @@ Target = Annotated[
     Discriminator(
         _kind_of_target,
         custom_error_type="target",
-        custom_error_message="say one of: unit_id, crew, everyone",
+        custom_error_message="must be one of: unit_id, crew, everyone",
     ),
 ]
 

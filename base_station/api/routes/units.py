@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.api.answer import to_ms_or_none
-from base_station.api.forms import Form, Metres, UnitId, UnitIdText, Word
+from base_station.api.forms import Form, Metres, UnitId, UnitIdOrNone, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
@@ -55,7 +55,7 @@ class Start(Form):
 
 
 class Reference(Form):
-    unit_id: UnitIdText | Literal[""]
+    unit_id: UnitIdOrNone
     down_m: Metres = 0.0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path
 from pydantic import BaseModel, StringConstraints
@@ -17,7 +17,7 @@ from base_station.db.accounts import MIN_PASSWORD, Role
 router = APIRouter(tags=["users"])
 
 Password = Annotated[str, StringConstraints(min_length=MIN_PASSWORD, max_length=256)]
-RoleWord = Annotated[str, StringConstraints(pattern="^(viewer|commander|administrator)$")]
+RoleWord = Literal["viewer", "commander", "administrator"]
 Username = Annotated[str, Path(min_length=1, max_length=80)]
 
 
