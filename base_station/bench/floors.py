@@ -24,7 +24,7 @@ from base_station.bench.incident.bound import ENGINE_STD_M
 from base_station.bench.incident.run import Person, draw_incident
 from base_station.bench.incident.scores import FloorScores
 from base_station.bench.incident.sensors import mono_ns, position_of
-from base_station.bench.rig.said import position
+from base_station.bench.rig import said
 from base_station.events import Received
 from base_station.fusion import FUSERS
 from base_station.fusion.port import PlaceFix
@@ -135,8 +135,8 @@ class _Station:
         t_mono_ns = mono_ns(float(person.truth.t_s[row]))
         header = Header(_REFERENCE, 1, row + 1, t_mono_ns)
         self._at(person, row)
-        said = position(header, pressure_pa=pressure_pa, stationary=True)
-        self.pipeline.step(Received(self._t_ns, _REFERENCE, said))
+        position = said.position(header, pressure_pa=pressure_pa, stationary=True)
+        self.pipeline.step(Received(self._t_ns, _REFERENCE, position))
 
     def _at(self, person: Person, row: int) -> None:
         self._t_ns = _START_NS + round((_BEFORE_S + float(person.truth.t_s[row])) * NS_PER_S)
@@ -160,17 +160,14 @@ class _Station:
 
 def _fix(unit_id: str, seq: int, fix: PlaceFix) -> GpsFix:
     lat_deg, lon_deg, height_m = _ANCHOR.to_geodetic(fix.north_m, fix.east_m, fix.down_m)
-    return GpsFix(
-        header=Header(unit_id, 1, seq, fix.t_mono_ns),
-        lat_deg=lat_deg,
-        lon_deg=lon_deg,
+    return said.gps_fix(
+        Header(unit_id, 1, seq, fix.t_mono_ns),
+        lat_deg,
+        lon_deg,
         height_m=height_m,
         horizontal_std_m=fix.horizontal_std_m,
         vertical_std_m=2.0 * fix.horizontal_std_m,
         fix_type=FixType.TWO_D,
-        satellites=9,
-        speed_mps=0.0,
-        course_rad=0.0,
     )
 
 

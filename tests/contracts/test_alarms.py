@@ -18,7 +18,6 @@ from shared.messages import (
     FusedPosition,
     Header,
     Temperature,
-    UnitDescription,
 )
 from shared.quality import Quality
 
@@ -76,10 +75,13 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
         BootState(boot_id, there_from_ns=seen_ns - 90 * NS_PER_S, there_to_ns=unit.heard_ns)
         for boot_id in (1, 2)
     ]
-    unit.description = UnitDescription(
-        HEADER, "1", "", "sensor", 200.0, None, None, NO_TRACKER, "c1", False, False, False,
-        calibrated_s=1, calibration_faults="accelerometer off by 0.2 m/s2",
-    )  # fmt: skip
+    unit.description = said.description(
+        HEADER,
+        tracker=NO_TRACKER,
+        calibration="c1",
+        calibrated_s=1,
+        calibration_faults="accelerometer off by 0.2 m/s2",
+    )
     return unit
 
 

@@ -11,12 +11,13 @@ from pathlib import Path
 import httpx
 import pytest
 
+from base_station.bench.rig import said
 from base_station.bench.rig.station import free_port
 from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder
 from shared.mcap_log import SegmentReader, segment_paths
-from shared.messages import EventKind, Status, UnitEvent
+from shared.messages import EventKind, UnitEvent
 from shared.messages.status import Activity
 from tests.served_station import (
     MakePosition,
@@ -38,7 +39,10 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
         prepare(browser)
         greet(browser, unit, make_position)
         walk(unit, make_position, 0, 20)
-        unit.say(Status(unit.stamper.header(), Activity.LYING, 3.0, 0.5, True, 7, 0.0, 0, 0, 0))
+        lying = said.status(
+            unit.stamper.header(), activity=Activity.LYING, battery=0.5, mayday=True
+        )
+        unit.say(lying)
         unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
         until(lambda: snapshot(browser)["alarms"], "mayday is raised")
         (alarm,) = snapshot(browser)["alarms"]

@@ -6,19 +6,22 @@ import pytest
 
 from base_station.alarms.calibration import Calibration
 from base_station.alarms.port import INFORMATION, Clear, Finding
+from base_station.bench.rig import said
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
-from shared.messages import Header, UnitDescription
+from shared.messages import Header
 
 HEARD_S = 1_800_000_000
 DAY_S = 86_400
 
 
 def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
-    description = UnitDescription(
-        Header("FF-01", 1, 1, 0), "1", "", "sensor", 200.0, None, None, "eskf", "c1",
-        False, False, False, calibrated_s=calibrated_s, calibration_faults=faults,
-    )  # fmt: skip
+    description = said.description(
+        Header("FF-01", 1, 1, 0),
+        calibration="c1",
+        calibrated_s=calibrated_s,
+        calibration_faults=faults,
+    )
     return UnitState("FF-01", heard_ns=HEARD_S * NS_PER_S, description=description)
 
 

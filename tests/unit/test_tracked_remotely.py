@@ -6,6 +6,7 @@ import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
+from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
 from base_station.events import TrailFilled, event_of
 from base_station.fusion import FUSERS
@@ -14,7 +15,7 @@ from base_station.pipeline import StationPipeline
 from shared.channels import NO_TRACKER, POSITION, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.messages import Activity, AlarmState, EventKind, Header, UnitDescription
+from shared.messages import Activity, AlarmState, EventKind, Header
 from tests.station_script import Script, new_pipeline
 
 U = "FF-01"
@@ -40,22 +41,7 @@ class Remote(Script):
         return msgspec.structs.replace(header, t_mono_ns=header.t_mono_ns + ahead_ns)
 
     def describe(self, tracker: str, unit_id: str = U) -> None:
-        self.say(
-            UnitDescription(
-                header=self.header(unit_id),
-                software_version="1",
-                source="test",
-                sensor_name="test",
-                rate_hz=100.0,
-                accel_full_scale_mps2=None,
-                gyro_full_scale_radps=None,
-                tracker=tracker,
-                calibration="",
-                has_magnetometer=False,
-                has_barometer=False,
-                has_gps=True,
-            )
-        )
+        self.say(said.description(self.header(unit_id), tracker=tracker, has_gps=True))
 
     @property
     def unit(self):

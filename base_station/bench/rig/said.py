@@ -7,7 +7,16 @@ from __future__ import annotations
 
 import msgspec
 
-from shared.messages import Activity, FixType, FusedPosition, GpsFix, Header, Position, Status
+from shared.messages import (
+    Activity,
+    FixType,
+    FusedPosition,
+    GpsFix,
+    Header,
+    Position,
+    Status,
+    UnitDescription,
+)
 from shared.quality import Quality, Reason
 
 
@@ -90,5 +99,24 @@ def status(header: Header, /, **changes: object) -> Status:
         floors_climbed=0,
         tracker_rows_dropped=0,
         journal_pending=0,
+    )
+    return msgspec.structs.replace(usual, **changes)
+
+
+def description(header: Header, /, **changes: object) -> UnitDescription:
+    """Of a unit with an inertial sensor and nothing else, which tracks itself."""
+    usual = UnitDescription(
+        header=header,
+        software_version="1",
+        source="test",
+        sensor_name="sensor",
+        rate_hz=100.0,
+        accel_full_scale_mps2=None,
+        gyro_full_scale_radps=None,
+        tracker="eskf",
+        calibration="",
+        has_magnetometer=False,
+        has_barometer=False,
+        has_gps=False,
     )
     return msgspec.structs.replace(usual, **changes)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 
+from base_station.bench.rig import said
 from base_station.bench.rig.waiting import paced
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
@@ -21,7 +22,6 @@ from shared.messages import (
     Position,
     Status,
     Temperature,
-    UnitDescription,
 )
 from shared.quality import Quality, Reason
 
@@ -47,20 +47,7 @@ class Wearer:
         self._first_ns = clock.monotonic_ns()
 
     def introduction(self) -> Message:
-        return UnitDescription(
-            header=self._stamper.header(),
-            software_version="bench",
-            source="simulated",
-            sensor_name="none",
-            rate_hz=100.0,
-            accel_full_scale_mps2=None,
-            gyro_full_scale_radps=None,
-            tracker="none",
-            calibration="",
-            has_magnetometer=False,
-            has_barometer=False,
-            has_gps=False,
-        )
+        return said.description(self._stamper.header())
 
     def next_message(self) -> Message:
         """The next of its turn, captured now."""
