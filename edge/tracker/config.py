@@ -139,15 +139,15 @@ class EskfConfig(NamedTuple):
     start_gyro_bias_gate: float = 3.0  # deviations
     rest_rate_scatter: float = 0.25  # of the mean rate; a foot that sways scatters more
     data_sheet_bias_std_radps: float = 0.0175  # stated until a rest shows it: 1 deg/s
-    start_accel_bias_std_mps2: float = 0.14
+    start_accel_bias_std_mps2: float = 0.3
     start_lever_std_m: float = 0.1
     data_sheet_gain_std: float = 0.012  # of scale and axes of sensors that nobody calibrated
     gain_per_force: float = 0.04  # rad/s that a m/s^2 adds, by the gain's error
     start_tilt_std_rad: float = 0.014
     start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
-    start_speed_std_mps: float = 1.0  # when the recording starts on the move
+    start_speed_std_mps: float = 3.0  # when the recording starts on the move
     start_still_std_mps: float = 0.02  # when it starts at rest
-    start_window_s: float = 0.3
+    start_window_s: float = 0.1
 
     # A gap: what may have happened meanwhile.
     gap_speed_std_mps: float = 1.5

@@ -1,0 +1,24 @@
+"""A recording that begins in mid-swing: nobody stands before the foot has come to the ground."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.bench.walk_errors import track
+from tests.walking import part, walk
+
+MADE = walk(strides=6, start_s=2.0)
+SWING_S, STRIDE_M = 0.7, 1.3
+
+
+@pytest.mark.parametrize("into_s", [0.05, 0.15, 0.25, 0.4])
+def test_a_swing_that_was_cut_is_no_stance(into_s):
+    first = round((2.0 + into_s) * MADE.description.rate_hz)
+    rows = track(MADE.description, part(MADE.imu, slice(first, None)), "eskf")
+    landed = round((SWING_S - into_s) * MADE.description.rate_hz)
+    assert not rows.stationary[: landed - 10].any()
+    stands = np.flatnonzero(rows.stationary)
+    walked_m = np.linalg.norm(rows.position_n_m[-1] - rows.position_n_m[stands[20]])
+    assert walked_m == pytest.approx(5 * STRIDE_M, rel=0.02)
+    assert abs(rows.position_n_m[-1, 2] - rows.position_n_m[stands[20], 2]) < 0.02
