@@ -9,11 +9,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event
 from typing import Self
 
 from shared.errors import UserError
 
 _PATIENCE_S = 10.0
+_LOOK_EVERY_S = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +36,18 @@ class Child:
         return self.output_path.read_text(errors="replace").strip()[-2000:]
 
 
+class ToldToEndError(Exception):
+    """A person wants the demo to end, which has not begun yet."""
+
+
 class Children:
     """Starts commands and, as a context manager, ends them all, the last started first."""
 
-    def __init__(self, output_folder: Path) -> None:
+    def __init__(self, output_folder: Path, stop: Event) -> None:
+        """Once ``stop`` is set nothing is started or waited for: ToldToEndError."""
         output_folder.mkdir(parents=True, exist_ok=True)
         self._output_folder = output_folder
+        self._stop = stop
         self._children: list[Child] = []
 
     def __enter__(self) -> Self:
@@ -59,22 +67,7 @@ class Children:
 
     def start(self, name: str, arguments: Sequence[str]) -> Child:
         """Start ``muster ARGUMENTS`` in a process of its own."""
-        child = self._launch(name, arguments)
-        self._children.append(child)
-        return child
-
-    def run(self, name: str, arguments: Sequence[str]) -> bytes:
-        """Run ``muster ARGUMENTS`` to its end; what it printed.  UserError where it fails."""
-        child = self._launch(name, arguments)
-        if child.process.wait() != 0:
-            raise UserError(f"`muster {' '.join(arguments)}` failed:\n{child.last_words()}")
-        return child.output_path.read_bytes()
-
-    def dead(self) -> tuple[Child, ...]:
-        """Those that ended although nobody asked them to."""
-        return tuple(child for child in self._children if child.exit_code is not None)
-
-    def _launch(self, name: str, arguments: Sequence[str]) -> Child:
+        self.wait(0.0)
         output_path = self._output_folder / f"{name}.txt"
         with output_path.open("wb") as output:
             process = subprocess.Popen(
@@ -85,19 +78,38 @@ class Children:
                 # A Ctrl-C in the terminal reaches the demo alone, which then ends them in order.
                 start_new_session=True,
             )
-        return Child(name, process, output_path)
+        child = Child(name, process, output_path)
+        self._children.append(child)
+        return child
 
+    def run(self, name: str, arguments: Sequence[str]) -> bytes:
+        """Run ``muster ARGUMENTS`` to its end; what it printed.  UserError where it fails."""
+        child = self.start(name, arguments)
+        while child.exit_code is None:
+            self.wait(_LOOK_EVERY_S)
+        self._children.remove(child)
+        if child.exit_code != 0:
+            raise UserError(f"`muster {' '.join(arguments)}` failed:\n{child.last_words()}")
+        return child.output_path.read_bytes()
 
-def wait_for_line(child: Child, beginning: str, patience_s: float) -> str:
-    """The first line of the child's output with this beginning; UserError if it does not come."""
-    deadline = time.monotonic() + patience_s
-    while time.monotonic() < deadline:
-        for line in child.output_path.read_text(errors="replace").splitlines():
-            if line.startswith(beginning):
-                return line
-        if child.exit_code is not None:
-            raise UserError(f"{child.name} ended before it was ready:\n{child.last_words()}")
-        time.sleep(0.05)
-    raise UserError(
-        f"{child.name} was not ready within {patience_s:g} s; it printed:\n{child.last_words()}"
-    )
+    def wait(self, duration_s: float) -> None:
+        if self._stop.wait(duration_s):
+            raise ToldToEndError
+
+    def wait_for_line(self, child: Child, beginning: str, patience_s: float) -> str:
+        """The first line of its output with this beginning; UserError if it does not come."""
+        deadline = time.monotonic() + patience_s
+        while time.monotonic() < deadline:
+            for line in child.output_path.read_text(errors="replace").splitlines():
+                if line.startswith(beginning):
+                    return line
+            if child.exit_code is not None:
+                raise UserError(f"{child.name} ended before it was ready:\n{child.last_words()}")
+            self.wait(_LOOK_EVERY_S)
+        raise UserError(
+            f"{child.name} was not ready within {patience_s:g} s; it printed:\n{child.last_words()}"
+        )
+
+    def dead(self) -> tuple[Child, ...]:
+        """Those that ended although nobody asked them to."""
+        return tuple(child for child in self._children if child.exit_code is not None)

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from deploy.demo.console_client import ConsoleClient
 from deploy.demo.crew import Crew, read_crew
-from deploy.demo.processes import Child, Children
+from deploy.demo.processes import Child, Children, ToldToEndError
 from deploy.demo.stations import Site, Stations
 from shared.errors import UserError
 
@@ -61,9 +61,12 @@ def demo(
     if standby:
         other = f"http://127.0.0.1:{_free_port(0)}"
         sites.append(Site("second", folder / "standby", f"tls/127.0.0.1:{_free_port(0)}", other))
-    with Children(folder / "output") as children:
+    with Children(folder / "output", stop) as children:
         stations = Stations(children, folder, tuple(sites))
-        _Demo(children, folder, stations, crew, headless).run(stop, for_s)
+        try:
+            _Demo(children, folder, stations, crew, headless).run(stop, for_s)
+        except ToldToEndError:
+            typer.echo("Ended before it had begun.")
 
 
 class _Demo:
@@ -83,6 +86,8 @@ class _Demo:
         self._crew = crew
         self._headless = headless
         self._screen = Console(highlight=False, soft_wrap=True)
+        self._mourned: list[Child] = []
+        self._roll_called = False
 
     def run(self, stop: Event, for_s: float | None) -> None:
         enrolments = self._enrol_units()
@@ -143,22 +148,30 @@ class _Demo:
     def _watch(self, console: ConsoleClient, stop: Event, for_s: float | None) -> None:
         """Wait for the end, saying how things stand; UserError when the station dies."""
         started_s = time.monotonic()
-        mourned: set[str] = set()
-        roll_called = False
         while not stop.wait(_WATCH_EVERY_S):
             elapsed_s = time.monotonic() - started_s
             if for_s is not None and elapsed_s >= for_s:
                 break
-            if elapsed_s >= _ROLL_CALL_AT_S and not roll_called:
+            self._look(console, elapsed_s)
+        self._screen.print()
+
+    def _look(self, console: ConsoleClient, elapsed_s: float) -> None:
+        for child in self._unmourned():
+            self._mourned.append(child)
+            self._mourn(child, console)
+        try:
+            if elapsed_s >= _ROLL_CALL_AT_S and not self._roll_called:
                 console.call_roll()
-                roll_called = True
-            for child in self._children.dead():
-                if child.name not in mourned:
-                    mourned.add(child.name)
-                    self._mourn(child, console)
+                self._roll_called = True
             if not self._headless and self._screen.is_terminal:
                 self._screen.print(self._status_line(console, elapsed_s), end="\r")
-        self._screen.print()
+        except UserError:
+            time.sleep(_WATCH_EVERY_S)
+            if not self._unmourned():  # else it died since, and the next look is at another station
+                raise
+
+    def _unmourned(self) -> list[Child]:
+        return [child for child in self._children.dead() if child not in self._mourned]
 
     def _mourn(self, child: Child, console: ConsoleClient) -> None:
         if child.name in {site.data.name for site in self._stations.sites}:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 
-from deploy.demo.processes import Child, Children, wait_for_line
+from deploy.demo.processes import Child, Children
 from shared.errors import UserError
 
 _PATIENCE_S = 60.0
@@ -63,7 +63,7 @@ class Stations:
                 site.data.name, ("base", "serve", "--config", str(settings))
             )
         for site in self.sites:
-            wait_for_line(self._running[site.name], "ready", _PATIENCE_S)
+            self._children.wait_for_line(self._running[site.name], "ready", _PATIENCE_S)
         text = (self.leading().data / "first-login.txt").read_text(encoding="utf-8")
         login = dict(line.split(": ", 1) for line in text.splitlines())
         return login["username"], login["password"]
@@ -75,7 +75,7 @@ class Stations:
             for site in self.sites:
                 if self._running[site.name].exit_code is None and _leads(site):
                     return site
-            time.sleep(_LOOK_EVERY_S)
+            self._children.wait(_LOOK_EVERY_S)
         raise UserError(f"no station leads; see {self._folder / 'output'}")
 
     def alive(self) -> tuple[Site, ...]:

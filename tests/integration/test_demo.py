@@ -6,13 +6,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import psutil
 import pytest
 
 from base_station.bench.rig.station import free_port
+from tests.waiting import until
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -55,10 +55,25 @@ def test_ctrl_c_ends_everything(tmp_path):
     for line in demo.stdout:
         if "password" in line:
             break
-    deadline = time.monotonic() + 60.0
-    while "FF-05" not in str(processes_of(tmp_path)) and time.monotonic() < deadline:
-        time.sleep(0.2)
+    until(lambda: "FF-05" in str(processes_of(tmp_path)), "the last agent")
     demo.send_signal(signal.SIGINT)
     output, _ = demo.communicate(timeout=60)
     assert demo.returncode == 0, output
+    assert "muster base replay" in output
+    assert processes_of(tmp_path) == []
+
+
+@pytest.mark.parametrize("word", ["Enrolling", "Starting"])
+def test_ctrl_c_ends_it_also_before_it_has_begun_and_twice_does_no_harm(tmp_path, word):
+    demo = start_demo(tmp_path)
+    assert demo.stdout is not None
+    while word not in demo.stdout.readline():
+        assert demo.poll() is None
+    until(lambda: len(processes_of(tmp_path)) > 1, "what it has started")
+    for _ in range(3):
+        demo.send_signal(signal.SIGINT)
+    output, _ = demo.communicate(timeout=60)
+    assert demo.returncode == 0, output
+    assert "Ended before it had begun." in output
+    assert "Traceback" not in output
     assert processes_of(tmp_path) == []
