@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +12,9 @@ from base_station.live_state import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
+from shared.log import LogLevel
+
+_ENDPOINT = re.compile(r"(tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):\d{1,5}([?#]\S*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +23,9 @@ class BusConfig:
 
     # Where units connect.  tls/ wants `muster pki init`; tcp/ is not secured.
     listen: tuple[str, ...] = ("tls/0.0.0.0:7447",)
+
+    def __post_init__(self) -> None:
+        _check_endpoints(self.listen)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +70,7 @@ class StandbyConfig:
     confirm_s: Annotated[float, Within(0.0, 10.0)] = 1.0  # an action waits so long for the other
 
     def __post_init__(self) -> None:
+        _check_endpoints(self.peer)
         if self.name:
             validate_unit_id(self.name)
         if bool(self.name) != bool(self.peer):
@@ -75,7 +83,7 @@ class StandbyConfig:
 class StationConfig:
     data: Path = Path("muster-data")  # log, database and first login; one station a folder
     insecure: bool = False  # accept plain connections from other machines
-    log_level: str = "INFO"
+    log_level: LogLevel = "INFO"
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
     log: LogConfig = field(default_factory=LogConfig)
@@ -112,6 +120,14 @@ def host_and_port(address: str) -> tuple[str, int]:
     if not host or not port.isdecimal() or int(port) > 65_535:
         raise ConfigError(f"{address!r} is no address: write HOST:PORT, as in 127.0.0.1:8080")
     return host, int(port)
+
+
+def _check_endpoints(endpoints: tuple[str, ...]) -> None:
+    for endpoint in endpoints:
+        if _ENDPOINT.fullmatch(endpoint) is None:
+            raise ConfigError(
+                f"{endpoint!r} is no end of a bus: write tls/HOST:PORT, as in tls/0.0.0.0:7447"
+            )
 
 
 def _is_loopback(address: str) -> bool:

@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from edge.commands import POSITION_RATE_HZ
 from edge.whereabouts import Place
+from shared.log import LogLevel
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,5 +37,5 @@ class EdgeConfig:
     place: Place | None = None  # roughly where it is used, for the magnetic field; none: by GPS
     position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0
     speed: Annotated[float, Meta(ge=0.01, le=1000.0)] = 1.0  # at which recordings are played
-    log_level: str = "INFO"
+    log_level: LogLevel = "INFO"
     storage: StorageConfig = field(default_factory=StorageConfig)

@@ -6,6 +6,9 @@ import logging
 import time
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
+from typing import Literal
+
+LogLevel = Literal["DEBUG", "INFO", "WARNING", "ERROR"]
 
 _FILE_BYTES = 5_000_000
 _FILES_KEPT = 3
@@ -25,11 +28,8 @@ class OneLineFormatter(logging.Formatter):
         return super().formatMessage(record).replace("\r", "\\r").replace("\n", "\\n")
 
 
-def set_up_logging(level: str = "INFO", file: Path | None = None) -> None:
-    """For a program's start, once: replaces whatever handlers the root logger had.
-
-    ``level`` is a name of the standard library's ("DEBUG", "INFO", "WARNING", "ERROR").
-    """
+def set_up_logging(level: LogLevel = "INFO", file: Path | None = None) -> None:
+    """For a program's start, once: replaces whatever handlers the root logger had."""
     handlers: list[logging.Handler] = [logging.StreamHandler()]
     if file is not None:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -40,4 +40,4 @@ def set_up_logging(level: str = "INFO", file: Path | None = None) -> None:
         )
     for handler in handlers:
         handler.setFormatter(OneLineFormatter())
-    logging.basicConfig(level=level.upper(), handlers=handlers, force=True)
+    logging.basicConfig(level=level, handlers=handlers, force=True)

@@ -39,6 +39,11 @@ def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_pa
         ("[http]\nlisten = '8080'\n", "HOST:PORT"),
         ("[http]\nlisten = 'localhost:80800'\n", "HOST:PORT"),
         ("[http]\ncertificate = 'a.pem'\n", "give both or neither"),
+        ("[bus]\nlisten = ['tls/127.0.0.1']\n", "tls/HOST:PORT"),
+        ("[bus]\nlisten = ['127.0.0.1:7447']\n", "tls/HOST:PORT"),
+        ("[bus]\nlisten = ['udp/127.0.0.1:7447']\n", "tls/HOST:PORT"),
+        ("[standby]\nname = 'b'\npeer = ['10.0.0.2']\n", "tls/HOST:PORT"),
+        ("log_level = 'LOUD'\n", "WARNING"),
     ],
 )
 def test_a_wrong_setting_is_named_with_the_right_one(tmp_path: Path, toml: str, said: str) -> None:
