@@ -27,7 +27,7 @@ def root_logger_restored() -> Iterator[None]:
 def test_a_record_is_one_line_with_utc_time_level_and_component(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    set_up_logging("info", tmp_path / "logs" / "station.log")
+    set_up_logging("INFO", tmp_path / "logs" / "station.log")
     record = logging.LogRecord("base_station.recorder", 30, "", 0, "disk\nfull", None, None)
     record.created, record.msecs = 1_700_000_000.25, 250.0
     logging.getLogger().handle(record)
