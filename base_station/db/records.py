@@ -6,8 +6,9 @@ import secrets
 from collections.abc import Iterable, Sequence
 
 import msgspec
-from sqlalchemy import delete, func, select
+from sqlalchemy import ColumnElement, delete, exists, func, select
 from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import InstrumentedAttribute
 
 from base_station.db import models
 from base_station.db.models import (
@@ -19,9 +20,10 @@ from base_station.db.models import (
     LogSegment,
     Plan,
     TrackPoint,
+    Unit,
 )
 from base_station.db.store import Store
-from shared.clock import Clock
+from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -51,6 +53,19 @@ class TrackSample(msgspec.Struct, frozen=True):
 
 
 _TRACK_COLUMNS = tuple(getattr(TrackPoint, name) for name in TrackSample.__struct_fields__)
+
+
+def _points_of(
+    unit_id: str | InstrumentedAttribute[str], window: Window
+) -> tuple[ColumnElement[bool], ...]:
+    """Of one unit in the window; the whole seconds are the table's key, and come first."""
+    return (
+        TrackPoint.unit_id == unit_id,
+        TrackPoint.t_s >= window.from_ns // NS_PER_S,
+        TrackPoint.t_s <= window.until_ns // NS_PER_S,
+        TrackPoint.t_ns >= window.from_ns,
+        TrackPoint.t_ns < window.until_ns,
+    )
 
 
 class Records:
@@ -84,20 +99,13 @@ class Records:
     def track_units(self, window: Window) -> Sequence[str]:
         """Units that have a track in the window."""
         with self._store.read() as session:
-            return session.scalars(
-                select(TrackPoint.unit_id)
-                .where(TrackPoint.t_ns >= window.from_ns, TrackPoint.t_ns < window.until_ns)
-                .distinct()
-                .order_by(TrackPoint.unit_id)
-            ).all()
+            # Unit by unit, by the key: the table holds every second of every incident.
+            moved = exists().where(*_points_of(Unit.unit_id, window))
+            return session.scalars(select(Unit.unit_id).where(moved).order_by(Unit.unit_id)).all()
 
     def track(self, unit_id: str, window: Window, every_s: int = 1) -> list[TrackSample]:
         """By time; of every ``every_s`` seconds the first point."""
-        inside = (
-            TrackPoint.unit_id == unit_id,
-            TrackPoint.t_ns >= window.from_ns,
-            TrackPoint.t_ns < window.until_ns,
-        )
+        inside = _points_of(unit_id, window)
         wanted = select(*_TRACK_COLUMNS).where(*inside).order_by(TrackPoint.t_s)
         if every_s > 1:
             first = select(func.min(TrackPoint.t_s)).where(*inside)

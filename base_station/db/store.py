@@ -60,9 +60,12 @@ class Store:
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """A consistent view for one reader."""
-        with Session(self._engine, expire_on_commit=False) as session:
-            yield session
+        """A consistent view for one reader.  Raises StoreError where the file cannot be read."""
+        try:
+            with Session(self._engine, expire_on_commit=False) as session:
+                yield session
+        except SQLAlchemyError as error:
+            raise StoreError(f"the database cannot be read: {_cause(error)}") from error
 
     @contextmanager
     def write(self) -> Iterator[Session]:
