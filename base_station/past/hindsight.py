@@ -10,6 +10,7 @@ import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -30,6 +31,7 @@ from shared.quality import Quality
 _log = logging.getLogger(__name__)
 Progress = Callable[[float], None]
 Tracks = Mapping[str, Sequence[TrackSample]]
+Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
@@ -62,15 +64,12 @@ class Hindsight:
         self._smoother = smoother
         self._store = store
         self._clock = clock
-        self._working = threading.Lock()
+        self._working = threading.RLock()
         self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
 
     def smoothed(self, incident: Incident) -> Smoothed:
         """As it was made when the incident had closed; made now where it was not."""
-        made = self._store.of(incident.incident_id) if incident.closed_ns is not None else None
-        if made is not None:
-            return Smoothed(incident.incident_id, *made)
-        return self.smooth(incident)
+        return self._once(incident, self._kept_trails, self.smooth)
 
     def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
         """Make it again from the log; ``on_progress`` hears the fraction done."""
@@ -109,22 +108,43 @@ class Hindsight:
         """Each unit's own path, placed where each of its frames began and never corrected; as it
         was made when the incident had closed.
         """
-        kept = self._store.raw(incident.incident_id) if incident.closed_ns is not None else None
-        if kept is not None:
-            return kept
-        known = self.known(incident)
-        if incident.closed_ns is not None:
-            self._keep(incident, known)
-        return _without_empty(_raw_tracks(incident, known))
+        return self._once(incident, lambda one: self._store.raw(one.incident_id), self._make_raw)
 
     def assess(self, incident: Incident, live: Tracks) -> IncidentReport:
         """How good the positions were, as it was made when the incident had closed; ``live`` is
         what was shown, by unit.
         """
-        kept = self._store.report(incident.incident_id) if incident.closed_ns is not None else None
-        report = None if kept is None else _read_report(kept)
-        if report is not None:
-            return report
+        return self._once(incident, self._kept_report, lambda one: self._assess(one, live))
+
+    def _once(
+        self,
+        incident: Incident,
+        kept: Callable[[Incident], Made | None],
+        make: Callable[[Incident], Made],
+    ) -> Made:
+        """What is kept of a closed incident, or else made of it: whoever asks meanwhile waits."""
+        found = kept(incident) if incident.closed_ns is not None else None
+        if found is not None:
+            return found
+        with self._working:
+            found = kept(incident) if incident.closed_ns is not None else None
+            return make(incident) if found is None else found
+
+    def _kept_trails(self, incident: Incident) -> Smoothed | None:
+        made = self._store.of(incident.incident_id)
+        return None if made is None else Smoothed(incident.incident_id, *made)
+
+    def _kept_report(self, incident: Incident) -> IncidentReport | None:
+        kept = self._store.report(incident.incident_id)
+        return None if kept is None else _read_report(kept)
+
+    def _make_raw(self, incident: Incident) -> Tracks:
+        known = self.known(incident)
+        if incident.closed_ns is not None:
+            self._keep(incident, known)
+        return _without_empty(_raw_tracks(incident, known))
+
+    def _assess(self, incident: Incident, live: Tracks) -> IncidentReport:
         known = self.known(incident)
         report = assess(
             incident.incident_id,

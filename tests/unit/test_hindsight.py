@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from base_station.exporters.incident import incident_tracks
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
-from base_station.past.playback import Archive
+from base_station.past.playback import Archive, Record
 from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
 from shared.messages.station import CloseIncident
@@ -47,7 +48,7 @@ class Past:
                 project_into(session, (projection,))  # type: ignore[arg-type]  # of the projector
 
         project_log(records, make_pipeline(), write, lambda _: None)
-        archive = Archive(
+        self.archive = archive = Archive(
             lambda t_ns: [record for record in records if record[0] >= t_ns],
             Checkpoints(folder / "checkpoints"),
             make_pipeline,
@@ -92,6 +93,23 @@ def test_what_was_made_is_not_made_again(past: Past) -> None:
     assert past.hindsight.smooth(past.incident, fractions.append).tracks == first.tracks
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
+
+
+def test_who_asks_while_it_is_made_gets_the_same(past: Past, tmp_path: Path) -> None:
+    """It takes minutes of a long incident: it is made once, however many ask."""
+    kept = SmoothedTracks(Store(tmp_path / "station.sqlite"))
+    opened: list[int] = []
+
+    def counting(t_ns: int) -> Iterable[Record]:
+        opened.append(t_ns)
+        return past.archive.open_log(t_ns)
+
+    archive = Archive(counting, past.archive.checkpoints, make_pipeline)
+    hindsight = Hindsight(archive, SMOOTHERS[0], kept, ManualClock())
+    with ThreadPoolExecutor(3) as pool:
+        made = list(pool.map(hindsight.smoothed, [past.incident] * 3))
+    assert len(opened) == 1
+    assert all(one.tracks == made[0].tracks for one in made)
 
 
 def test_what_closed_lately_is_smoothed_without_being_asked(
