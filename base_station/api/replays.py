@@ -33,6 +33,11 @@ class ReplayPlayer(LiveSource, Protocol):
 
     def view(self) -> ReplayView: ...
 
+    @property
+    def is_over(self) -> bool:
+        """It was closed, or broke off."""
+        ...
+
     def close(self) -> None:
         """Stop and join its thread."""
         ...
@@ -97,10 +102,12 @@ class Replays:
         return closed is not None
 
     def close_unwatched(self) -> None:
-        """End those that nobody has looked at for a while; called now and then."""
+        """End those that broke off, or that nobody has looked at for a while; called often."""
         now_s = self._monotonic_s()
         for replay in self.all():
-            if replay.hub.watchers or replay.lasting:
+            if replay.player.is_over:
+                self.close(replay.replay_id)
+            elif replay.hub.watchers or replay.lasting:
                 replay.watched_s = now_s
             elif now_s - replay.watched_s > UNWATCHED_S:
                 self.close(replay.replay_id)

@@ -48,19 +48,20 @@ class Checkpoints:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._program = _program()
+        self._useless: set[Path] = set()  # torn, or of another version of the program
         folder.mkdir(parents=True, exist_ok=True)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
         """Raises OSError where the disk does not take it."""
-        packed = zstandard.ZstdCompressor(level=1).compress(
-            pipeline
-        )  # an hour of a hundred units is 27 MB as it is
+        # An hour of a hundred units is 27 MB as it is.
+        packed = zstandard.ZstdCompressor(level=1).compress(pipeline)
         file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, self._program)
         content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"
         part = path.with_suffix(".part")
         part.write_bytes(content)
         part.replace(path)
+        self._useless.discard(path)
         self._thin_out()
 
     def clear(self) -> None:
@@ -69,25 +70,24 @@ class Checkpoints:
             if path.suffix in {SUFFIX, ".part"}:
                 path.unlink(missing_ok=True)
 
-    def latest(self, until_ns: int | None = None) -> SavedState | None:
-        """The newest usable one, at or before ``until_ns`` where that is given."""
-        for path in reversed(self._paths(until_ns)):
-            saved = _read(path, self._program)
-            if saved is not None:
-                return saved
+    def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
+        """The newest usable one, at or before ``until_ns`` where that is given, and later than
+        ``after_ns``.
+        """
+        for path in reversed(self._paths()):
+            t_ns = int(path.stem)
+            if t_ns <= after_ns:
+                break
+            if (until_ns is None or t_ns <= until_ns) and path not in self._useless:
+                saved = _read(path, self._program)
+                if saved is not None:
+                    return saved
+                self._useless.add(path)  # a seek need not read all of them again
         return None
 
-    def latest_ns(self, until_ns: int) -> int | None:
-        """The time of the newest one until then, usable or not."""
-        return max((int(path.stem) for path in self._paths(until_ns)), default=None)
-
-    def _paths(self, until_ns: int | None = None) -> list[Path]:
+    def _paths(self) -> list[Path]:
         """By time."""
-        return sorted(
-            path
-            for path in self._folder.glob(f"*{SUFFIX}")
-            if until_ns is None or int(path.stem) <= until_ns
-        )
+        return sorted(path for path in self._folder.glob(f"*{SUFFIX}") if path.stem.isdecimal())
 
     def _thin_out(self) -> None:
         old = self._paths()[:-KEPT_CLOSE]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from base_station.checkpoint import Checkpoint
 from base_station.events import Output, Received, StationEvent, event_of
-from base_station.past.checkpoints import Checkpoints
+from base_station.past.checkpoints import Checkpoints, SavedState
 from base_station.pipeline import StationPipeline
 from shared.channels import ALARM, FUSED
 from shared.codec import encode
@@ -46,7 +46,7 @@ class Playback:
         self._events: Iterator[StationEvent]
         self._next: StationEvent | None
         self._at_ns: int
-        self._rewind(0)
+        self._begin(None)
 
     @property
     def pipeline(self) -> StationPipeline:
@@ -55,8 +55,9 @@ class Playback:
 
     def seek(self, t_ns: int) -> Iterator[None]:
         """Go to ``t_ns``, back or forth, pausing now and then so that it can be given up."""
-        if t_ns < self._at_ns or self._has_checkpoint_ahead(t_ns):
-            self._rewind(t_ns)
+        saved = self._archive.checkpoints.latest(t_ns, self._at_ns if t_ns >= self._at_ns else -1)
+        if t_ns < self._at_ns or saved is not None:
+            self._begin(saved)
         while self.advance(t_ns) is not None:
             yield
 
@@ -78,13 +79,8 @@ class Playback:
     def at_ns(self) -> int:
         return self._at_ns
 
-    def _has_checkpoint_ahead(self, t_ns: int) -> bool:
-        saved_ns = self._archive.checkpoints.latest_ns(t_ns)
-        return saved_ns is not None and saved_ns > self._at_ns
-
-    def _rewind(self, t_ns: int) -> None:
-        """Begin again from the nearest checkpoint before ``t_ns``."""
-        saved = self._archive.checkpoints.latest(t_ns)
+    def _begin(self, saved: SavedState | None) -> None:
+        """Again, from a checkpoint or from the beginning of the log."""
         self._pipeline = self._archive.make_pipeline(saved.pipeline if saved else None)
         self._at_ns, skip = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
         self._events = _events(self._archive.open_log(self._at_ns), self._at_ns, skip)

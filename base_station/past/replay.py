@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import threading
 from collections import deque
@@ -18,6 +19,8 @@ from shared.errors import UserError
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
 PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -102,6 +105,10 @@ class ReplaySession:
         self._asked.append(deliver)
         self._news.set()
 
+    @property
+    def is_over(self) -> bool:
+        return self._closed.is_set()
+
     def close(self) -> None:
         self._closed.set()
         self._news.set()
@@ -110,6 +117,13 @@ class ReplaySession:
     # ---- in the thread
 
     def _run(self) -> None:
+        try:
+            self._go_on()
+        except Exception:  # noqa: BLE001  # whoever watches hears no more, and is told it ended
+            _log.exception("the replay of %s broke off", self._window.incident_id)
+            self._closed.set()
+
+    def _go_on(self) -> None:
         before_ns = self._clock.monotonic_ns()
         while not self._closed.is_set():
             self._follow_seek()

@@ -48,7 +48,17 @@ def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
     assert saved is not None
     assert (saved.t_ns, saved.events_at_t) == (200, 2)
     assert checkpoints.latest(until_ns=99) is None
-    assert checkpoints.latest_ns(10**9) == 300
+    assert checkpoints.latest(until_ns=250, after_ns=200) is None
+
+
+def test_a_file_that_is_none_of_them_is_left(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    checkpoints.save(100, 1, make_pipeline().checkpoint())
+    (path,) = tmp_path.iterdir()
+    path.with_stem(f"{path.stem} (copy)").write_bytes(path.read_bytes())
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert saved.t_ns == 100
 
 
 def test_those_of_another_program_are_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

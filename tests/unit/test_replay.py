@@ -13,7 +13,7 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
 from shared.clock import NS_PER_S, SystemClock
-from shared.errors import UserError
+from shared.errors import StoreError, UserError
 from shared.messages import EventKind
 from shared.messages.station import Assign, OpenIncident
 from tests.live_station import Screen, make_pipeline
@@ -207,3 +207,40 @@ def test_a_damaged_checkpoint_only_costs_time(records: list[Record], tmp_path: P
         for _ in again.seek(START_NS + 60 * NS_PER_S):
             pass
         assert again.pipeline.state.units["FF-01"].position is not None
+
+
+def test_checkpoints_of_another_program_do_not_send_a_seek_back(
+    records: list[Record], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = archive(records, tmp_path)
+    for _ in (saving := Playback(source)).seek(START_NS + 80 * NS_PER_S):
+        pass
+    source.checkpoints.save(START_NS + 80 * NS_PER_S, 2, saving.pipeline.checkpoint())
+    monkeypatch.setattr("base_station.past.checkpoints._program", lambda: 7)
+    opened: list[int] = []
+
+    def counting(t_ns: int) -> Iterable[Record]:
+        opened.append(t_ns)
+        return source.open_log(t_ns)
+
+    again = Playback(Archive(counting, Checkpoints(tmp_path), make_pipeline))
+    for second in (40, 90, 100):
+        for _ in again.seek(START_NS + second * NS_PER_S):
+            pass
+    assert opened == [0]
+
+
+def test_one_that_breaks_off_is_over(
+    records: list[Record], tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
+) -> None:
+    def torn(_t_ns: int) -> Iterable[Record]:
+        yield from records[:20]
+        raise StoreError("the log cannot be read")
+
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    source = Archive(torn, Checkpoints(tmp_path), make_pipeline)
+    session = ReplaySession(source, window, 1000.0, screen, lambda _: None, SystemClock())
+    until(lambda: session.is_over)
+    session.close()
+    assert "the replay of i1 broke off" in caplog.text
+    assert "the log cannot be read" in caplog.text

@@ -17,6 +17,7 @@ from shared.errors import UserError
 class Player:
     def __init__(self) -> None:
         self.closed = False
+        self.is_over = False
 
     def play(self) -> None: ...
 
@@ -54,6 +55,9 @@ async def test_a_replay_that_nobody_looks_at_ends() -> None:
     assert {one.replay_id for one in replays.all()} == {watched.replay_id, lasting.replay_id}
     assert left.player.closed  # type: ignore[attr-defined]  # it is a Player
     assert replays.get(left.replay_id) is None
+    watched.player.is_over = True  # type: ignore[misc]  # it is a Player
+    replays.close_unwatched()
+    assert replays.all() == (lasting,)
     replays.close_all()
     assert replays.all() == ()
 

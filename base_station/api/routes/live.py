@@ -46,7 +46,7 @@ async def live(socket: WebSocket) -> None:
 
 @router.websocket("/replays/{replay_id}/live")
 async def replay_live(socket: WebSocket, replay_id: str) -> None:
-    replay = services_of(socket).replays.get(replay_id)
+    replay = await run_in_threadpool(services_of(socket).replays.get, replay_id)
     await _serve(socket, None if replay is None else replay.hub)
 
 
