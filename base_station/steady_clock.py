@@ -25,7 +25,7 @@ class SteadyClock:
         """``not_before_ns``: UTC that was given out before this program started."""
         self._clock = clock
         self._lock = Lock()
-        self._offset_ns = not_before_ns - clock.monotonic_ns()
+        self._offset_ns = max(not_before_ns, clock.utc_ns()) - clock.monotonic_ns()
         self._is_held: Callable[[], bool] = lambda: False
 
     def hold_while(self, is_held: Callable[[], bool]) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterator
+import socket
+from collections.abc import Iterator, Sequence
 
 from shared.bus import Bus
 from shared.channels import STATIONS_ROOT
@@ -11,6 +12,7 @@ from shared.errors import BusError
 
 _KEY = f"{STATIONS_ROOT}/router"
 _PATIENCE_S = 1.0
+_CONNECT_S = 0.3
 
 
 class Neighbour:
@@ -36,3 +38,15 @@ class Neighbour:
 
     def _replies(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
         yield self._name
+
+
+def listens(endpoints: Sequence[str]) -> bool:
+    """Whether anything takes connections there: the other machine is up, and so is the network."""
+    for endpoint in endpoints:
+        host, _, port = endpoint.partition("/")[2].rpartition(":")
+        try:
+            socket.create_connection((host.strip("[]"), int(port)), _CONNECT_S).close()
+        except OSError:
+            continue
+        return True
+    return False

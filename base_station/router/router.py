@@ -18,7 +18,7 @@ from threading import Event, Thread
 
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
-from base_station.router.neighbour import Neighbour
+from base_station.router.neighbour import Neighbour, listens
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
 from shared.errors import BusError, ConfigError, MusterError, PortInUseError
 from shared.log import set_up_logging
@@ -67,7 +67,7 @@ class Router:
         self._bus = _open(self._endpoint)
         self._neighbour = Neighbour(self._bus)
         self._told = ""
-        self._alone = 0  # looks in a row without an answer from the other station's router
+        self._alone = 0  # looks in a row at which the other router listened and did not answer
         self._patience = _patience()
 
     def refresh(self) -> None:
@@ -98,10 +98,10 @@ class Router:
         """Zenoh may give a link up for good, or keep one that is deaf, when two routers open at
         once and each finds the other half open.  Where the other one lets in others and does not
         answer over the link, this one opens again; after a while of its own, so that they do not
-        meet like that another time.
+        meet like that another time.  One that has only just begun to listen is left to link.
         """
         linked = not self._links or self._neighbour.answers()
-        self._alone = 0 if linked else self._alone + 1
+        self._alone = self._alone + 1 if not linked and listens(self._links) else 0
         if self._alone >= self._patience:
             self._alone, self._patience = 0, _patience()
             if not self._other_lets_in():

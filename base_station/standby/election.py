@@ -16,6 +16,7 @@ from shared.clock import NS_PER_S
 Decision = Literal["stay", "follow", "lead", "step back"]
 _GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
 _ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
+_GREETING_LEASES = 5  # that a station waits at most for one that listens, to hear from it
 _WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
 
 
@@ -28,6 +29,7 @@ class Me(NamedTuple):
     place: Place
     units: int  # that are linked with either router, as far as it knows
     unit_heard_ns: int  # when a unit last said anything; monotonic
+    other_listens: bool = False  # the other one's router takes connections
 
 
 class Election:
@@ -85,8 +87,10 @@ class Election:
             return "lead" if self._has_witness(now_ns) else "stay"
         if me.place == BEGINNING and not me.preferred:
             return "stay"  # made to follow: a log of its own would keep it from that for ever
-        patience_ns = self._lease_ns if me.preferred else 2 * self._lease_ns
-        return "lead" if now_ns - self._since_ns >= patience_ns else "stay"
+        leases = 1 if me.preferred else 2
+        if me.other_listens:  # it may lead, and the two routers have not linked yet
+            leases = _GREETING_LEASES
+        return "lead" if now_ns - self._since_ns >= leases * self._lease_ns else "stay"
 
     def _note_witness(self, me: Me, now_ns: int) -> None:
         if self._witness_ns is None and me.unit_heard_ns > self._heard_ns + _ON_THE_WAY_NS:

@@ -15,6 +15,7 @@ from threading import Condition, Thread
 from base_station.api.wire import StandbyView
 from base_station.config import StandbyConfig
 from base_station.feed import LogFeed
+from base_station.router.neighbour import listens
 from base_station.standby.confirming import OtherCopy
 from base_station.standby.election import Election, Me
 from base_station.standby.following import Follower, Leader
@@ -187,7 +188,10 @@ class Pair:
             return
         now_ns = self._around.clock.monotonic_ns()
         other = self._election.other
-        decision = self._election.decide(self._me(), now_ns)
+        me = self._me()
+        if self._election.role == "waiting" and not self._election.is_there(now_ns):
+            me = me._replace(other_listens=listens(self._config.peer))
+        decision = self._election.decide(me, now_ns)
         if by_hand and not self.leads:
             decision = "lead"
         if decision == "lead":

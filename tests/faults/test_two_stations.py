@@ -13,11 +13,14 @@ from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
+from shared.clock import NS_PER_S
 from shared.errors import BusError
+from tests.set_clock import MachineClock
 
 pytestmark = pytest.mark.timeout(300)
 
 APART_S = 3.0
+DAY_S = 86_400.0
 
 
 @pytest.fixture
@@ -62,8 +65,15 @@ def end_and_compare(two: TwoStations, ends_first: Station) -> None:
 def test_the_other_station_takes_over_and_the_first_comes_back(
     tmp_path: Path, closing: ExitStack
 ) -> None:
+    """Though the clocks of the two machines differ by a day."""
     two = two_stations(tmp_path, (Place(), Place()), closing)
-    two.start()
+    ahead = MachineClock(tmp_path, "second")
+    ahead.set_ahead(DAY_S)
+    with ahead.ticks():
+        two.second.start()
+    two.first.start()
+    wait_until("the second follows", lambda: two.first.leads() and two.second.follows())
+    assert "ahead" in str(two.second.get("/health")["problems"])
     two.start_unit("anna", two.first)
     two.start_unit("bert", two.second)
     two.wait_heard(two.first)
@@ -79,6 +89,8 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     assert texts(two.first) == ["come out"]
     complete(two)
     end_and_compare(two, two.first)
+    times_ns = [t_ns for t_ns, _, _ in two.first.logged().events]
+    assert times_ns[-1] - times_ns[0] < DAY_S / 24 * NS_PER_S
 
 
 @pytest.fixture(scope="module")

@@ -41,6 +41,23 @@ def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:
         assert router._bus is before
 
 
+def test_a_router_whose_other_one_has_only_just_come_back_leaves_it_to_link(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However long it was away: opened again just then, all its units would be away too."""
+    other = endpoint()
+    monkeypatch.setattr("base_station.router.router._patience", lambda: 3)
+    with closing(Router(tmp_path, (endpoint(),), (other,))) as router:
+        for _ in range(8):  # the next look would be the third in a row
+            router.refresh()
+        before = router._bus
+        monkeypatch.setattr(before, "query", lambda *_: iter(()))  # the link takes its time
+        with closing(Router(tmp_path, (other,))):
+            router.refresh()
+            router.refresh()
+            assert router._bus is before
+
+
 def test_a_router_whose_other_one_hangs_stays_open_for_its_units(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:  # takes links and never answers
         other = f"tcp/127.0.0.1:{listening.getsockname()[1]}"

@@ -49,6 +49,21 @@ def test_alone_it_leads_after_a_while(preferred: bool, waits_s: float) -> None:
     assert site.decide(0.1) == "lead"
 
 
+def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_heard_yet() -> None:
+    """The two routers have not linked: it would lead beside the one that leads."""
+    site = Site(preferred=True)
+    site.me = site.me._replace(other_listens=True)
+    assert site.decide(3 * LEASE_S) == "stay"
+    site.hear("active", term=2)
+    assert site.decide() == "follow"
+
+
+def test_one_whose_other_listens_and_never_says_anything_leads_in_the_end() -> None:
+    site = Site(preferred=True)
+    site.me = site.me._replace(other_listens=True)
+    assert site.decide(10 * LEASE_S) == "lead"
+
+
 def test_a_new_standby_with_an_empty_log_leads_nobody() -> None:
     site = Site(preferred=False)
     site.me = site.me._replace(place=BEGINNING, term=0)

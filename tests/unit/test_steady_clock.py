@@ -28,9 +28,7 @@ def machine() -> JumpingClock:
 
 @pytest.fixture
 def clock(machine: JumpingClock) -> SteadyClock:
-    clock = SteadyClock(machine)
-    clock.utc_ns()
-    return clock
+    return SteadyClock(machine)
 
 
 def test_it_goes_on_at_the_same_rate_when_utc_is_set_back(
@@ -73,6 +71,12 @@ def test_while_it_is_held_it_does_not_leap_and_says_so(
     held = False
     assert clock.utc_ns() == machine.utc_ns()
     assert clock.problems() == ()
+
+
+def test_held_from_its_beginning_it_begins_by_the_machine_s_clock(machine: JumpingClock) -> None:
+    clock = SteadyClock(machine, not_before_ns=1)
+    clock.hold_while(lambda: True)
+    assert clock.utc_ns() == machine.utc_ns()
 
 
 def test_while_it_is_held_it_takes_what_a_time_server_corrects(
