@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import msgspec
 
-from shared.channels import Direction, is_backfilled, parse_key
-from shared.codec import decode
+from shared.channels import ROOT, Direction, is_backfilled, parse_key, parse_unread_key
+from shared.codec import decode, header_of
 from shared.errors import WireError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, Header, Message
 
@@ -24,12 +24,16 @@ class Received(msgspec.Struct, frozen=True):
     backfilled: bool = False  # fetched later from the unit's journal
 
 
+MessageNumber = tuple[str, int, int]  # unit, boot, sequence number: names it for ever
+
+
 class Rejected(msgspec.Struct, frozen=True):
     """Bytes that could not be read; they are in the log all the same."""
 
     t_ns: int
     key: str
     reason: str
+    number: MessageNumber | None = None  # which of its sender's messages it is, where that is known
 
 
 StationEvent = Received | Rejected
@@ -84,17 +88,36 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         unit_id, channel = parse_key(key)
         message = decode(channel, payload)
     except WireError as error:
-        return Rejected(t_ns, key, str(error))
+        return _rejected(t_ns, key, payload, str(error))
     except Exception as error:  # noqa: BLE001  # a mistake of ours must not cost what was said
-        return Rejected(t_ns, key, f"{DECODER_FAILED}: {error!r}")
+        return _rejected(t_ns, key, payload, f"{DECODER_FAILED}: {error!r}")
     speaker = STATION_ID if channel.direction is Direction.DOWN else unit_id
     if message.header.unit_id != speaker:
         return Rejected(
             t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
         )
     if channel.direction is Direction.UP and not _makes_sense(message.header):
-        return Rejected(t_ns, key, f"the times of {speaker!r} make no sense")
+        return _rejected(t_ns, key, payload, f"the times of {speaker!r} make no sense")
     return Received(t_ns, unit_id, message, is_backfilled(key))
+
+
+def number_of(event: StationEvent) -> MessageNumber | None:
+    """Which of its sender's messages came."""
+    if isinstance(event, Rejected):
+        return event.number
+    header = event.message.header
+    return event.unit_id, header.boot_id, header.seq
+
+
+def _rejected(t_ns: int, key: str, payload: bytes, reason: str) -> Rejected:
+    """What is of a newer program or damaged has a number all the same: it is not missing."""
+    unread = parse_unread_key(key)
+    if unread is not None:
+        return Rejected(t_ns, key, reason, unread)
+    header = header_of(payload)
+    if header is None or not key.startswith(f"{ROOT}/{header.unit_id}/"):
+        return Rejected(t_ns, key, reason)
+    return Rejected(t_ns, key, reason, (header.unit_id, header.boot_id, header.seq))
 
 
 def _makes_sense(header: Header) -> bool:

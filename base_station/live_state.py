@@ -22,7 +22,7 @@ from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
 from base_station.site.storeys import Storey
 from base_station.trail import TrailStep, extend_trail, fill_trail
-from shared.channels import NO_TRACKER
+from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import (
@@ -229,6 +229,12 @@ class StationState(msgspec.Struct):
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)
+
+    def sender(self, unit_id: str) -> UnitState | None:
+        """A unit, or the agent that tracks for one; None: it was never heard."""
+        tracked = tracked_unit(unit_id)
+        unit = self.units.get(tracked or unit_id)
+        return unit if unit is None or tracked is None else unit.tracker
 
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
         """Of the building there, lowest first: the plan's, or else those that were learnt."""

@@ -112,6 +112,11 @@ class StationPipeline:
         if isinstance(event, Rejected):
             state.counts.undecodable += 1
             state.counts.last_undecodable = f"{event.key}: {event.reason}"
+            if event.number is not None:
+                unit_id, *which = event.number
+                sender = state.sender(unit_id)
+                if sender is not None:
+                    sender.recall(*which)
             return []
         assert_never(event)
 
@@ -279,7 +284,9 @@ class StationPipeline:
 
 def _news(sender: Sender, event: Received, channel: Channel, t_ns: int) -> News:
     header = event.message.header
-    return sender.recall(header) if event.backfilled else sender.accept(channel, header, t_ns)
+    if event.backfilled:
+        return sender.recall(header.boot_id, header.seq)
+    return sender.accept(channel, header, t_ns)
 
 
 def _touched(command: SentCommand | None) -> list[Output]:

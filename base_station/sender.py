@@ -62,24 +62,26 @@ class Sender(msgspec.Struct):
         self.stopped_ns = None
         return "new"
 
-    def has(self, header: Header) -> bool:
+    def has(self, boot_id: int, seq: int) -> bool:
         """Whether this message came already, live or out of the journal."""
-        boot = self._known_boot(header.boot_id)
-        return boot is not None and header.seq in boot.seen
+        boot = self._known_boot(boot_id)
+        return boot is not None and seq in boot.seen
 
-    def take_back(self, header: Header) -> None:
+    def take_back(self, boot_id: int, seq: int) -> None:
         """The log did not take it: it is missing like what never came."""
-        boot = self._known_boot(header.boot_id)
+        boot = self._known_boot(boot_id)
         if boot is not None:
-            boot.seen.discard(header.seq)
+            boot.seen.discard(seq)
 
-    def recall(self, header: Header) -> News:
-        """Note that a message came out of the unit's journal; it says nothing of the present."""
-        boot = self._known_boot(header.boot_id)
+    def recall(self, boot_id: int, seq: int) -> News:
+        """Note that a message came out of the unit's journal, or one that cannot be read; it says
+        nothing of the present.
+        """
+        boot = self._known_boot(boot_id)
         if boot is None:
-            boot = BootState(header.boot_id)
+            boot = BootState(boot_id)
             self.boots = [boot, *self.boots[1 - BOOTS :]]
-        if not boot.seen.add(header.seq):
+        if not boot.seen.add(seq):
             self.duplicates += 1
             return "repeat"
         return "old"

@@ -41,6 +41,7 @@ EVERY_UNIT = "all"
 NO_TRACKER = "none"  # in a description: the unit's tracking agent computes its positions
 _KEYS_KNOWN = 16_384  # a thousand units' keys are parsed once
 _BACKFILLED = "journal/"
+_UNREAD = "unread/"
 _TRACKER_OF = "@tracker"  # "@" is in no unit's id
 
 
@@ -115,6 +116,7 @@ CHANNELS: tuple[Channel, ...] = (
 _BY_SUFFIX = {channel.suffix: channel for channel in CHANNELS}
 _BY_MESSAGE = {channel.message: channel for channel in CHANNELS}
 _UNIT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_UNREAD_KEY = re.compile(rf"{ROOT}/([^/]+)/{_UNREAD}([0-9a-f]{{16}})/([0-9]{{1,19}})/")
 
 
 def channel_of(message: Message) -> Channel:
@@ -143,6 +145,19 @@ def is_backfilled(key: str) -> bool:
     """Whether a logged message came out of a unit's journal rather than live."""
     parts = key.split("/", 3)
     return len(parts) == 4 and parts[3].startswith(_BACKFILLED)
+
+
+def unread_key(unit_id: str, boot_id: int, seq: int, suffix: str) -> str:
+    """The key under which bytes out of a unit's journal are logged that do not say themselves
+    which of its messages they were.
+    """
+    return f"{ROOT}/{unit_id}/{_UNREAD}{boot_id:016x}/{seq}/{suffix}"
+
+
+def parse_unread_key(key: str) -> tuple[str, int, int] | None:
+    """``(unit_id, boot_id, seq)``; None: it is no such key."""
+    match = _UNREAD_KEY.match(key)
+    return None if match is None else (match[1], int(match[2], 16), int(match[3]))
 
 
 def alive_key(unit_id: str) -> str:

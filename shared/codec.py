@@ -16,6 +16,7 @@ from shared.messages import (
     CommandReply,
     FusedPosition,
     GpsFix,
+    Header,
     Heartbeat,
     Message,
     OperatorAction,
@@ -90,3 +91,14 @@ def decode(channel: Channel, payload: bytes) -> Message:
         return channel.message.from_wire(wire)
     except ValueError as error:
         raise WireError(f"a {channel.name} message that makes no sense: {error}") from error
+
+
+def header_of(payload: bytes) -> Header | None:
+    """Who said a message and which it is, also where ``decode`` refuses the rest: every message
+    begins with its header.  None: there is none.
+    """
+    try:
+        wire = station_pb2.Tick.FromString(payload).header  # the least that any message has
+    except DecodeError:
+        return None
+    return Header.from_wire(wire) if wire.schema and wire.unit_id else None

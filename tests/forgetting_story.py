@@ -64,7 +64,7 @@ class Walker:
                 self._station.feed.offer(key, payload)
         seq = self._makes.header(self._unit_id).seq - 1
         last = Header(self._unit_id, 7, seq, 0)
-        until(lambda: self._station.pipeline.state.units[self._unit_id].has(last))
+        until(lambda: self._station.pipeline.state.units[self._unit_id].has(last.boot_id, last.seq))
 
     def press_mayday(self) -> None:
         header = self._makes.header(self._unit_id)

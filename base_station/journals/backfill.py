@@ -17,9 +17,11 @@ from typing import NamedTuple
 
 from base_station.journals.unit_journal import Held, Question, UnitJournal
 from shared.bus import Bus
-from shared.channels import ROOT, backfilled_key
+from shared.channels import ROOT, backfilled_key, unread_key
 from shared.clock import Clock
+from shared.codec import header_of
 from shared.errors import BusError, WireError
+from shared.messages import JournalEntry
 
 logger = logging.getLogger(__name__)
 
@@ -149,7 +151,7 @@ class Backfill:
             return
         if chunk is not None:
             for entry in chunk.entries:
-                self._deliver(backfilled_key(asked.unit_id, entry.suffix), entry.payload)
+                self._deliver(_key_of(asked.unit_id, chunk.boot_id, entry), entry.payload)
             self.fetched += len(chunk.entries)
 
     def _end(self, asked: _Asked) -> None:
@@ -191,3 +193,14 @@ class Backfill:
         with self._news:
             (self._urgent if asked.question.urgent else self._replies).append((asked, reply))
             self._news.notify()
+
+
+def _key_of(unit_id: str, boot_id: int, entry: JournalEntry) -> str:
+    """What does not say itself which message it is, has that in its key: else it would be missing
+    again whenever the station starts.
+    """
+    header = header_of(entry.payload)
+    said = None if header is None else (header.unit_id, header.boot_id, header.seq)
+    if said == (unit_id, boot_id, entry.seq):
+        return backfilled_key(unit_id, entry.suffix)
+    return unread_key(unit_id, boot_id, entry.seq, entry.suffix)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from enum import Enum
 
-from base_station.events import Received, StationEvent
-from base_station.live_state import StationState, UnitState
-from shared.channels import Direction, Qos, parse_key, tracked_unit
+from base_station.events import StationEvent, number_of
+from base_station.live_state import StationState
+from shared.channels import Direction, Qos, parse_key
 from shared.errors import UnknownChannelError
 
 
@@ -27,12 +27,12 @@ def judge(key: str, event: StationEvent, state: StationState) -> Heard:
     try:
         channel = parse_key(key)[1]
     except UnknownChannelError:
-        return Heard.KEEP
+        return Heard.REPEATED if _is_kept(event, state) else Heard.KEEP
     if not channel.logged:
         return Heard.LEAVE
     if channel.direction is Direction.STATION:
         return Heard.FORGED
-    if channel.direction is Direction.UP and isinstance(event, Received) and _is_kept(event, state):
+    if channel.direction is Direction.UP and _is_kept(event, state):
         return Heard.REPEATED
     return Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP
 
@@ -41,18 +41,15 @@ def take_back(event: StationEvent, state: StationState) -> None:
     """The log did not take what was stepped.  It has been seen, and counts as missing: its unit
     keeps it, and it is fetched when there is room.
     """
-    if isinstance(event, Received) and (sender := _sender_of(event, state)) is not None:
-        sender.take_back(event.message.header)
+    number = number_of(event)
+    if number is not None and (sender := state.sender(number[0])) is not None:
+        sender.take_back(*number[1:])
 
 
-def _is_kept(event: Received, state: StationState) -> bool:
+def _is_kept(event: StationEvent, state: StationState) -> bool:
     """Whether the message came before: on two ways, sent again by the network, or replayed."""
-    sender = _sender_of(event, state)
-    return sender is not None and sender.has(event.message.header)
-
-
-def _sender_of(event: Received, state: StationState) -> UnitState | None:
-    """A unit, or the agent that tracks for one."""
-    tracked = tracked_unit(event.unit_id)
-    unit = state.units.get(tracked or event.unit_id)
-    return unit if unit is None or tracked is None else unit.tracker
+    number = number_of(event)
+    if number is None:
+        return False
+    sender = state.sender(number[0])
+    return sender is not None and sender.has(*number[1:])

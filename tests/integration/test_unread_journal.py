@@ -1,0 +1,114 @@
+"""What a unit's journal holds and nobody can read is in the log once, and is not fetched again."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from base_station.journals.backfill import Backfill
+from edge.journal_server import JournalServer
+from edge.spool import Journaled, Spool
+from shared.channels import POSITION
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.messages import Header, Position
+from shared.messages.header import SCHEMA_REVISION
+from shared.messages.station import RegisterUnit
+from tests.live_station import LiveStation
+from tests.waiting import until
+
+MakePosition = Callable[..., Position]
+U, BOOT = "FF-01", 0xB007
+
+
+class Unit:
+    """A journal of which some entries are of a newer program, of somebody else, or damaged."""
+
+    def __init__(self, folder: Path, make_position: MakePosition) -> None:
+        self._make = make_position
+        messages = [
+            self.position(2),
+            self.position(3, schema=SCHEMA_REVISION + 1),
+            self.position(4, unit_id="FF-02"),
+            self.position(77),  # it is not the one that the journal calls it
+            self.position(6),
+        ]
+        self.kept = [*map(encode, messages), b"\xff\xfe rotten", b""]
+        self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
+        entries = enumerate(self.kept, start=2)
+        self.spool.append([Journaled(seq, POSITION, seq, payload) for seq, payload in entries])
+
+    def position(self, seq: int, **changes: object) -> Position:
+        header = Header(U, BOOT, seq, seq * 10**8)
+        return self._make(header=msgspec.structs.replace(header, **changes))
+
+
+@contextmanager
+def running(folder: Path, unit: Unit) -> Iterator[tuple[LiveStation, Backfill]]:
+    """A station that hears the unit and may ask for its journal."""
+    with LiveStation(folder) as station:
+        server = JournalServer(U, unit.spool)
+        station.router.attach_unit().serve(server.key_expression, server.replies)
+        backfill = Backfill(station.bus, station.feed.deliver, SystemClock())
+        backfill.start()
+        try:
+            yield station, backfill
+        finally:
+            station.feed.close()
+            backfill.close()
+
+
+def heard(station: LiveStation, backfill: Backfill, rounds: int) -> None:
+    """So many reports of what the station has."""
+    for _ in range(rounds):
+        station.reported = {}
+        until(lambda: station.reported, "the unit is linked, and what there is of it is reported")
+        backfill.report(station.reported)
+
+
+def kept(station: LiveStation, unit: Unit) -> list[int]:
+    """How often each of the journal's entries is in the log."""
+    counts = Counter(payload for _, _, payload in station.log.records())
+    return [counts[payload] for payload in unit.kept]
+
+
+@pytest.mark.timeout(120)
+def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
+    tmp_path: Path, make_position: MakePosition
+) -> None:
+    unit = Unit(tmp_path, make_position)
+    with running(tmp_path / "station", unit) as (station, backfill):
+        station.act(RegisterUnit(U, "one"))
+        station.say(unit.position(1))
+        heard(station, backfill, 4)
+        until(lambda: kept(station, unit) == [1] * len(unit.kept), "all is in the log")
+        assert backfill.fetched == len(unit.kept)
+        assert station.pipeline.state.counts.undecodable == 5
+    with running(tmp_path / "station", unit) as (station, backfill):
+        station.say(unit.position(9))
+        heard(station, backfill, 4)
+        assert backfill.fetched == 0
+        assert kept(station, unit) == [1] * len(unit.kept)
+
+
+def test_what_came_live_and_cannot_be_read_is_not_fetched(
+    tmp_path: Path, make_position: MakePosition
+) -> None:
+    unit = Unit(tmp_path, make_position)
+    newer = encode(unit.position(3, schema=SCHEMA_REVISION + 1))
+    with LiveStation(tmp_path / "station") as station:
+        station.act(RegisterUnit(U, "one"))
+        for _ in range(2):
+            station.feed.offer(POSITION.key(U), newer)
+        until(lambda: station.pipeline.state.counts.undecodable == 1, "it came")
+        state = station.pipeline.state
+        until(lambda: (sender := state.sender(U)) and sender.has(BOOT, 3), "it is not missing")
+        station.feed.deliver("muster/v1/FF-01/journal/up/position", newer)
+        station.say(unit.position(4))
+        until(lambda: (sender := state.sender(U)) and sender.has(BOOT, 4), "the next one came")
+        assert sum(payload == newer for _, _, payload in station.log.records()) == 1
