@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from shared.errors import UserError
+from shared.out_file import writable
 
-Out = Annotated[Path, typer.Option(help="The calibration file to write.")]
+Out = Annotated[Path, typer.Option(help="The calibration file to write.", callback=writable)]
 Unit = Annotated[str, typer.Option(help="Name of the unit whose sensors these are.")]
 GuidedBy = Annotated[
     str | None,

@@ -16,8 +16,8 @@ from edge.sources.recording import RecordingSource
 from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality, TrackBatch
 from edge.tracker.rows import join_rows
-from shared.errors import UserError
 from shared.mcap_log import segment_paths
+from shared.out_file import not_written, writable
 
 COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
 
@@ -29,14 +29,13 @@ def track(
             help="A trial folder, a CSV of samples, or a black box: a boot or a segment."
         ),
     ],
-    out: Annotated[Path, typer.Option(help="The CSV file to write.")],
+    out: Annotated[Path, typer.Option(help="The CSV file to write.", callback=writable)],
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
 ) -> None:
     """Track a recorded walk and write time, position and standard deviations."""
-    black_box = recording.suffix == ".mcap" or bool(segment_paths(recording))
-    source = BlackBoxSource(recording) if black_box else RecordingSource(recording)
+    source = BlackBoxSource(recording) if _is_black_box(recording) else RecordingSource(recording)
     rows = run_tracker(source, tracker, quiet=False)
     write_csv(rows, out)
     step_m = rows.position_n_m[-1] - rows.position_n_m[0]
@@ -46,6 +45,12 @@ def track(
         f"{rows.steps[-1]} strides, ends {np.hypot(step_m[0], step_m[1]):.2f} m from its start "
         f"and {-step_m[2]:+.2f} m higher; {100 * doubtful:.0f} % of the rows are not good."
     )
+
+
+def _is_black_box(path: Path) -> bool:
+    """A segment, a boot, or several boots, of which one is to be chosen."""
+    folders = (path, *path.glob("*/")) if path.is_dir() else ()
+    return path.suffix == ".mcap" or any(map(segment_paths, folders))
 
 
 def _report(source: Source) -> str:
@@ -75,4 +80,4 @@ def write_csv(rows: TrackBatch, out: Path) -> None:
     try:
         np.savetxt(out, table, "%.6f" + ",%.4f" * 6 + ",%.5f,%d", header=COLUMNS, comments="")
     except OSError as error:
-        raise UserError(f"cannot write {out}: {error.strerror}; give another --out") from error
+        raise not_written(out, error) from error

@@ -9,8 +9,11 @@ from typing import Annotated
 
 import typer
 
+from shared.out_file import writable
+
 FiguresFile = Annotated[
-    Path | None, typer.Option("--json", help="Also write the figures to this file.")
+    Path | None,
+    typer.Option("--json", help="Also write the figures to this file.", callback=writable),
 ]
 
 

@@ -11,7 +11,8 @@ from typing import Any
 import msgspec
 
 from edge.calibration.model import Calibration
-from shared.errors import ConfigError, UserError
+from shared.errors import ConfigError
+from shared.out_file import not_written
 
 _HEADLINE = "# Made by `muster edge calibrate`; units are in the names.\n"
 
@@ -21,7 +22,7 @@ def write_calibration(calibration: Calibration, path: Path) -> None:
     try:
         path.write_text(to_toml(calibration), encoding="utf-8")
     except OSError as error:
-        raise UserError(f"cannot write {path}: {error.strerror}; give another --out") from error
+        raise not_written(path, error) from error
 
 
 def read_calibration(path: Path) -> Calibration:

@@ -68,7 +68,7 @@ def _check_columns(
             near = get_close_matches(name, known, n=1, cutoff=0.3)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise RecordingError(
-                f"{path}: unknown column {name!r}{hint} "
+                f"{path}: unknown column {name!r}{hint or '.'} "
                 f"A name ends in its unit, and the known names are {', '.join(known)}"
             )
     repeated = sorted({name for name in names if names.count(name) > 1})

@@ -64,7 +64,16 @@ def test_a_place_that_cannot_be_written_is_said(trial, tmp_path):
     app.command()(track)
     result = CliRunner().invoke(app, [str(trial), "--out", str(tmp_path / "no" / "where.csv")])
     assert isinstance(result.exception, UserError)
-    assert "--out" in str(result.exception)
+    assert "choose another place" in str(result.exception)
+
+
+def test_among_several_boots_of_a_black_box_one_is_to_be_chosen(tmp_path):
+    (tmp_path / "boot").mkdir()
+    (tmp_path / "boot" / "000001-20260301T100000Z.mcap").write_bytes(b"")
+    app = typer.Typer()
+    app.command()(track)
+    result = CliRunner().invoke(app, [str(tmp_path), "--out", str(tmp_path / "track.csv")])
+    assert "choose one of boot" in str(result.exception)
 
 
 def test_bench_scores_every_trial_as_table_and_json(trial, tmp_path):
