@@ -15,9 +15,17 @@ from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
 from shared.bus import Bus, ReplyHandler
 from shared.bus_memory import MemoryRouter
-from shared.channels import EVENT, POSITION, backfilled_key
+from shared.channels import EVENT, POSITION, backfilled_key, parse_unread_key
 from shared.clock import ManualClock
-from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
+from shared.codec import encode, header_of
+from shared.messages import (
+    Header,
+    JournalBoot,
+    JournalChunk,
+    JournalEntry,
+    JournalIndex,
+    Temperature,
+)
 from shared.sequence_set import Run
 from tests.waiting import until
 
@@ -30,6 +38,11 @@ def tell(backfill: Backfill, report: Report) -> None:
     until(lambda: backfill._report is None, "the report is looked at")
 
 
+def said(number: int) -> bytes:
+    """Which message it is is all that counts here."""
+    return encode(Temperature(Header("FF-01", BOOT, number, number), 20.0))
+
+
 class Bench:
     """A unit's journal of ten messages, and a station that backfills from it."""
 
@@ -37,7 +50,7 @@ class Bench:
         router = MemoryRouter()
         self.unit_bus = router.attach_unit()
         self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
-        self.spool.append([Journaled(n, POSITION, n, b"%d" % n) for n in numbers])
+        self.spool.append([Journaled(n, POSITION, n, said(n)) for n in numbers])
         server = JournalServer("FF-01", self.spool)
         self.questions: list[str] = []  # for ranges
 
@@ -59,7 +72,8 @@ class Bench:
     @property
     def numbers(self) -> list[int]:
         assert all(key == backfilled_key("FF-01", "up/position") for key, _ in self.delivered)
-        return [int(payload) for _, payload in self.delivered]
+        headers = [header_of(payload) for _, payload in self.delivered]
+        return [header.seq for header in headers if header is not None]
 
 
 @pytest.fixture
@@ -128,17 +142,16 @@ def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(t
 
 def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):
     bench = Bench(tmp_path, [1])
-    said = [Journaled(n, POSITION, n, b"%d" % n) for n in range(2, 1001)]
-    said[498] = Journaled(500, EVENT, 500, b"fall")
-    bench.spool.append(said)
+    entries = [Journaled(n, POSITION, n, said(n)) for n in range(2, 1001)]
+    entries[498] = Journaled(500, EVENT, 500, said(500))
+    bench.spool.append(entries)
     for _ in range(4):
         bench.report(Run(1, 1), Run(1000, 1000))
     until(lambda: len(bench.delivered) == 998)
     bench.backfill.close()
     bench.spool.close()
-    assert bench.delivered[0] == (backfilled_key("FF-01", "alert/event"), b"fall")
-    numbers = [int(payload) for _, payload in bench.delivered[1:]]
-    assert sorted(numbers) == [n for n in range(2, 1000) if n != 500]
+    assert bench.delivered.pop(0) == (backfilled_key("FF-01", "alert/event"), said(500))
+    assert sorted(bench.numbers) == [n for n in range(2, 1000) if n != 500]
 
 
 class StubBus:
@@ -259,3 +272,16 @@ def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
     until(lambda: len(delivered) == 3)
     backfill.close()
     assert delivered == [b"old", b"fall", b"old too"]
+
+
+def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
+    bench = Bench(tmp_path, [1])
+    rotten = {2: b"rotten", 3: said(77), 4: b""}
+    bench.spool.append([Journaled(n, POSITION, n, rotten[n]) for n in rotten])
+    for _ in range(4):
+        bench.report(Run(1, 1))
+    until(lambda: len(bench.delivered) == 3)
+    bench.backfill.close()
+    bench.spool.close()
+    keys = {parse_unread_key(key): payload for key, payload in bench.delivered}
+    assert keys == {("FF-01", BOOT, n): rotten[n] for n in rotten}
