@@ -15,7 +15,8 @@ A feature of kind ``wall`` is a line that nobody walks through (doors are its ga
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections import Counter
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -26,6 +27,7 @@ LEAST_POINTS = 2  # of a line
 OUTLINE_HYSTERESIS_M = 1.5
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
+Read = TypeVar("Read")
 
 
 class Wall(msgspec.Struct, frozen=True, array_like=True):
@@ -77,6 +79,53 @@ class Plan(msgspec.Struct, frozen=True):
 
 def read_plan(geojson: bytes) -> Plan:
     """Raises UserError, which says what a plan must look like."""
+    document = _document(geojson)
+    outlines: list[Ring] = []
+    walls: list[Wall] = []
+    stairs: list[Stairs] = []
+    for number, feature in enumerate(
+        _read(document.get("features", ()), list[_Feature], "feature")
+    ):
+        about = feature.properties or {}
+        kind = about.get("kind")
+        if kind in _KINDS:
+            line = _line(feature, f"{kind} (feature {number})")
+            floor = _read(about.get("floor", 0), int, f"floor of a {kind} (feature {number})")
+            if kind == "outline":
+                outlines.append(line)
+            elif kind == "wall":
+                walls.append(Wall(floor, line))
+            else:
+                stairs.append(Stairs(floor, line))
+    return Plan(geojson, _storeys(document["muster"]), tuple(outlines), tuple(walls), tuple(stairs))
+
+
+_KINDS = ("outline", "wall", "stairs")
+
+
+class _Floor(msgspec.Struct):
+    floor: int
+    down_m: float
+
+
+class _Geometry(msgspec.Struct):
+    type: str
+    coordinates: Any
+
+
+class _Feature(msgspec.Struct):
+    properties: dict[str, Any] | None = None
+    geometry: Any = None  # only what the station uses is looked at
+
+
+def _read(value: object, kind: type[Read], what: str) -> Read:
+    try:
+        return msgspec.convert(value, kind)
+    except msgspec.ValidationError as error:
+        raise UserError(f"the plan has a {what} that cannot be read: {error}") from error
+
+
+def _document(geojson: bytes) -> dict[str, Any]:
     try:
         document = msgspec.json.decode(geojson)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
@@ -89,43 +138,30 @@ def read_plan(geojson: bytes) -> Plan:
             'the plan has no scale: its member "muster" must say {"frame": "site-m", ...}, and '
             "coordinates must be [east_m, north_m] in metres"
         )
-    try:
-        storeys = sorted(
-            (Storey(int(item["floor"]), float(item["down_m"])) for item in site.get("floors", ())),
-            key=lambda storey: -storey.down_m,
-        )
-        features = [(item["properties"], item) for item in document.get("features", ())]
-        outlines = tuple(_line(item) for about, item in features if about.get("kind") == "outline")
-        walls = tuple(
-            Wall(int(about.get("floor", 0)), _line(item))
-            for about, item in features
-            if about.get("kind") == "wall"
-        )
-        stairs = tuple(
-            Stairs(int(about.get("floor", 0)), _line(item))
-            for about, item in features
-            if about.get("kind") == "stairs"
-        )
-    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
-        raise UserError(
-            f"the plan has a storey, outline, wall or stairs that cannot be read: {error!r}"
-        ) from error
-    if not all(math.isfinite(storey.down_m) for storey in storeys):
-        raise UserError("the plan has a storey whose height is no number")
-    lines = (*outlines, *(wall.line for wall in walls), *(one.ring for one in stairs))
-    if not all(math.isfinite(value) for line in lines for point in line for value in point):
-        raise UserError("the plan has a coordinate that is no number")
-    if any(len(line) < LEAST_POINTS for line in lines):
-        raise UserError("the plan has an outline, wall or stairs of fewer than two points")
-    return Plan(geojson, tuple(storeys), outlines, walls, stairs)
+    return document
 
 
-def _line(feature: Any) -> Ring:
-    """The points of a line, or of a polygon's outer ring."""
-    geometry = feature["geometry"]
-    points = geometry["coordinates"]
-    outer = points if geometry["type"] == "LineString" else points[0]
-    return tuple((float(point[0]), float(point[1])) for point in outer)
+def _storeys(site: dict[str, Any]) -> tuple[Storey, ...]:
+    """Lowest first."""
+    listed = _read(site.get("floors", ()), list[_Floor], "list of floors")
+    numbers = Counter(one.floor for one in listed)
+    twice = [floor for floor, count in numbers.items() if count > 1]
+    if twice:
+        raise UserError(f"the plan lists floor {twice[0]} more than once")
+    lowest_first = sorted(listed, key=lambda one: -one.down_m)
+    return tuple(Storey(one.floor, one.down_m) for one in lowest_first)
+
+
+def _line(feature: _Feature, what: str) -> Ring:
+    """The points of a line, or of a polygon's outer ring; a height beside a point is left."""
+    geometry = _read(feature.geometry, _Geometry, what)
+    points = geometry.coordinates
+    if geometry.type != "LineString":
+        points = points[0] if isinstance(points, list) and points else points
+    line = _read(points, list[tuple[float, ...]], what)
+    if len(line) < LEAST_POINTS or any(len(point) < 2 for point in line):
+        raise UserError(f"the plan's {what} has fewer than two points [east_m, north_m]")
+    return tuple((point[0], point[1]) for point in line)
 
 
 def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:

@@ -28,6 +28,7 @@ HOUSE = {
             },
         },
         {"type": "Feature", "properties": {"kind": "door"}, "geometry": None},
+        {"type": "Feature", "properties": None, "geometry": None},
     ],
 }
 
@@ -79,7 +80,24 @@ def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> Non
         (
             b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
             b'{"kind":"outline"},"geometry":{"type":"Polygon","coordinates":[]}}]}',
-            "cannot be read",
+            "two points",
+        ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
+            b'{"kind":"outline"},"geometry":null}]}',
+            r"outline \(feature 0\) that cannot be read: Expected `object`, got `null`",
+        ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
+            b'{"kind":"wall","floor":"up"}, "geometry":{"type":"LineString","coordinates":'
+            b"[[0,0],[1,1]]}}]}",
+            r"floor of a wall \(feature 0\) that cannot be read: Expected `int`, got `str`",
+        ),
+        (b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":5}', "array"),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":['
+            b'{"floor":1,"down_m":0},{"floor":1,"down_m":-3}]}}',
+            "floor 1 more than once",
         ),
     ],
 )
