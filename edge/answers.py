@@ -24,6 +24,7 @@ class Answers:
     def __init__(self, unit_id: str, branch: str, answers: Mapping[str, Answer]) -> None:
         self._prefix = f"{ROOT}/{unit_id}/{branch}/"
         self._answers = answers
+        self._trouble = ""  # the last that was told, while it lasts
 
     @property
     def key_expression(self) -> str:
@@ -38,7 +39,10 @@ class Answers:
             return
         try:
             yield from answer(dict(pair.split("=", 1) for pair in parameters.split(";") if pair))
+            self._trouble = ""
         except (KeyError, ValueError, OverflowError) as error:
             logger.warning("a question for %s makes no sense: %r (%r)", key, parameters, error)
         except (StoreError, OSError) as error:
-            logger.error("%s cannot be answered: %s", key, error)
+            if str(error) != self._trouble:  # the station asks again every second
+                logger.error("%s cannot be answered: %s", key, error)
+            self._trouble = str(error)

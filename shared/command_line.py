@@ -8,6 +8,7 @@ from its source.
 from __future__ import annotations
 
 import ast
+import logging
 import sys
 from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
@@ -24,14 +25,30 @@ _GROUP_HELP = {"bench": "Measure this build on this machine."}
 
 
 def main() -> NoReturn:
-    """Run the command line; a MusterError becomes one sentence on stderr and exit code 2."""
+    """Run the command line; a MusterError becomes one sentence on stderr and exit code 2.
+
+    So does what the system says of a file that no command had expected to be out of reach.
+    """
     program = build_program(entry_points(group="muster.commands"))
     try:
         program(prog_name="muster")
     except MusterError as error:
         print(f"muster: {error}", file=sys.stderr)
         sys.exit(2)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        logging.getLogger(__name__).debug("ended by the system", exc_info=True)
+        print(f"muster: {_in_words(error)}", file=sys.stderr)
+        sys.exit(2)
     sys.exit(0)
+
+
+def _in_words(error: OSError) -> str:
+    said = f"{error.filename}: {error.strerror}"
+    if isinstance(error, PermissionError):
+        return f"{said}; run this as the user to whom it belongs"
+    return f"{said}; check the path and the disk"
 
 
 def build_program(points: Iterable[EntryPoint]) -> TyperGroup:

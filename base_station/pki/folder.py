@@ -70,7 +70,8 @@ class PkiFolder:
         if self._folder.exists():
             raise ConfigError(
                 f"{self._folder} is there already: making a new authority would shut out "
-                "everyone enrolled; move it away if that is meant"
+                "everyone enrolled; for another address use `muster pki renew-station --host`, "
+                "and move it away only if a new authority is meant"
             )
         if self._now() < _BEFORE_THIS_PROGRAM:
             raise ConfigError(

@@ -8,6 +8,7 @@ keeps its session, its subscriptions and what it knows.
 from __future__ import annotations
 
 import logging
+import os
 import secrets
 import signal
 import sys
@@ -176,7 +177,9 @@ def _open(endpoint: StationEndpoint) -> ZenohBus:
 
 
 def _stop_at_end_of_input(stop: Event) -> None:
-    sys.stdin.buffer.read()
+    # Not sys.stdin: its lock, held while it reads, would abort a program that ends meanwhile.
+    while os.read(sys.stdin.fileno(), 4096):
+        pass
     stop.set()
 
 

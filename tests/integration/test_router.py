@@ -119,11 +119,15 @@ def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, .
         RouterProcess(tmp_path, listen)
 
 
-def test_a_taken_port_is_said(
-    process: RouterProcess, tmp_path: Path, listen: tuple[str, ...]
+def test_a_taken_port_is_said_and_nothing_else(
+    process: RouterProcess,
+    tmp_path: Path,
+    listen: tuple[str, ...],
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(BusError, match="another program uses this port"):
         RouterProcess(tmp_path, listen)
+    assert "Fatal" not in capfd.readouterr().err
 
 
 def test_a_damaged_registry_leaves_the_rules_as_they_were(

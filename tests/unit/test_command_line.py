@@ -66,3 +66,13 @@ def test_an_error_is_one_sentence_and_no_traceback():
     assert result.returncode == 2
     assert "nowhere/at/all" in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_what_the_system_says_of_a_file_is_one_sentence_too(tmp_path):
+    file = tmp_path / "file"
+    file.write_text("")
+    result = run("demo", "--data", str(file))
+    assert result.returncode == 2
+    assert (
+        result.stderr == f"muster: {file / 'output'}: Not a directory; check the path and the disk\n"
+    )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
+import logging
 
 import pytest
 
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
 from shared.channels import EVENT, POSITION
+from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalIndex
 
 
@@ -106,3 +108,19 @@ def test_index_and_acknowledgement(spool):
 def test_questions_without_sense_get_nothing_and_break_nothing(spool, what, parameters):
     assert ask(spool, what, parameters) == []
     assert len(chunks(spool, "epoch=9;from=1;to=100")) == 1
+
+
+def test_what_lasts_is_told_once_and_again_when_it_comes_back(spool, caplog, monkeypatch):
+    full = StoreError("database or disk is full")
+
+    def refuse(*_: object) -> None:
+        raise full
+
+    server = JournalServer("u1", spool)
+    for works in (False, False, True, False):
+        with monkeypatch.context() as patch:
+            if not works:
+                patch.setattr(spool, "acknowledge", refuse)
+            list(server.replies("muster/v1/u1/journal/acknowledge", "epoch=9;to=5", b""))
+    told = [one for one in caplog.records if one.levelno == logging.ERROR]
+    assert len(told) == 2
