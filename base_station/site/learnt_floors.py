@@ -104,7 +104,11 @@ class Building(msgspec.Struct):
         self._widen(landing.north_m, landing.east_m, landing.north_m, landing.east_m)
 
     def unite(self, other: Building) -> None:
-        self.landings = [*self.landings, *other.landings][-MOST_LANDINGS:]
+        """The storeys are to be worked out anew, of both."""
+        self.landings = sorted([*self.landings, *other.landings], key=lambda one: one.t_ns)
+        while len(self.landings) > MOST_LANDINGS:
+            _make_room(self.landings)
+        self.unlearnt += len(self.landings)
         self._widen(*other.box_m)
 
     def _widen(self, south: float, west: float, north: float, east: float) -> None:

@@ -83,9 +83,8 @@ def read_plan(geojson: bytes) -> Plan:
     outlines: list[Ring] = []
     walls: list[Wall] = []
     stairs: list[Stairs] = []
-    for number, feature in enumerate(
-        _read(document.get("features", ()), list[_Feature], "feature")
-    ):
+    features = _read(document.get("features", ()), list[_Feature], "feature")
+    for number, feature in enumerate(features):
         about = feature.properties or {}
         kind = about.get("kind")
         if kind in _KINDS:
