@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,13 +39,21 @@ MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about 
 
 @dataclass(frozen=True)
 class Past:
-    """What solves it."""
+    """What solves it, once."""
 
     smoother: Smoother
     grid: FloorGrid | None  # the plan's walls
+    _alone: dict[str, SmoothedPath] = field(default_factory=dict)
 
     def solve(self, unit_id: str, history: PathHistory, places: Sequence[PlaceSeen]) -> Solution:
         return self.smoother.solve({unit_id: _evidence(history, places, self.grid)})
+
+    def alone(self, state: StationState, unit_id: str, history: PathHistory) -> SmoothedPath:
+        """A unit's path by all that is known of it but its meetings; the same at each of them."""
+        if unit_id not in self._alone:
+            places = _own_places(state, unit_id, history)
+            self._alone[unit_id] = self.solve(unit_id, history, places).paths[unit_id]
+        return self._alone[unit_id]
 
 
 @dataclass(frozen=True)
@@ -117,18 +125,11 @@ def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str,
     """Everything that is known of every unit that has a path, but for meetings; ``grid``: the
     plan's walls.
     """
-    found = {}
-    for unit_id, history in sorted(state.paths.items()):
-        if history.begin_ns is not None:
-            pins = [pin for pin in state.pins.values() if pin.unit_id == unit_id]
-            places = [
-                place
-                for pin in pins
-                if pin.kind != "meeting"
-                and not isinstance(place := _place(state, history, pin), str)
-            ]
-            found[unit_id] = _evidence(history, places, grid)
-    return found
+    return {
+        unit_id: _evidence(history, _own_places(state, unit_id, history), grid)
+        for unit_id, history in sorted(state.paths.items())
+        if history.begin_ns is not None
+    }
 
 
 def floors_said(state: StationState) -> list[FloorSaid]:
@@ -200,6 +201,13 @@ def _places(
     return places, waiting
 
 
+def _own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:
+    """What pins say of a unit's place by now, but for meetings."""
+    pins = [one for one in state.pins.values() if one.unit_id == unit_id and one.kind != "meeting"]
+    places = [_place(state, history, pin) for pin in pins]
+    return [place for place in places if not isinstance(place, str)]
+
+
 def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | str:
     t_ns = _time_of(history, pin)
     if isinstance(t_ns, str):
@@ -237,14 +245,7 @@ def _met(
     there_ns = _time_of(other, pin)
     if isinstance(there_ns, str):
         return there_ns
-    places = [
-        place
-        for one in state.pins.values()
-        if one.unit_id == other_id
-        and one.kind != "meeting"
-        and not isinstance(place := _place(state, other, one), str)
-    ]
-    path = past.solve(other_id, other, places).paths[other_id]
+    path = past.alone(state, other_id, other)
     row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
     spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
     if spread_m > MEETING_MOST_M:

@@ -14,6 +14,7 @@ from base_station.pins.pin import Pin, PinKind
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 
+MOST_SIGHTINGS = MOST_PINS - 200  # what people say has room beside what units see
 AGAIN_NS = 20 * NS_PER_S  # sightings closer in time than this are one
 NEARER = 0.7  # of the standard deviation before: worth solving the past again
 REACH_M = 3.0  # of a beacon that nobody has placed yet
@@ -71,7 +72,7 @@ def _reason_against(
         (range_m > FURTHEST_M, "a sighting from too far away"),
         (meets and (other is None or not other.registered), "a meeting with an unknown unit"),
         (other is unit, "a meeting with itself"),
-        (len(state.pins) >= MOST_PINS, "more sightings than are kept"),
+        (len(state.pins) >= MOST_SIGHTINGS, "more sightings than are kept"),
     )
     return next((why for holds, why in causes if holds), "")
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
 import pytest
 
+from base_station.fusion.smoother.path_graph import PathGraph
+from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
 from shared.messages import Sighting, SightingKind
 from shared.messages.pins import (
     PlaceBeacon,
@@ -59,3 +62,39 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     sighting(walk, SightingKind.BEACON, "far", 5000.0)
     assert walk.script.pipeline.state.pins == {}
     assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 4
+
+
+def test_what_units_see_leaves_room_for_what_people_say(
+    walk: Walk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("base_station.pins.sightings.MOST_SIGHTINGS", 3)
+    for number in range(5):
+        sighting(walk, SightingKind.TAG, f"door-{number}")
+    assert len(walk.script.pipeline.state.pins) == 3
+    walk.pin("p1", "FF-01", 250.0)
+    assert walk.state("p1") == "used"
+    counts = walk.script.pipeline.state.units["FF-01"].not_used
+    assert counts == {"more sightings than are kept": 2}
+
+
+def test_whom_somebody_met_often_is_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    both = Walk("FF-01", "FF-02")
+    for unit_id in both.units:
+        both.start(unit_id)
+    both.go(120)
+    solved: list[tuple[str, ...]] = []
+    solve = PathGraph.solve
+
+    def counting(
+        smoother: PathGraph, units: Mapping[str, UnitEvidence], ties: Sequence[Tie] = ()
+    ) -> Solution:
+        solved.append(tuple(units))
+        return solve(smoother, units, ties)
+
+    for number in range(4):
+        both.go(30)
+        if number == 3:
+            monkeypatch.setattr(PathGraph, "solve", counting)
+        sighting(both, SightingKind.UNIT, "FF-02", 1.0)
+    assert len(both.script.pipeline.state.pins) == 4
+    assert sorted(solved) == [("FF-01",)] * 2 + [("FF-02",)] * 2
