@@ -75,6 +75,20 @@ def test_where_nothing_is_at_right_angles_nothing_is_lost(kind: FuserKind) -> No
     assert np.mean(np.array(held) < CHI2_95_2DOF) > 0.9
 
 
+@pytest.mark.parametrize("seed", [62014, 91052])
+def test_nobody_is_turned_to_walls_that_they_do_not_follow(kind: FuserKind, seed: int) -> None:
+    """Incidents in which somebody crosses rooms as often as not, and somebody is long without a
+    known heading: legs that fitted a wrong wall led them 10 m astray, and surely.
+    """
+    people = draw_incident(np.random.default_rng(seed))
+    for person, run in zip(
+        people, fuse_all(kind, people, Timing(), Known(plan=False)), strict=True
+    ):
+        errors_m, normalised2 = _inside([person], [run])
+        assert np.percentile(errors_m, 95) < 6.0
+        assert np.median(normalised2) < 9.2  # chi-square of 2 degrees of freedom, 99 %
+
+
 def _inside(people: Sequence[Person], runs: Sequence[Run]) -> tuple[Floats, Floats]:
     """Errors, m, and squared normalised ones, of all who have been inside for five minutes."""
     errors, normalised2 = [], []

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from base_station.fusion.learnt.axes import Axis, quarter
+from base_station.fusion.learnt.legs import Axis, quarter
 from base_station.fusion.learnt.stairs import Stairs
 from base_station.fusion.told import at_least
 

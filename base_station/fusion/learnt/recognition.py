@@ -6,10 +6,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.learnt.axes import AxisFilter, Leg, LegWatch
+from base_station.fusion.learnt.axes import AxisFilter
 from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.learnt.legs import Drift, Leg, LegWatch
 from base_station.fusion.learnt.stairs import SHARED_M2, STD_M, Climb, ClimbWatch, Stairs
 from base_station.fusion.path.own_path import Stretch
+from base_station.fusion.plane.state import DRIFT, turn_of
 from base_station.fusion.plane.walled import WalledFilter
 from base_station.fusion.told import taken_over
 
@@ -24,12 +26,14 @@ class Recognition(msgspec.Struct):
     axis: AxisFilter = msgspec.field(default_factory=AxisFilter)
     climb: Climb | None = None  # just over
     leg: Leg | None = None
+    moved_s: float = 0.0  # how long the wearer has moved
     heard: bool = False  # of stairs: the own place is not the own word any more
     shared_m2: float = SHARED_M2  # of the own place's variance: by which everybody errs alike
 
     def follow(self, stretch: Stretch, down_m: float) -> None:
         self.climb = self.climbs.follow(stretch.north_m, stretch.east_m, down_m)
         self.leg = self.legs.follow(stretch.north_m, stretch.east_m)
+        self.moved_s += stretch.moving_s
 
     def forget(self) -> None:
         """Place and heading are known anew; or another own frame begins."""
@@ -79,9 +83,12 @@ class Recognition(msgspec.Struct):
     def _walked(
         self, unit_id: str, leg: Leg, learnt: LearntBuilding, horizontal: WalledFilter
     ) -> LearntBuilding:
-        turn_rad, std_rad = horizontal.turn()
+        mean, covariance = horizontal.moments()
+        turn_rad, std_rad = turn_of(mean, covariance)
+        drift = Drift(float(mean[DRIFT]), max(float(covariance[DRIFT, DRIFT]), 0.0))
+        leg = msgspec.structs.replace(leg, moved_s=self.moved_s)
         was_known = self.axis.axis is not None
-        turned = self.axis.look(leg, turn_rad, std_rad**2, learnt.axis)
+        turned = self.axis.look(leg, turn_rad, std_rad**2, learnt.axis, drift)
         if self.axis.axis is not None and not was_known:
             learnt = learnt.with_axis(unit_id, self.axis.axis)
         axis = learnt.axis

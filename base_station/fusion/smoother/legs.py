@@ -1,4 +1,4 @@
-"""Straight legs along the walls of one building, two ways at right angles (``learnt.axes``).
+"""Straight legs along the walls of one building, two ways at right angles (``learnt.legs``).
 
 The axis is what all legs of all units show together; each leg then tells its unit's heading, as far
 as it may be one along a wall.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.learnt.axes import (
+from base_station.fusion.learnt.legs import (
     ALONG_WALLS,
     QUARTER_RAD,
     SHOWN,
