@@ -22,6 +22,7 @@ _RETRY_S = 1.0
 _LOOK_EVERY_S = 0.5
 _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
 _LOST_LOOKS = 2  # without the link that was there: knock until the station is back
+_UNHEARD = "no station listens to this unit: it is starting, or the unit has been revoked there"
 _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 
 
@@ -170,7 +171,7 @@ class Link:
             Thread(target=self._tell_why, args=(bus is not None,), daemon=True).start()
 
     def _tell_why(self, is_linked: bool) -> None:
-        why = "no station listens there" if is_linked else self._station.why_no_link()
+        why = _UNHEARD if is_linked else self._station.why_no_link()
         if self._heard_told is False:
             logger.warning("no link: %s; messages are kept and sent later", why)
 

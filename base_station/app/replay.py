@@ -54,7 +54,7 @@ def run_replay_station(
         accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
         if not records.incidents():
-            announce("the folder has no database; it is made from the log for this replay")
+            announce("the database has no incident; the log is read for this replay")
             project_whole_log(store, folder.log, lambda _: None)
         incident = records.require_incident(incident_id)
         announce_first_login(accounts, scratch / "first-login.txt", announce)

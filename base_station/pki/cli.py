@@ -227,11 +227,13 @@ def _free_target(
 
 
 def _require_free(path: Path) -> None:
+    """Before anything is issued: what cannot be handed over would stand in the rules."""
     from shared.errors import ConfigError  # noqa: PLC0415
+    from shared.out_file import writable  # noqa: PLC0415
 
-    if path.exists() or not path.absolute().parent.is_dir():
-        problem = "is there already" if path.exists() else "is in no folder that exists"
-        raise ConfigError(f"{path} {problem}; choose another place")
+    if path.exists():
+        raise ConfigError(f"{path} is there already; choose another place")
+    writable(path)
 
 
 def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, qr: bool) -> None:

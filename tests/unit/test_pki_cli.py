@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from base_station.pki.cli import app
 from base_station.pki.folder import PkiFolder
 from shared.enrolment import Holder, parse_enrolment, read_enrolment
-from shared.errors import ConfigError
+from shared.errors import ConfigError, MusterError
 
 
 def run(*arguments: str | Path) -> str:
@@ -99,8 +99,8 @@ def test_enroll_shows_a_code_and_writes_no_file(
 def test_a_file_in_the_way_is_seen_before_anybody_is_enrolled(data: Path, tmp_path: Path) -> None:
     out = tmp_path / "carried"
     out.write_text("precious")
-    for place, problem in ((out, "is there already"), (tmp_path / "no" / "x", "in no folder")):
-        with pytest.raises(ConfigError, match=problem):
+    for place, problem in ((out, "is there already"), (tmp_path / "no" / "x", "cannot write")):
+        with pytest.raises(MusterError, match=problem):
             run("enroll", "FF-01", "--data", data, "--out", place)
     assert PkiFolder(data).registry().current(Holder.UNIT, "FF-01") is None
     assert out.read_text() == "precious"
