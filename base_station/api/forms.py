@@ -1,6 +1,7 @@
 """What people may send: every field bounded, nothing unknown, no number that is none.
 
-Names, crews and notes hold no control characters.  Times are milliseconds since 1970.
+Names, crews and notes hold no control characters, none that ends a line or turns the direction of
+writing round, and none that XML has no place for.  Times are milliseconds since 1970.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ MOST_BYTES = 65_536  # of a form
 MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
 LAST_MS = FOREVER_NS // NS_PER_MS
 
-_PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
-_NAME = r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$"
+_BARRED = r"\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff"
+_PRINTABLE = rf"^[^{_BARRED}]*$"
+_NAME = rf"^[^{_BARRED}]*[^\s{_BARRED}][^{_BARRED}]*$"
 _ID = r"^[A-Za-z0-9_.:-]{1,128}$"
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"

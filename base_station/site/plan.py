@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 
@@ -24,6 +24,8 @@ from base_station.site.storeys import Storey, floor_at, sureness
 from shared.errors import UserError
 
 LEAST_POINTS = 2  # of a line
+MOST_M = 100_000.0  # from the origin
+MOST_FLOORS = 1000  # above or below
 OUTLINE_HYSTERESIS_M = 1.5
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
@@ -89,7 +91,7 @@ def read_plan(geojson: bytes) -> Plan:
         kind = about.get("kind")
         if kind in _KINDS:
             line = _line(feature, f"{kind} (feature {number})")
-            floor = _read(about.get("floor", 0), int, f"floor of a {kind} (feature {number})")
+            floor = _read(about.get("floor", 0), _Number, f"floor of a {kind} (feature {number})")
             if kind == "outline":
                 outlines.append(line)
             elif kind == "wall":
@@ -102,9 +104,13 @@ def read_plan(geojson: bytes) -> Plan:
 _KINDS = ("outline", "wall", "stairs")
 
 
+_Number = Annotated[int, msgspec.Meta(ge=-MOST_FLOORS, le=MOST_FLOORS)]
+_Metres = Annotated[float, msgspec.Meta(ge=-MOST_M, le=MOST_M)]
+
+
 class _Floor(msgspec.Struct):
-    floor: int
-    down_m: float
+    floor: _Number
+    down_m: _Metres
 
 
 class _Geometry(msgspec.Struct):
@@ -127,7 +133,7 @@ def _read(value: object, kind: type[Read], what: str) -> Read:
 def _document(geojson: bytes) -> dict[str, Any]:
     try:
         document = msgspec.json.decode(geojson)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(f"the plan is no JSON: {error}") from error
     if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
         raise UserError("the plan is no GeoJSON FeatureCollection")
@@ -157,7 +163,7 @@ def _line(feature: _Feature, what: str) -> Ring:
     points = geometry.coordinates
     if geometry.type != "LineString":
         points = points[0] if isinstance(points, list) and points else points
-    line = _read(points, list[tuple[float, ...]], what)
+    line = _read(points, list[tuple[_Metres, ...]], what)
     if len(line) < LEAST_POINTS or any(len(point) < 2 for point in line):
         raise UserError(f"the plan's {what} has fewer than two points [east_m, north_m]")
     return tuple((point[0], point[1]) for point in line)

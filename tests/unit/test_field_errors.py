@@ -76,3 +76,15 @@ def test_what_has_no_words_yet_is_said_as_it_came() -> None:
     error = {"loc": ("query", "x"), "type": "odd", "msg": "is {odd}", "ctx": {"odd": 1}}
     assert sentence_of(error) == "x is {odd}"
     assert not re.search("[{}]", sentence_of(error | {"type": "missing"}))
+
+
+@pytest.mark.parametrize("barred", "\x00\x1b\x7f\x85\x9b\u2028\u2029\u202e\u2066\ufffe\uffff")
+@pytest.mark.parametrize("kind", [forms.Name, forms.Word, forms.Note])
+def test_no_character_that_forges_a_line_or_breaks_an_export_gets_into_a_name(
+    kind: Any, barred: str
+) -> None:
+    for text in (f"Ada{barred}", f"A{barred}da", barred):
+        with pytest.raises(ValidationError):
+            TypeAdapter(kind).validate_python(text)
+    for text in ("Zoë", "李", "O'Neill <b>", "👩🏽\u200d🚒"):
+        assert TypeAdapter(kind).validate_python(text) == text

@@ -99,6 +99,23 @@ def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> Non
             b'{"floor":1,"down_m":0},{"floor":1,"down_m":-3}]}}',
             "floor 1 more than once",
         ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":['
+            b'{"floor":1234567890123456789012345,"down_m":0}]}}',
+            "<= 1000",
+        ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":['
+            b'{"floor":1,"down_m":1e300}]}}',
+            "<= 100000",
+        ),
+        (
+            b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
+            b'{"kind":"wall"},"geometry":{"type":"LineString","coordinates":'
+            b"[[0,0],[1e308,-1e308]]}}]}",
+            "<= 100000",
+        ),
+        (b"[" * 100_000, "recursion"),
     ],
 )
 def test_a_plan_that_cannot_be_used_says_what_is_wrong(geojson: bytes, words: str) -> None:
