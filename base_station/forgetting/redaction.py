@@ -32,6 +32,8 @@ from shared.messages import STATION_ID, AlarmChange, FusedPosition, Heartbeat, O
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
 
+_WORDS = frozenset({"rule", "level", "part"})  # the program's own, whoever is called Heat or Fall
+
 
 class Redactor:
     """Call it with every record of the log; gives what is to stand in its place."""
@@ -40,6 +42,7 @@ class Redactor:
         self._erasure = erasure
         self._clocks = clocks
         self._names = name_pattern(erasure.names)
+        self._letters = re.compile(_any_of(erasure.names), re.IGNORECASE)
 
     def __call__(self, record: Record) -> list[Record]:
         t_ns, key, payload = record
@@ -164,12 +167,21 @@ class Redactor:
         return t_ns, key, wire.SerializeToString()
 
     def _holds_a_name(self, payload: bytes) -> bool:
-        return self._names.search(payload.decode("utf-8", "replace")) is not None
+        """Or may: in bytes nothing tells where a word begins."""
+        return self._letters.search(payload.decode("utf-8", "replace")) is not None
 
 
 def name_pattern(names: tuple[str, ...]) -> re.Pattern[str]:
-    """Matches any of the names, in whatever case; nothing where there are none."""
-    return re.compile("|".join(map(re.escape, names)) or r"(?!)", re.IGNORECASE)
+    """Matches any of the names, in whatever case; nothing where there are none.
+
+    A name is a word, or one with an s behind it: of Al and Ana, neither alarms nor Anabel are
+    forgotten.
+    """
+    return re.compile(rf"(?<!\w)(?:{_any_of(names)})(?=s?(?!\w))", re.IGNORECASE)
+
+
+def _any_of(names: tuple[str, ...]) -> str:
+    return "|".join(map(re.escape, names)) or r"(?!)"
 
 
 def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[OperatorAction]:
@@ -197,8 +209,10 @@ def _instead(message: OperatorAction, actions: Any) -> list[OperatorAction]:
 
 
 def _rename(wire: WireMessage, names: re.Pattern[str]) -> None:
-    """In every text of a message and of what is in it."""
+    """In every text of a message and of what is in it, but for what the program goes by."""
     for field, value in wire.ListFields():
+        if field.name in _WORDS or field.name.endswith(("_id", "_ids")):
+            continue
         if field.message_type is not None:
             for part in value if field.is_repeated else [value]:
                 _rename(part, names)

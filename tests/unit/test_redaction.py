@@ -1,0 +1,77 @@
+"""Names are taken out of texts; other people's, and the program's own words, stay."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.forgetting.erasure import Clocks, Erasure
+from base_station.forgetting.redaction import Redactor, name_pattern
+from base_station.live_state import FORGOTTEN
+from shared.channels import ALARM, OPERATOR, Channel
+from shared.codec import decode, encode
+from shared.messages import STATION_ID, AlarmChange, AlarmState, CommandKind, Header, OperatorAction
+from shared.messages.station import Assign, SendCommand
+
+HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "left"),
+    [
+        ("Al", "Alarm of Al: al is in the hall", "Alarm of #: # is in the hall"),
+        ("Ana", "Ana, Anabel, Anas unit, Ana's, (ANA)", "#, Anabel, #s unit, #'s, (#)"),
+        ("Cem Öz", "cem öz and Cem Özil", "# and Cem Özil"),
+        ("J.", "J. says: FAJ.", "# says: FAJ."),
+        ("FF-1", "FF-1, FF-10 and FF-1", "#, FF-10 and #"),
+    ],
+)
+def test_a_name_is_a_whole_word(name: str, text: str, left: str) -> None:
+    assert name_pattern((name,)).sub("#", text) == left
+
+
+def test_of_no_names_nothing_is_found() -> None:
+    assert name_pattern(()).search("anything") is None
+
+
+def redacted(name: str, channel: Channel, message: AlarmChange | OperatorAction) -> object:
+    redact = Redactor(Erasure((), (name,), person_id="p1"), Clocks())
+    ((_, _, payload),) = redact((10, channel.key(STATION_ID), encode(message)))
+    return decode(channel, payload)
+
+
+def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
+    alarm = AlarmChange(
+        HEADER,
+        "heat:HEAT:5",
+        "heat",
+        "HEAT",
+        1,
+        AlarmState.RAISED,
+        "heat",
+        "Heat is hot",
+        "Heat",
+        5,
+    )
+    wanted = msgspec.structs.replace(alarm, text=f"{FORGOTTEN} is hot", by=FORGOTTEN)
+    assert redacted("Heat", ALARM, alarm) == wanted
+
+
+@pytest.mark.parametrize("length", range(1, 100))
+def test_a_name_is_found_whatever_byte_stands_before_it(length: int) -> None:
+    """On the wire a text's length stands right before it, and may look like a letter."""
+    text = "Bo".ljust(length + 2, ".")
+    said = OperatorAction(
+        HEADER, "a1", "eve", SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, text, 0.0, 9.0)
+    )
+    found = redacted("Bo", OPERATOR, said)
+    assert isinstance(found, OperatorAction)
+    assert isinstance(found.action, SendCommand)
+    assert found.action.text == text.replace("Bo", FORGOTTEN)
+
+
+def test_ids_stay_so_that_what_belongs_together_does() -> None:
+    said = OperatorAction(HEADER, "a1", "eve", Assign("Max", "p2", "Max", "Max crew", ""))
+    found = redacted("Max", OPERATOR, said)
+    assert isinstance(found, OperatorAction)
+    assert found.action == Assign("Max", "p2", FORGOTTEN, f"{FORGOTTEN} crew", "")
