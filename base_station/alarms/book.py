@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from base_station.alarms.port import SOON, AlarmRule, Clear, Finding
+from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -169,6 +169,9 @@ def _move_level(
     """Worse at once, and to be acknowledged anew; better once the evidence stays so."""
     alarm.clear_since_ns = None
     rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
+    if rank == standing and _happened_again(alarm, finding):
+        alarm.state, alarm.by, alarm.changed_ns = AlarmState.RAISED, "", state.t_ns
+        return alarm
     if rank == standing or (rank < standing and alarm.latched):
         alarm.lower_since_ns = None
         return None
@@ -184,6 +187,16 @@ def _move_level(
     alarm.latched = alarm.latched or finding.latched
     alarm.changed_ns = state.t_ns
     return alarm
+
+
+def _happened_again(alarm: Alarm, finding: Finding) -> bool:
+    """Somebody has acknowledged the mayday, the fall; and now there is another one."""
+    return (
+        alarm.state is AlarmState.ACKNOWLEDGED
+        and finding.latched
+        and finding.priority == IMMEDIATE
+        and finding.onset_ns > alarm.changed_ns
+    )
 
 
 def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:

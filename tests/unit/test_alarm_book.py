@@ -96,6 +96,29 @@ def test_pressing_again_is_another_mayday(script: Script) -> None:
     assert script.alarms[0].alarm_id != script.alarms[-1].alarm_id
 
 
+def test_pressing_again_is_to_be_acknowledged_again(script: Script) -> None:
+    script.event(U, EventKind.MAYDAY)
+    script.wait(1)
+    script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.wait(5, lambda: script.status(U, mayday=True))
+    assert changes(script, "mayday")[-1] == ("ACKNOWLEDGED", "mayday"), "it is the same press"
+    script.event(U, EventKind.MAYDAY)
+    assert changes(script, "mayday")[-1] == ("RAISED", "mayday")
+    assert len({alarm.alarm_id for alarm in script.alarms}) == 1
+    assert script.alarms[-1].by == ""
+
+
+def test_who_lies_still_a_second_time_is_to_be_acknowledged_again(script: Script) -> None:
+    still(script, 0, 35)
+    script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    still(script, 35, 60)
+    assert changes(script, "no-motion")[-1] == ("ACKNOWLEDGED", "alarm")
+    still(script, 0, 25)
+    assert changes(script, "no-motion")[-1] == ("ACKNOWLEDGED", "alarm")
+    still(script, 25, 31)
+    assert changes(script, "no-motion")[-1] == ("RAISED", "alarm")
+
+
 def test_a_late_mayday_of_an_earlier_run_still_counts(script: Script) -> None:
     script.event(U, EventKind.STARTED)
     late = script.header(U, captured_s=-5.0)
