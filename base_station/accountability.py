@@ -156,7 +156,9 @@ def _note_due(state: StationState, duty: Duty) -> None:
 def _is_meant(unit: UnitState, action: CheckIn) -> bool:
     if unit.duty is None or unit.person is None:
         return False
-    return action.everyone or action.unit_id == unit.unit_id or action.crew == unit.person.crew
+    if action.unit_id:
+        return action.unit_id == unit.unit_id
+    return action.everyone or action.crew == unit.person.crew
 
 
 def _open_incident(state: StationState) -> Incident:

@@ -50,6 +50,17 @@ def left_s(script: Script, unit_id: str = "FF-01") -> float:
     return (duty(script, unit_id).due_ns - script.t_ns) / NS_PER_S
 
 
+def test_a_check_in_of_one_is_nobody_else_s(script: Script) -> None:
+    """Nobody of these has a crew: that does not make them one."""
+    for number in (1, 2, 3):
+        script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "", ""))
+    script.wait(20)
+    script.act(CheckIn("FF-01", "", False))
+    assert left_s(script, "FF-01") == pytest.approx(60.0)
+    assert left_s(script, "FF-02") == pytest.approx(40.0)
+    assert left_s(script, "FF-03") == pytest.approx(40.0)
+
+
 def overdue(script: Script) -> list[AlarmChange]:
     return [alarm for alarm in script.alarms if alarm.rule == "missed-check-in"]
 
