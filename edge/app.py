@@ -33,8 +33,8 @@ from edge.samples import SensorDescription
 from edge.source_reader import SourceReader
 from edge.sources import open_source
 from edge.sources.bus import BusSource
-from edge.sources.port import Source
-from edge.sources.with_reader import WithReader
+from edge.sources.port import Beside, Source
+from edge.sources.sighting_reader import SightingReader
 from edge.spool import open_spool
 from edge.station_clock import StationClock
 from edge.tracker import make_tracker
@@ -66,14 +66,19 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     if isinstance(source, BusSource):
         if config.tracker == NO_TRACKER:
             raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
+        if config.sightings:
+            raise ConfigError(f"nothing is read beside {config.source}; give it to the unit itself")
         listener = UnitListener(source.unit_id, station.open_listening_bus)
         with closing(listener):
             _track_for(config, source, listener, station, stop, for_s)
         return
-    if config.sightings:
-        source = WithReader(source, config.sightings, SystemClock())
     speed = config.speed if paced else None
-    _run_once(config, member.unit_id, source, station, stop, for_s, speed)
+    beside = _beside(config)
+    _run_once(config, member.unit_id, source, station, stop, for_s, speed, beside)
+
+
+def _beside(config: EdgeConfig) -> tuple[Beside, ...]:
+    return (SightingReader(config.sightings, SystemClock()),) if config.sightings else ()
 
 
 @contextmanager
@@ -122,12 +127,13 @@ def _run_once(
     stop: Event,
     for_s: float | None,
     speed: float | None,
+    beside: tuple[Beside, ...] = (),
 ) -> None:
     with ExitStack() as held:
         held.callback(source.close)
         folder = DataFolder(config.data / unit_id)
         held.callback(folder.close)
-        agent = compose_agent(config, unit_id, folder, source, station, speed=speed)
+        agent = compose_agent(config, unit_id, folder, source, station, speed, beside)
         agent.run(stop, for_s=for_s)
 
 
@@ -138,6 +144,7 @@ def compose_agent(
     source: Source,
     station: OtherEnd,
     speed: float | None,
+    beside: tuple[Beside, ...] = (),
 ) -> Agent:
     """The agent and its threads; ``speed`` None plays a recording without waiting."""
     clock = StationClock(SystemClock())
@@ -188,7 +195,7 @@ def compose_agent(
     return Agent(
         Parts(
             source=source,
-            reader=SourceReader(source, clock, speed),
+            reader=SourceReader(source, clock, speed, beside),
             raw=raw,
             pipeline=pipeline,
             desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),

@@ -23,7 +23,7 @@ from edge.pipeline import TrackerPipeline
 from edge.raw_stream import RawStream, batch_of
 from edge.samples import ACKNOWLEDGE, ButtonPress
 from edge.source_reader import PlacedBatch, SourceReader
-from edge.sources.port import Source, TellsFaults
+from edge.sources.port import Source
 from edge.spool import Spool
 from edge.station_clock import StationClock
 from edge.timeline import Timeline
@@ -114,8 +114,9 @@ class Agent:
         raw = parts.raw.messages(placed.batch)
         parts.black_box.write(raw)
         self._timeline = placed.timeline
-        self._last_batch_ns = parts.clock.monotonic_ns()
-        self._silence_told = False
+        if len(placed.batch.imu):
+            self._last_batch_ns = parts.clock.monotonic_ns()
+            self._silence_told = False
         parts.pipeline.note_journal(parts.spool.pending)
         batch = batch_of(raw)
         parts.outbox.put(parts.pipeline.step(batch, placed.timeline))
@@ -151,9 +152,8 @@ class Agent:
         if fault is not None and self._storage_fault is None:
             self._say(EventKind.STORAGE_FAULT, fault)
         self._storage_fault = fault
-        if isinstance(parts.source, TellsFaults):
-            for detail in parts.source.take_faults():
-                self._say(EventKind.SENSOR_FAULT, detail)
+        for detail in parts.reader.take_faults():
+            self._say(EventKind.SENSOR_FAULT, detail)
         silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
         if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_told:
             self._silence_told = True

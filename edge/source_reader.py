@@ -1,15 +1,22 @@
-"""Reads a source in a thread of its own, so that a sensor that hangs silences nothing else."""
+"""Reads a source in a thread of its own, so that a sensor that hangs silences nothing else.
+
+What is read beside it (beacons, satellites) goes with the next batch; while a live source gives
+none, by itself.
+"""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain
 from queue import Empty, Full, Queue
 from threading import Event, Thread
 
-from edge.samples import SensorBatch
-from edge.sources.port import Source
+import numpy as np
+
+from edge.samples import ImuBatch, OtherSample, SensorBatch
+from edge.sources.port import Beside, Source, TellsFaults
 from edge.timeline import Pacer, Timeline
 from shared.clock import NS_PER_S, Clock
 from shared.errors import MusterError
@@ -18,6 +25,10 @@ logger = logging.getLogger(__name__)
 
 _AHEAD = 32  # batches read before they are asked for
 _LOOK_AGAIN_S = 0.1
+_ALONE_NS = NS_PER_S  # without a batch, after which what is read beside waits no longer
+
+
+_NO_IMU = ImuBatch(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,26 +45,44 @@ class SourceReader:
     batches are taken.  A live source paces itself.
     """
 
-    def __init__(self, source: Source, clock: Clock, speed: float | None) -> None:
+    def __init__(
+        self,
+        source: Source,
+        clock: Clock,
+        speed: float | None,
+        beside: tuple[Beside, ...] = (),
+    ) -> None:
         self._source = source
+        self._beside = beside
         self._clock = clock
         self._pacer = None if source.is_live else Pacer(speed or 1.0)
         self._waits = speed is not None and not source.is_live
         self._ready: Queue[PlacedBatch] = Queue(_AHEAD)
         self._stop = Event()
         self._first_t_ns: int | None = None
+        self._taken_ns = clock.monotonic_ns()  # when the last batch was
         self.failure: str | None = None  # why the source ended before its end
         self._thread = Thread(target=self._run, name="source", daemon=True)
 
     def start(self) -> None:
+        self._taken_ns = self._clock.monotonic_ns()
         self._thread.start()
+        for one in self._beside:
+            one.start()
 
     def take(self, timeout_s: float) -> PlacedBatch | None:
         """The next batch, or None when none is due in time or ever again (see ``ended``)."""
         try:
-            return self._ready.get(timeout=timeout_s)
+            placed = self._ready.get(timeout=timeout_s)
         except Empty:
-            return None
+            return self._beside_alone()
+        self._taken_ns = self._clock.monotonic_ns()
+        return self._with_beside(placed)
+
+    def take_faults(self) -> tuple[str, ...]:
+        """What a person must hear of the source and what is beside it since the last call."""
+        tellers = (one for one in (self._source, *self._beside) if isinstance(one, TellsFaults))
+        return tuple(chain.from_iterable(one.take_faults() for one in tellers))
 
     @property
     def ended(self) -> bool:
@@ -64,7 +93,30 @@ class SourceReader:
         """Let go of the source; a driver that hangs is left behind."""
         self._stop.set()
         self._source.close()
+        for one in self._beside:
+            one.close()
         self._thread.join(timeout=1.0)
+
+    def _with_beside(self, placed: PlacedBatch) -> PlacedBatch:
+        """The times beside a source are this machine's; where the source's are not, what came is of
+        the batch with which it comes.
+        """
+        came, imu = self._came(), placed.batch.imu
+        if came and not self._source.is_live and len(imu):
+            came = tuple(replace(one, t_ns=int(imu.t_ns[-1])) for one in came)
+        if not came:
+            return placed
+        batch = replace(placed.batch, others=(*placed.batch.others, *came))
+        return replace(placed, batch=batch)
+
+    def _beside_alone(self) -> PlacedBatch | None:
+        if not self._source.is_live or self._clock.monotonic_ns() - self._taken_ns < _ALONE_NS:
+            return None
+        came = self._came()
+        return PlacedBatch(SensorBatch(_NO_IMU, came), Timeline(), 0.0) if came else None
+
+    def _came(self) -> tuple[OtherSample, ...]:
+        return tuple(chain.from_iterable(one.take() for one in self._beside))
 
     def _run(self) -> None:
         try:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from edge.samples import SensorBatch, SensorDescription
+from edge.samples import OtherSample, SensorBatch, SensorDescription
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +65,22 @@ class TellsFaults(Protocol):
     def take_faults(self) -> tuple[str, ...]:
         """What a person must hear since the last call, a sentence each; from any thread."""
         ...
+
+
+class Beside(TellsFaults, Protocol):
+    """What is read beside a source, by a thread of its own, and put into its batches.
+
+    Times are this machine's monotonic clock.  One that is silent, gone or talks nonsense delays
+    nothing.
+    """
+
+    def start(self) -> None: ...
+
+    def take(self) -> tuple[OtherSample, ...]:
+        """What came since the last call; never waits."""
+        ...
+
+    def close(self) -> None: ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Lines of a reader of beacons, and a source with such a reader beside it."""
+"""Lines of a reader of beacons, and such a reader beside a source."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 
 from edge.ranging import FURTHEST_M, NEAREST_M, range_of
 from edge.samples import ImuBatch, SensorBatch, SensorDescription, SightingSample
+from edge.source_reader import SourceReader
 from edge.sources.port import Outage
 from edge.sources.sighting_lines import sighting_of
-from edge.sources.with_reader import WithReader, open_reader
+from edge.sources.sighting_reader import SightingReader, open_reader
 from shared.clock import SystemClock
 from shared.errors import ConfigError, WireError
 
@@ -122,14 +123,20 @@ class Still:
         self.closed.set()
 
 
-def sightings(source: WithReader, count: int) -> list[tuple[SensorBatch, SightingSample]]:
+def beside(reader: SightingReader, *, is_live: bool) -> SourceReader:
+    return SourceReader(Still(is_live=is_live), SystemClock(), 1.0, (reader,))
+
+
+def sightings(source: SourceReader, count: int) -> list[tuple[SensorBatch, SightingSample]]:
     """The first ones, each with the batch with which it came."""
     found: list[tuple[SensorBatch, SightingSample]] = []
     until = time.monotonic() + PATIENCE_S
-    for batch in source.batches():
-        found += [(batch, one) for one in batch.others if isinstance(one, SightingSample)]
-        if len(found) >= count or time.monotonic() > until:
-            break
+    source.start()
+    while len(found) < count and time.monotonic() < until:
+        placed = source.take(0.1)
+        if placed is not None:
+            batch = placed.batch
+            found += [(batch, one) for one in batch.others if isinstance(one, SightingSample)]
     source.close()
     return found
 
@@ -138,7 +145,7 @@ def test_a_pipes_sightings_come_with_the_batches(tmp_path: Path) -> None:
     """Halves of lines and nonsense between them cost nothing else."""
     pipe = tmp_path / "reader"
     os.mkfifo(pipe)
-    source = WithReader(Still(is_live=False), str(pipe), SystemClock())
+    reader = SightingReader(str(pipe), SystemClock())
 
     def talk() -> None:
         with pipe.open("wb", buffering=0) as writer:
@@ -146,10 +153,10 @@ def test_a_pipes_sightings_come_with_the_batches(tmp_path: Path) -> None:
                 writer.write(part)
 
     threading.Thread(target=talk, daemon=True).start()
-    found = sightings(source, 2)
+    found = sightings(beside(reader, is_live=False), 2)
     assert [one.seen_id for _, one in found] == ["door-3", "t1"]
     assert all(one.t_ns == int(batch.imu.t_ns[-1]) for batch, one in found)
-    assert source.bad_lines == 1
+    assert reader.bad_lines == 1
 
 
 def test_a_reader_that_is_gone_is_opened_again() -> None:
@@ -163,14 +170,15 @@ def test_a_reader_that_is_gone_is_opened_again() -> None:
 
         threading.Thread(target=talk, daemon=True).start()
         port = server.getsockname()[1]
-        source = WithReader(Still(is_live=True), f"tcp:127.0.0.1:{port}", SystemClock())
-        found = sightings(source, 2)
+        reader = SightingReader(f"tcp:127.0.0.1:{port}", SystemClock())
+        found = sightings(beside(reader, is_live=True), 2)
     assert [one.seen_id for _, one in found] == ["one", "two"]
     assert 0 < found[0][1].t_ns <= time.monotonic_ns()
 
 
 def test_a_reader_that_is_not_there_delays_nothing(tmp_path: Path) -> None:
-    source = WithReader(Still(is_live=True), str(tmp_path / "nowhere"), SystemClock())
-    batches = source.batches()
-    assert all(next(batches).others == () for _ in range(3))
+    source = beside(SightingReader(str(tmp_path / "nowhere"), SystemClock()), is_live=True)
+    source.start()
+    placed = [source.take(PATIENCE_S) for _ in range(3)]
+    assert all(one is not None and one.batch.others == () for one in placed)
     source.close()

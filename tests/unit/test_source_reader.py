@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from edge.samples import ImuBatch, SensorBatch, SensorDescription
+from edge.samples import BatterySample, ImuBatch, SensorBatch, SensorDescription
 from edge.source_reader import PlacedBatch, SourceReader
 from edge.sources.port import Outage
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import RecordingError
 
 
@@ -38,6 +38,27 @@ class Scripted:
 
     def batches(self) -> Iterator[SensorBatch]:
         return self._script()
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Told:
+    """Something beside a source, that has said all it says."""
+
+    def __init__(self, *samples: BatterySample) -> None:
+        self._samples = samples
+        self.closed = False
+
+    def start(self) -> None:
+        pass
+
+    def take(self) -> tuple[BatterySample, ...]:
+        samples, self._samples = self._samples, ()
+        return samples
+
+    def take_faults(self) -> tuple[str, ...]:
+        return ("it is loose",)
 
     def close(self) -> None:
         self.closed = True
@@ -117,3 +138,41 @@ def test_an_empty_batch_is_passed_over():
     empty = SensorBatch(ImuBatch(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3))))
     source = Scripted(lambda: iter([empty, batch(1.0), empty]))
     assert len(everything(SourceReader(source, SystemClock(), None))) == 1
+
+
+LOW = BatterySample(1_000_000, 0.1)
+
+
+@pytest.mark.parametrize(("live", "t_ns"), [(True, LOW.t_ns), (False, 5 * NS_PER_S)])
+def test_what_is_read_beside_a_source_comes_with_its_next_batch(live: bool, t_ns: int):
+    source, beside = Scripted(lambda: iter([batch(5.0)]), live=live), Told(LOW)
+    reader = SourceReader(source, SystemClock(), None, (beside,))
+    (placed,) = everything(reader)
+    assert placed.batch.others == (BatterySample(t_ns, LOW.level),)
+    assert len(placed.batch.imu) == 1
+    assert reader.take_faults() == ("it is loose",)
+    assert beside.closed
+
+
+@pytest.mark.parametrize("live", [True, False])
+def test_while_a_live_source_gives_nothing_what_is_beside_it_goes_alone(live: bool):
+    release, clock = threading.Event(), ManualClock()
+
+    def script() -> Iterator[SensorBatch]:
+        release.wait()
+        yield from ()
+
+    reader = SourceReader(Scripted(script, live=live), clock, None, (Told(LOW),))
+    reader.start()
+    assert reader.take(0.01) is None, "the next batch may be about to come"
+    clock.advance(2.0)
+    placed = reader.take(0.01)
+    if live:
+        assert placed is not None
+        assert placed.batch.others == (LOW,)
+        assert len(placed.batch.imu) == 0
+        assert placed.timeline.to_mono_ns(7) == 7
+    else:
+        assert placed is None, "a recording says what time it is"
+    release.set()
+    reader.close()
