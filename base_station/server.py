@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import logging
 import resource
 import signal
 import socket
@@ -25,6 +26,9 @@ _LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapsh
 _MOST_CONNECTIONS = 2000
 _MOST_OF_ONE = 500  # address: a proxy, or two hundred consoles behind one router
 _ASK_WITHIN_S = 10.0  # the head of a request
+
+
+_log = logging.getLogger(__name__)
 
 
 class _Server(uvicorn.Server):
@@ -138,7 +142,7 @@ async def serve_until_stopped(
 ) -> None:
     """Serve until SIGINT or SIGTERM, and say ``ready ADDRESS`` once consoles can connect.
 
-    ``housekeeping`` is called now and then, in a thread.
+    ``housekeeping`` is called now and then, in a thread; where it fails, the station goes on.
     """
     collector.settle()
     loop = asyncio.get_running_loop()
@@ -151,9 +155,16 @@ async def serve_until_stopped(
         announce(f"ready {server.address}")
     starting.cancel()
     while not serving.done():
-        await asyncio.to_thread(housekeeping)
+        await asyncio.to_thread(_keep_house, housekeeping)
         await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
     await serving
+
+
+def _keep_house(housekeeping: Callable[[], None]) -> None:
+    try:
+        housekeeping()
+    except Exception:  # noqa: BLE001  # people are on the screen: the next time may do
+        _log.exception("the station's housekeeping failed; it is tried again")
 
 
 def allow_many_files() -> None:
