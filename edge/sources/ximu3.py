@@ -17,6 +17,7 @@ import numpy as np
 from edge.samples import BatterySample, ImuBatch, SensorBatch, SensorDescription
 from edge.sources.device_clock import DeviceClock
 from edge.sources.line import Line
+from edge.sources.line_place import why_not
 from edge.sources.port import Outage
 from edge.sources.ximu3_messages import (
     ACCEL_FULL_SCALE_G,
@@ -31,7 +32,7 @@ from edge.sources.ximu3_messages import (
     Vector,
     message_of,
 )
-from edge.sources.ximu3_place import Place, place_of, why_not
+from edge.sources.ximu3_place import Place, place_of
 from edge.sources.ximu3_watch import Watch
 from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.errors import WireError
@@ -102,10 +103,10 @@ class Ximu3Source:
         """Until it is closed; waits for the device as long as that takes."""
         while not self._closed.is_set():
             try:
-                with closing(self._place.open()) as line:
+                with closing(self._place.line.open()) as line:
                     yield from self._listened(line)
             except OSError as error:
-                self._say_gone(why_not(error, self._place))
+                self._say_gone(why_not(error, self._place.line))
             if len(self._rows):
                 yield self._rows.cut()
             self._closed.wait(_AGAIN_S)
