@@ -63,3 +63,18 @@ def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
         page.set_viewport_size({"width": 1280, "height": 800})
     page.keyboard.press("Escape")
     expect(page.get_by_role("form")).to_have_count(0)
+
+
+@pytest.mark.parametrize("screen", ["laptop", "tablet upright", "phone"])
+def test_evacuate_is_at_hand_however_far_the_list_is_scrolled(stage: Stage, screen: str) -> None:
+    page, _ = stage.open(scenes.crowd(), screen)
+    evacuate = page.get_by_role("button", name="Evacuate")
+    last = page.locator(".card").last
+    last.scroll_into_view_if_needed()
+    expect(page.locator(".card").first).not_to_be_in_viewport()
+    expect(evacuate).to_be_in_viewport(ratio=1)
+    page.locator(".card").first.get_by_role("button").first.focus()
+    bar, card = page.locator(".command-bar").bounding_box(), page.locator(":focus").bounding_box()
+    assert bar is not None
+    assert card is not None
+    assert card["y"] >= bar["y"] + bar["height"] - 1

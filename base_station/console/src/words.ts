@@ -88,11 +88,11 @@ export function floorOf(position: PositionView): string {
 }
 
 export function temperature(degc: number | null): string {
-  return degc === null ? "no reading" : `${Math.round(degc)} °C`;
+  return degc === null ? "no reading" : `${Math.round(degc)}\u00a0°C`;
 }
 
 export function percent(part: number | null): string {
-  return part === null ? "unknown" : `${Math.round(part * 100)} %`;
+  return part === null ? "unknown" : `${Math.round(part * 100)}\u00a0%`;
 }
 
 const ACTIVITIES: Record<string, string> = {
