@@ -7,10 +7,8 @@ is.  The weather changes; once a barometer at the station tells it, and once nob
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -23,12 +21,13 @@ from base_station.alarms import ALARMS
 from base_station.bench.incident.bound import ENGINE_STD_M
 from base_station.bench.incident.run import Person, draw_incident
 from base_station.bench.incident.scores import FloorScores
-from base_station.bench.incident.sensors import mono_ns, position_of
+from base_station.bench.incident.sensors import position_of
 from base_station.bench.rig import said
 from base_station.events import Received
 from base_station.fusion import FUSERS
 from base_station.fusion.port import PlaceFix
 from base_station.pipeline import StationPipeline
+from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
 from shared.geo import Anchor, pressure_pa_at
 from shared.messages import STATION_ID, FixType, GpsFix, Header, OperatorAction
@@ -56,9 +55,7 @@ class FloorsReport:
 def bench_floors(
     incidents: Annotated[int, typer.Option(min=1, help="Simulated, of six people each.")] = 10,
     seed: Annotated[int, typer.Option(help="Of the first one.")] = 1,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
-    ] = None,
+    json_file: FiguresFile = None,
 ) -> None:
     """How often the floor shown is right, without a plan and with one."""
     report = measure(incidents, seed)
@@ -69,8 +66,7 @@ def bench_floors(
         shares = report.right[way], report.stated[way], report.known[way]
         table.add_row(way, *(f"{share:.2%}" for share in shares), "99 %")
     Console().print(table)
-    if json_file is not None:
-        json_file.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_figures(json_file, report)
 
 
 def measure(incidents: int, seed: int) -> FloorsReport:
@@ -132,7 +128,7 @@ class _Station:
     def hear_reference(self, person: Person, row: int) -> None:
         """A unit that lies at the engine."""
         pressure_pa = pressure_pa_at(float(person.weather_m[row]))
-        t_mono_ns = mono_ns(float(person.truth.t_s[row]))
+        t_mono_ns = said.mono_ns(float(person.truth.t_s[row]))
         header = Header(_REFERENCE, 1, row + 1, t_mono_ns)
         self._at(person, row)
         position = said.position(header, pressure_pa=pressure_pa, stationary=True)

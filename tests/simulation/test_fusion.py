@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from base_station.bench.fusion.walks import Errors, Floats, Receiver, Scores, Walk, mono_ns, run
+from base_station.bench.fusion.walks import Errors, Floats, Receiver, Scores, Walk, run
+from base_station.bench.rig.said import mono_ns
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind, Start
 from shared.geo import wrap_pi

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
+from shared.errors import UserError
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +64,10 @@ def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None
             rows = np.flatnonzero(level[1:] & (np.rint(floors[1:]) == floor))
             from_m, to_m = truth.place_m[rows, :2], truth.place_m[rows + 1, :2]
             assert not grid.crossed(floor, from_m, to_m).any()
+
+
+def test_trials_without_their_tracks_are_not_taken_for_none(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="--tracks"):
+        bench_fusion(walks=tmp_path)
+    with pytest.raises(UserError, match="--walks"):
+        bench_fusion(tracks=tmp_path)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from base_station.bench.fusion.command import WITHOUT
-from base_station.bench.fusion.smoothing import RecordingKind, SmoothingScores, tables_of
+from base_station.bench.fusion.kept_paths import PathKeeping
+from base_station.bench.fusion.smoothing import SmoothingScores, tables_of
 from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.fusion.smoother import SMOOTHERS
@@ -16,7 +17,7 @@ from base_station.fusion.smoother import SMOOTHERS
 def scores() -> SmoothingScores:
     rng = np.random.default_rng(11)
     people = draw_incident(rng)[:2]
-    kind = RecordingKind(FUSERS[0])
+    kind = PathKeeping(FUSERS[0])
     shown_m = [fuse(kind, person, Timing(), with_plan=False).places_m for person in people]
     scores = SmoothingScores(SMOOTHERS[0])
     scores.note(WITHOUT, [person.truth for person in people], shown_m, kind, rng)
@@ -26,7 +27,7 @@ def scores() -> SmoothingScores:
 def test_recording_changes_nothing(scores: SmoothingScores) -> None:
     person = draw_incident(np.random.default_rng(11))[0]
     plain = fuse(FUSERS[0], person, Timing(), with_plan=False)
-    recorded = fuse(RecordingKind(FUSERS[0]), person, Timing(), with_plan=False)
+    recorded = fuse(PathKeeping(FUSERS[0]), person, Timing(), with_plan=False)
     assert np.array_equal(plain.places_m, recorded.places_m)
 
 

@@ -21,6 +21,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from base_station.bench.fusion import smoothing
+from base_station.bench.fusion.kept_paths import PathKeeping
 from base_station.bench.fusion.recorded import print_recorded
 from base_station.bench.incident.bound import bound_m2, draw_errors_m
 from base_station.bench.incident.people import PEOPLE
@@ -30,6 +31,7 @@ from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from shared.bench_figures import FiguresFile, write_figures
+from shared.errors import UserError
 
 Floats = NDArray[np.float64]
 
@@ -71,6 +73,8 @@ def bench_fusion(
     """Error and honesty of the fused position over simulated incidents, beside satellite fixes
     alone, the unit's own path alone, and switching between them.
     """
+    if (walks is None) != (tracks is None):
+        raise UserError("recorded walks need both: --walks with the trials, --tracks with tracks")
     if walks is not None and tracks is not None:
         print_recorded(FUSERS[0], walks, tracks)
         return
@@ -84,57 +88,74 @@ def bench_fusion(
 
 
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
-    names = (*KNOWN, BOUND, "fixes alone", "path alone", "switching")
-    ways = {name: Scores() for name in names}
-    timing, right = Timing(), FloorScores()
-    afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
-    walked_m: list[float] = []
+    tally = _Tally(kind)
     for number in progress_bar(
         range(incidents), description="Incidents", console=Console(stderr=True), transient=True
     ):
-        rng = np.random.default_rng(seed + number)
+        tally.take(np.random.default_rng(seed + number))
+    return tally.report(incidents, seed)
+
+
+class _Tally:
+    """Takes one incident after the other through every way of knowing."""
+
+    def __init__(self, kind: FuserKind) -> None:
+        self._kind = kind
+        names = (*KNOWN, BOUND, "fixes alone", "path alone", "switching")
+        self._ways = {name: Scores() for name in names}
+        self._timing, self._right = Timing(), FloorScores()
+        self._afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
+        self._walked_m: list[float] = []
+
+    def take(self, rng: np.random.Generator) -> None:
+        """One drawn incident."""
         people = draw_incident(rng)
-        kinds = {name: smoothing.RecordingKind(kind) for name in KNOWN}
-        for name, known in KNOWN.items():
-            runs = fuse_all(kinds[name], people, timing, known)
-            shown_m = [run.places_m for run in runs]
-            for person, run in zip(people, runs, strict=True):
-                ways[name].note(person.truth, run.places_m, run.normalised2)
-                if known.plan:
-                    right.note(person.truth, person.building, run.floors, run.surenesses)
-                else:
-                    walked_m.append(run.heading_walked_m)
-            truths = [person.truth for person in people]
-            afterwards.note(name, truths, shown_m, kinds[name], rng)
+        for name in KNOWN:
+            self._fuse(name, people, rng)
         for person in people:
             best_m2 = bound_m2(person.truth, person.fixes, person.engine_fixes, person.building)
             live_m, then_m = (draw_errors_m(rng, one_m2) for one_m2 in best_m2)
-            ways[BOUND].note(person.truth, person.truth.place_m[:, :2] + live_m, None)
-            afterwards.note_bound(person.truth, live_m, then_m)
+            self._ways[BOUND].note(person.truth, person.truth.place_m[:, :2] + live_m, None)
+            self._afterwards.note_bound(person.truth, live_m, then_m)
             for name, places_m in _peers(person, rng).items():
-                ways[name].note(person.truth, places_m, None)
-    return FusionReport(
-        fuser=kind.name,
-        incidents=incidents,
-        ce50_m={name: _percentiles(way, 50.0) for name, way in ways.items()},
-        ce95_m={name: _percentiles(way, 95.0) for name, way in ways.items()},
-        seam_95_m={name: float(np.percentile(way.seams_m, 95.0)) for name, way in ways.items()},
-        held_95={
-            name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES} for name in KNOWN
-        },
-        floor_right=right.part_right(),
-        floor_stated=right.part_stated(),
-        heading_walked_m={
-            "median": float(np.median(walked_m)),
-            "95 %": float(np.percentile(walked_m, 95.0)),
-            "worst": float(np.max(walked_m)),
-        },
-        step_us={
-            "position": float(np.median(timing.steps_ns)) / 1e3,
-            "position and fix": float(np.median(timing.fixes_ns)) / 1e3,
-        },
-        afterwards=afterwards.report(seed),
-    )
+                self._ways[name].note(person.truth, places_m, None)
+
+    def _fuse(self, name: str, people: list[Person], rng: np.random.Generator) -> None:
+        known, keeping = KNOWN[name], PathKeeping(self._kind)
+        runs = fuse_all(keeping, people, self._timing, known)
+        for person, run in zip(people, runs, strict=True):
+            self._ways[name].note(person.truth, run.places_m, run.normalised2)
+            if known.plan:
+                self._right.note(person.truth, person.building, run.floors, run.surenesses)
+            else:
+                self._walked_m.append(run.heading_walked_m)
+        truths, shown_m = [one.truth for one in people], [run.places_m for run in runs]
+        self._afterwards.note(name, truths, shown_m, keeping, rng)
+
+    def report(self, incidents: int, seed: int) -> FusionReport:
+        ways, timing, walked_m = self._ways, self._timing, self._walked_m
+        return FusionReport(
+            fuser=self._kind.name,
+            incidents=incidents,
+            ce50_m={name: _percentiles(way, 50.0) for name, way in ways.items()},
+            ce95_m={name: _percentiles(way, 95.0) for name, way in ways.items()},
+            seam_95_m={name: float(np.percentile(way.seams_m, 95.0)) for name, way in ways.items()},
+            held_95={
+                name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES} for name in KNOWN
+            },
+            floor_right=self._right.part_right(),
+            floor_stated=self._right.part_stated(),
+            heading_walked_m={
+                "median": float(np.median(walked_m)),
+                "95 %": float(np.percentile(walked_m, 95.0)),
+                "worst": float(np.max(walked_m)),
+            },
+            step_us={
+                "position": float(np.median(timing.steps_ns)) / 1e3,
+                "position and fix": float(np.median(timing.fixes_ns)) / 1e3,
+            },
+            afterwards=self._afterwards.report(seed),
+        )
 
 
 def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:

@@ -18,13 +18,13 @@ from rich.console import Console
 from rich.table import Table
 
 from base_station.bench.fusion.walks import RATE_HZ, Floats, Receiver, Walk, run
+from base_station.bench.incident.scores import CHI2_95_2DOF
 from base_station.fusion.port import FuserKind
 from shared.errors import UserError
 
 WITH_GPS = 0.6  # of a walk
 DRAWS = 6
 SETTLED_S = 20.0
-CHI2_95_2DOF = 5.991
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def fuse_recorded(kind: FuserKind, tracked: list[Tracked], draws: int = DRAWS) -
             scores.held_with += held[begin:cut].tolist()
             scores.held_after += held[cut:].tolist()
             again = np.random.default_rng(100 * number + draw)
-            turned(recorded, again)
+            turned(recorded, again)  # so that the receiver errs for the peers as for the fuser
             alone_m, switching_m = _peers(walk, Receiver(again), cut, rng)
             scores.note("fixes alone", alone_m[begin:cut], alone_m[cut:])
             scores.note("switching", switching_m[begin:cut], switching_m[cut:])

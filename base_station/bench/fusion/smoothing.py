@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +18,15 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
+from base_station.bench.fusion.kept_paths import PathKeeping
 from base_station.bench.fusion.walks import RATE_HZ as WALK_RATE_HZ
 from base_station.bench.fusion.walks import Receiver, Walk
 from base_station.bench.incident.people import Truth
 from base_station.bench.incident.scores import CHI2_95_2DOF
-from base_station.bench.incident.sensors import mono_ns
+from base_station.bench.rig.said import mono_ns
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import PathArrays
-from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
-from base_station.site.floor_grid import FloorGrid
-from shared.messages import Position
 
 Floats = NDArray[np.float64]
 
@@ -61,69 +59,6 @@ class _Errors:
     held: list[NDArray[np.bool_]] = field(default_factory=list)
 
 
-class RecordingKind:
-    """Makes the fusers of another kind, and keeps what a station would keep of each path."""
-
-    def __init__(self, kind: FuserKind) -> None:
-        self._kind = kind
-        self._known = _KnownPlan()
-        self.histories: list[PathHistory] = []
-
-    @property
-    def name(self) -> str:
-        return self._kind.name
-
-    @property
-    def grid(self) -> FloorGrid | None:
-        """The plan's walls, as the fusers heard of them."""
-        return self._known.grid
-
-    def restore(self, saved: bytes) -> Fuser:
-        return self._kind.restore(saved)
-
-    def new(self) -> Fuser:
-        self.histories.append(PathHistory())
-        return cast("Fuser", _Recorded(self._kind.new(), self.histories[-1], self._known))
-
-
-@dataclass
-class _KnownPlan:
-    grid: FloorGrid | None = None
-
-
-class _Recorded:
-    def __init__(self, fuser: Fuser, history: PathHistory, known: _KnownPlan) -> None:
-        self._fuser, self._history, self._known = fuser, history, known
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._fuser, name)
-
-    def consider(self, grid: FloorGrid | None) -> None:
-        self._known.grid = grid
-        self._fuser.consider(grid)
-
-    def start(self, start: Start) -> None:
-        self._history.begin_with(start)
-        self._fuser.start(start)
-
-    def advance(self, position: Position) -> str:
-        reason = self._fuser.advance(position)
-        self._history.note(position, position.header.t_mono_ns, bool(reason))
-        return reason
-
-    def correct(self, fix: PlaceFix) -> FixVerdict:
-        verdict = self._fuser.correct(fix)
-        if verdict.accepted:
-            self._history.fix(fix, fix.t_mono_ns)
-        return verdict
-
-    def estimate(self) -> Estimate | None:
-        estimate = self._fuser.estimate()
-        if estimate is not None:
-            self._history.show(estimate, None)
-        return estimate
-
-
 class SmoothingScores:
     """Collects incidents: what was shown of each person, and the paths behind it."""
 
@@ -144,7 +79,7 @@ class SmoothingScores:
         way: str,
         truths: list[Truth],
         shown_m: list[Floats],
-        recorded: RecordingKind,
+        recorded: PathKeeping,
         rng: np.random.Generator,
     ) -> None:
         """One incident, person by person in the same order."""

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.bench.incident.scores import CHI2_95_2DOF, normalised2
 from base_station.bench.rig import said
 from base_station.fusion.port import FixVerdict, Fuser, PlaceFix
-from shared.clock import NS_PER_S
 from shared.messages import Header, Position
 
 Floats = NDArray[np.float64]
@@ -95,7 +95,7 @@ class Walk:
     def position(self, index: int, boot_id: int = 1) -> Position:
         north_m, east_m = self.own_m[index]
         return said.position(
-            Header("FF-01", boot_id, index + 1, mono_ns(self.t_s[index])),
+            Header("FF-01", boot_id, index + 1, said.mono_ns(self.t_s[index])),
             north_m=float(north_m),
             east_m=float(east_m),
             distance_m=float(self.distance_m[index]),
@@ -120,7 +120,7 @@ class Receiver:
         error = error + math.sqrt(1.0 - errors.slow_part) * self.rng.normal(size=2)
         north_m, east_m = place_m + errors.fix_std_m * error
         return PlaceFix(
-            t_mono_ns=mono_ns(t_s),
+            t_mono_ns=said.mono_ns(t_s),
             north_m=float(north_m),
             east_m=float(east_m),
             down_m=0.0,
@@ -141,15 +141,13 @@ class Scores:
         estimate = fuser.estimate()
         assert estimate is not None
         error = np.array([estimate.north_m, estimate.east_m]) - truth_m
-        product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
-        spread = np.array([[estimate.std_north_m**2, product], [product, estimate.std_east_m**2]])
         self.error_m.append(float(np.linalg.norm(error)))
-        self.normalised2.append(float(error @ np.linalg.solve(spread, error)))
+        self.normalised2.append(normalised2(estimate, error))
 
     @property
     def inside_95(self) -> float:
         """The part of the time in which the stated 95 % region held the truth."""
-        return float(np.mean(np.array(self.normalised2) < 5.991))
+        return float(np.mean(np.array(self.normalised2) < CHI2_95_2DOF))
 
 
 def run(
@@ -164,7 +162,3 @@ def run(
             scores.verdicts.append(fuser.correct(receiver.fix(t_s, walk.truth_m[index])))
         scores.note(fuser, walk.truth_m[index])
     return scores
-
-
-def mono_ns(t_s: float) -> int:
-    return round((1000.0 + t_s) * NS_PER_S)

@@ -8,7 +8,7 @@ the building: it lies some decimetres aside, and some doors were made after it w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -96,51 +96,70 @@ class SteelBuilding:
             coordinates[1] += self.plan_off_m[0]
 
 
+@dataclass
+class _Drawn:
+    """What has been drawn of a building."""
+
+    rooms: list[Room] = field(default_factory=list)
+    walls: list[Wall] = field(default_factory=list)  # but for the corridor's
+    on_corridor: list[Wall] = field(default_factory=list)
+    on_plan: list[Wall] = field(default_factory=list)  # the corridor's, without the new doors
+
+    def add_side(
+        self,
+        rng: np.random.Generator,
+        floor: int,
+        length_m: float,
+        north_m: tuple[float, float],
+        kept: list[tuple[float, float]],
+    ) -> None:
+        """Rooms on one side of the corridor; ``north_m``: of the corridor's wall and of the outer
+        one; ``kept``: west and east of what is no room.
+        """
+        side_m, outer_m = north_m
+        low_m, high_m = sorted(north_m)
+        gaps = known = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
+        for west_m, east_m in _partition(rng, length_m, kept):
+            door_m = float(rng.uniform(west_m + 1.0, east_m - 1.0))
+            gaps = [*gaps, (door_m, DOOR_M)]
+            known = [*known, *([(door_m, DOOR_M)] if rng.random() > NEW_DOORS else [])]
+            self.rooms.append(Room(floor, (low_m, west_m), (high_m, east_m), (side_m, door_m)))
+            if east_m < length_m:
+                self.walls.append((floor, (low_m, east_m), (high_m, east_m)))
+        for span in kept:
+            self.walls += [(floor, (side_m, end_m), (outer_m, end_m)) for end_m in span[1:]]
+        self.on_corridor += _along_east(floor, side_m, length_m, gaps)
+        self.on_plan += _along_east(floor, side_m, length_m, known)
+
+
 def draw_building(rng: np.random.Generator) -> SteelBuilding:
     length_m = round(float(rng.uniform(30.0, 44.0)), 1)
     depth_m = round(float(rng.uniform(14.0, 18.0)), 1)
     stairs_m = _draw_stairs_m(rng, length_m)
     hall_m = round(float(rng.uniform(0.3, 0.6)) * length_m, 1)
     south_m, north_m = depth_m / 2.0 - CORRIDOR_M / 2.0, depth_m / 2.0 + CORRIDOR_M / 2.0
-    rooms: list[Room] = []
-    walls: list[Wall] = []
-    on_corridor: list[Wall] = []
-    on_plan: list[Wall] = []
+    drawn = _Drawn()
     for floor in range(STOREYS):
         hall = [(hall_m, hall_m + STAIRWELL_M)] if floor == 0 else []
-        for side_m, outer_m, kept in (
-            (south_m, 0.0, hall),
-            (north_m, depth_m, [(west_m, west_m + STAIRWELL_M) for west_m in stairs_m]),
-        ):
-            gaps = known = [(0.5 * (west_m + east_m), CORRIDOR_M) for west_m, east_m in kept]
-            for west_m, east_m in _partition(rng, length_m, kept):
-                door_m = float(rng.uniform(west_m + 1.0, east_m - 1.0))
-                gaps = [*gaps, (door_m, DOOR_M)]
-                known = [*known, *([(door_m, DOOR_M)] if rng.random() > NEW_DOORS else [])]
-                low_m, high_m = sorted((side_m, outer_m))
-                rooms.append(Room(floor, (low_m, west_m), (high_m, east_m), (side_m, door_m)))
-                if east_m < length_m:
-                    walls.append((floor, (low_m, east_m), (high_m, east_m)))
-            for span in kept:
-                walls += [(floor, (side_m, end_m), (outer_m, end_m)) for end_m in span[1:]]
-            on_corridor += _along_east(floor, side_m, length_m, gaps)
-            on_plan += _along_east(floor, side_m, length_m, known)
+        stairwells = [(west_m, west_m + STAIRWELL_M) for west_m in stairs_m]
+        drawn.add_side(rng, floor, length_m, (south_m, 0.0), hall)
+        drawn.add_side(rng, floor, length_m, (north_m, depth_m), stairwells)
         way_in = [(hall_m + STAIRWELL_M / 2.0, WAY_IN_M)] if floor == 0 else []
-        walls += _along_east(floor, 0.0, length_m, way_in)
-        walls += _along_east(floor, depth_m, length_m, [])
-        walls += [(floor, (0.0, east_m), (depth_m, east_m)) for east_m in (0.0, length_m)]
+        drawn.walls += _along_east(floor, 0.0, length_m, way_in)
+        drawn.walls += _along_east(floor, depth_m, length_m, [])
+        drawn.walls += [(floor, (0.0, east_m), (depth_m, east_m)) for east_m in (0.0, length_m)]
         for stairwell_m in stairs_m:
             banister_m = stairwell_m + STAIRWELL_M / 2.0
-            walls.append((floor, (north_m + 1.7, banister_m), (depth_m - 1.3, banister_m)))
+            drawn.walls.append((floor, (north_m + 1.7, banister_m), (depth_m - 1.3, banister_m)))
     return SteelBuilding(
         length_m=length_m,
         depth_m=depth_m,
         storey_m=round(float(rng.uniform(2.9, 3.6)), 2),
         stairs_east_m=stairs_m,
         entrance_east_m=hall_m + STAIRWELL_M / 2.0,
-        rooms=tuple(rooms),
-        walls=(*walls, *on_corridor),
-        drawn_walls=(*walls, *on_plan),
+        rooms=tuple(drawn.rooms),
+        walls=(*drawn.walls, *drawn.on_corridor),
+        drawn_walls=(*drawn.walls, *drawn.on_plan),
         plan_off_m=(float(rng.normal(0.0, PLAN_OFF_M)), float(rng.normal(0.0, PLAN_OFF_M))),
     )
 

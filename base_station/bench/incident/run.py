@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 from base_station.bench.incident.bound import ENGINE_SAID_STD_M, ENGINE_STD_M
 from base_station.bench.incident.building import Place, SteelBuilding, draw_building
 from base_station.bench.incident.people import PEOPLE, Truth, draw_engine, live_through
+from base_station.bench.incident.scores import normalised2
 from base_station.bench.incident.sensors import (
     OwnPath,
     draw_air,
     draw_sky_m,
     engine_fixes_of,
     fixes_of,
-    mono_ns,
     position_of,
     pressures_pa,
     reference_pa,
     walk_it,
 )
+from base_station.bench.rig import said
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import AirHeight, Estimate, FuserKind, PlaceFix, Start
@@ -80,7 +81,9 @@ def _weather_m(t_s: Floats, reference: Floats) -> Floats:
     weather = Weather()
     rises_m = np.zeros(len(t_s))
     for row, pressure_pa in enumerate(reference.tolist()):
-        weather.note("station", mono_ns(float(t_s[row])), pressure_altitude_m(pressure_pa), 0.0)
+        weather.note(
+            "station", said.mono_ns(float(t_s[row])), pressure_altitude_m(pressure_pa), 0.0
+        )
         rises_m[row] = weather.rise_m
     return rises_m
 
@@ -167,9 +170,7 @@ class Follower:
             run.surenesses[row] = self._plan.sureness(floor, estimate.down_m, estimate.std_down_m)
         run.places_m[row] = estimate.north_m, estimate.east_m
         off_m = run.places_m[row] - person.truth.place_m[row, :2]
-        product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
-        spread = np.array([[estimate.std_north_m**2, product], [product, estimate.std_east_m**2]])
-        run.normalised2[row] = off_m @ np.linalg.solve(spread, off_m)
+        run.normalised2[row] = normalised2(estimate, off_m)
         if math.isinf(run.heading_walked_m) and estimate.heading_std_rad < SOLVED_RAD:
             run.heading_walked_m = float(person.own.distance_m[row])
 

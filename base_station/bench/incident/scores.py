@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from base_station.bench.incident.building import SteelBuilding
 from base_station.bench.incident.people import RATE_HZ, Truth
+from base_station.fusion.port import Estimate
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -37,6 +38,13 @@ def stages(truth: Truth) -> dict[str, Flags]:
         "10 min inside": np.abs(t_s - into_s - 600.0) <= 15.0,
         "back out": t_s > out_s + SETTLED_S,
     }
+
+
+def normalised2(estimate: Estimate, off_m: Floats) -> float:
+    """Of an error (2,): chi-square of two degrees of freedom, where what is stated is right."""
+    product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
+    spread = np.array([[estimate.std_north_m**2, product], [product, estimate.std_east_m**2]])
+    return float(off_m @ np.linalg.solve(spread, off_m))
 
 
 @dataclass

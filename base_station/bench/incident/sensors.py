@@ -34,7 +34,6 @@ from base_station.bench.incident.people import RATE_HZ, Truth
 from base_station.bench.rig import said
 from base_station.fusion.fixes.screening import STD_FLOOR_M
 from base_station.fusion.port import PlaceFix
-from shared.clock import NS_PER_S
 from shared.geo import pressure_pa_at
 from shared.messages import Header, Position
 
@@ -135,7 +134,7 @@ def engine_fixes_of(
     places_m = np.array(engine_m) + sky_m + slow_m + ROOF_WHITE_M * rng.normal(size=sky_m.shape)
     return {
         row: PlaceFix(
-            t_mono_ns=mono_ns(float(t_s[row])),
+            t_mono_ns=said.mono_ns(float(t_s[row])),
             north_m=float(places_m[row, 0]),
             east_m=float(places_m[row, 1]),
             down_m=0.0,
@@ -172,7 +171,7 @@ def fixes_of(
         std_m = walls_m(building, north_m, east_m)
         error_m = sky_m[row] + OPEN_SLOW_M * slow + white + std_m * wall_slow
         fixes[row] = PlaceFix(
-            t_mono_ns=mono_ns(t_s),
+            t_mono_ns=said.mono_ns(t_s),
             north_m=float(north_m + error_m[0]),
             east_m=float(east_m + error_m[1]),
             down_m=0.0,
@@ -230,7 +229,7 @@ def position_of(
     moved_m = truth.steps_m[row] if row else np.zeros(3)
     std_m = math.hypot(0.1, heading_std_rad * math.hypot(north_m, east_m))
     return said.position(
-        Header(unit_id, 1, row + 1, mono_ns(float(truth.t_s[row]))),
+        Header(unit_id, 1, row + 1, said.mono_ns(float(truth.t_s[row]))),
         north_m=north_m,
         east_m=east_m,
         down_m=down_m,
@@ -241,7 +240,3 @@ def position_of(
         pressure_pa=float(pressures[row]),
         stationary=bool(np.linalg.norm(moved_m) * RATE_HZ < MOVING_MPS),
     )
-
-
-def mono_ns(t_s: float) -> int:
-    return round((1000.0 + t_s) * NS_PER_S)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
+from shared.clock import NS_PER_S
 from shared.messages import (
     Activity,
     FixType,
@@ -18,6 +19,11 @@ from shared.messages import (
     UnitDescription,
 )
 from shared.quality import Quality, Reason
+
+
+def mono_ns(t_s: float) -> int:
+    """On the clock of a unit that ran for a while when what is looked at began."""
+    return round((1000.0 + t_s) * NS_PER_S)
 
 
 def position(header: Header, /, **changes: object) -> Position:
