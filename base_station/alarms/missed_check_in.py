@@ -30,11 +30,11 @@ class MissedCheckIn:
         if t_ns < duty.due_ns:
             return Clear(duty.checked_in_ns, f"heard from, says {duty.checked_in_by}")
         silent_min = (duty.due_ns - duty.checked_in_ns) / NS_PER_S / 60.0
-        asked = ", and was asked for" if duty.asked_ns is not None else ""
+        asked = "asked and " if duty.asked_ns is not None else ""
         return Finding(
             "overdue",
             IMMEDIATE,
-            f"{unit.name} has not been heard from for {silent_min:.0f} min{asked}: PAR overdue",
+            f"{unit.name}: PAR overdue, {asked}not heard from for {silent_min:.0f} min",
             seen_ns=duty.checked_in_ns,
             onset_ns=duty.due_ns,
         )

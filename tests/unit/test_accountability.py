@@ -160,7 +160,7 @@ def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
     assert left_s(script) == 180.0
     script.wait(181)
     assert {one.unit_id for one in overdue(script)} == {"FF-01", "FF-02", "FF-03"}
-    assert "was asked for" in overdue(script)[0].text
+    assert "PAR overdue, asked and not heard from for 3 min" in overdue(script)[0].text
 
 
 def test_who_has_heard_of_the_evacuation_is_not_out_yet(script: Script) -> None:
