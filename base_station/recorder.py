@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from threading import Condition, RLock, Thread
+from threading import Condition, Lock, RLock, Thread
 
 from shared.clock import NS_PER_S, Clock
 from shared.errors import LogError
@@ -67,6 +67,7 @@ class Recorder:
         """
         self._clock = clock
         self._on_segment = on_segment
+        self.rewriting = Lock()  # held by whoever exchanges a complete segment
         policy = policy or SegmentPolicy()
         self._waiting_max = policy.waiting_bytes_max
         self.folder = data / LOG_FOLDER

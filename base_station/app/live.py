@@ -35,6 +35,7 @@ from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
+from base_station.log_check import LogCheck
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
@@ -48,6 +49,9 @@ from shared.messages.station import Action
 from shared.service_manager import ServiceManager
 
 _log = logging.getLogger(__name__)
+
+_RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
+_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
 
 
 class _Again(NamedTuple):
@@ -93,6 +97,8 @@ class _LiveStation:
         self._announce, self._manager = announce, manager
         self._again: _Again | None = None
         bus, steady = opened.bus, self._disk.clock
+        alone = not opened.config.standby.name
+        self._check = LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
         self._side = self._new_side()
         hearing = bus.subscribe(f"{ROOT}/**", self._side.feed.offer)
         clock_server = ClockServer(steady, self._leads)
@@ -134,6 +140,8 @@ class _LiveStation:
             bus=opened.bus,
             log=disk.recorder,
             disk=disk.log,
+            files=disk.recorder,
+            check=self._check,
             live=opened.feed,
             clock=disk.clock,
             tables=KeptTables(disk.store),
@@ -208,6 +216,7 @@ class _LiveStation:
 
         def keep_house() -> None:
             index.update(opened.recorder.segments())
+            self._check.look(opened.recorder.segments())
             if self._side.leads:
                 enrolled.update()
             if hindsight is not None:
@@ -265,6 +274,7 @@ class _LiveStation:
             *opened.expiry.problems(),
             *side.problems(),
             *self._forgettings.problems(),
+            *self._check.problems(),
         ]
         if not opened.router.is_open:
             problems.append("The bus's router is away and is started again; no unit is linked")

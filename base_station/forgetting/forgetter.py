@@ -11,8 +11,10 @@ import logging
 import shutil
 import time
 from collections.abc import Callable, Collection
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Protocol
 
 import msgspec
@@ -44,6 +46,11 @@ class LogFiles(Protocol):
     @property
     def folder(self) -> Path:
         """Where the segments are."""
+        ...
+
+    @property
+    def rewriting(self) -> AbstractContextManager[object]:
+        """Entered while complete segments are exchanged."""
         ...
 
     def complete_segments(self) -> Collection[Path]:
@@ -80,6 +87,7 @@ class ClosedLog:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.rewriting = Lock()
 
     def complete_segments(self) -> Collection[Path]:
         return segment_paths(self.folder)
@@ -150,7 +158,8 @@ class Forgetter:
         files = self._remove_recordings(erasure) + sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
-            changed = rewrite_segment(path, redactor)
+            with self._log.rewriting:
+                changed = rewrite_segment(path, redactor)
             records += changed
             if changed:
                 files += 1

@@ -21,37 +21,15 @@ _WAIT_S = 0.3  # for something to say
 _GATHER_S = 0.01  # what comes in quick succession is said together
 
 
-class Shipping(Answers):
-    def __init__(
-        self, station: str, bus: Bus, log: SharedLog, disk: LogFeed, leads: Callable[[], bool]
-    ) -> None:
-        self._log = log
+class DiskReader:
+    """Goes on where it stopped, as long as it is asked in order; for one thread."""
+
+    def __init__(self, disk: LogFeed) -> None:
         self._disk = disk
-        self._leads = leads
         self._reading: tuple[Place, Iterator[Record]] | None = None
-        super().__init__(station, bus, {"history": self._history, "records": self._records})
 
-    def _history(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
-        if self._leads():
-            yield pack(History(self._log.log_id, self._log.take_overs, self._log.place))
-
-    def _records(self, _key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
-        """What stands behind ``t`` and ``n``; waits a moment for it.  Nothing of a standby."""
-        if not self._leads():
-            return
-        place = _place_of(parameters)
-        if place is None or place > self._log.place:
-            logger.warning("a station asks for what this log does not have: %s", parameters)
-            return
-        if self._log.wait_beyond(place, _WAIT_S):
-            self._log.wait_beyond(self._log.place, _GATHER_S)
-        records = self._log.behind(place, _BATCH_BYTES)
-        if records is None:
-            records = self._from_disk(place)
-        yield pack(Batch(tuple(records)))
-
-    def _from_disk(self, place: Place) -> list[Record]:
-        """The reader goes on where it stopped, as long as it is asked in order."""
+    def behind(self, place: Place) -> list[Record]:
+        """Some of the events behind a place; none: that is all there is."""
         if self._reading is None or self._reading[0] != place:
             self._reading = place, events_behind(place, self._disk.records(place.t_ns))
         reader = self._reading[1]
@@ -65,7 +43,37 @@ class Shipping(Answers):
         return records
 
 
-def _place_of(parameters: str) -> Place | None:
+class Shipping(Answers):
+    def __init__(
+        self, station: str, bus: Bus, log: SharedLog, disk: LogFeed, leads: Callable[[], bool]
+    ) -> None:
+        self._log = log
+        self._disk = DiskReader(disk)
+        self._leads = leads
+        super().__init__(station, bus, {"history": self._history, "records": self._records})
+
+    def _history(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
+        if self._leads():
+            yield pack(History(self._log.log_id, self._log.take_overs, self._log.place))
+
+    def _records(self, _key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
+        """What stands behind ``t`` and ``n``; waits a moment for it.  Nothing of a standby."""
+        if not self._leads():
+            return
+        place = place_of(parameters)
+        if place is None or place > self._log.place:
+            logger.warning("a station asks for what this log does not have: %s", parameters)
+            return
+        if self._log.wait_beyond(place, _WAIT_S):
+            self._log.wait_beyond(self._log.place, _GATHER_S)
+        records = self._log.behind(place, _BATCH_BYTES)
+        if records is None:
+            records = self._disk.behind(place)
+        yield pack(Batch(tuple(records)))
+
+
+def place_of(parameters: str) -> Place | None:
+    """``t=TIME;n=EVENTS``; None: it is no place."""
     try:
         values = dict(pair.split("=", 1) for pair in parameters.split(";"))
         return Place(int(values["t"]), int(values["n"]))

@@ -16,10 +16,12 @@ from base_station.feed import LiveFeed, LogFeed
 from base_station.live.sinks import OperatorGate
 from base_station.live.surroundings import Feed, Log
 from base_station.live_state import StationState
+from base_station.log_check import LogCheck
 from base_station.pki.folder import PkiFolder
 from base_station.standby.asking import Rounds
 from base_station.standby.confirming import LeadersGate
 from base_station.standby.kept_copy import KeptCopy, KeptServer
+from base_station.standby.mending import EventServer, LogFiles, Mending
 from base_station.standby.merging import Merging, PartServer
 from base_station.standby.pair import Around, Pair
 from base_station.standby.places import Place
@@ -38,6 +40,8 @@ class Parts:
     bus: Bus
     log: Log
     disk: LogFeed
+    files: LogFiles
+    check: LogCheck
     live: LiveFeed
     clock: SteadyClock
     tables: KeptTables
@@ -180,6 +184,7 @@ class OneOfTwo:
         for server in (
             KeptServer(name, parts.bus, parts.tables, parts.pki),
             PartServer(name, parts.bus, parts.data),
+            EventServer(name, parts.bus, parts.disk),
         ):
             closing.callback(server.close)
         copying = KeptCopy(
@@ -200,9 +205,11 @@ class OneOfTwo:
             lambda: not parts.live.late_waits and self.log.flush(),
             lambda: pair.other_there() if pair.leads else None,
         )
+        mending = Mending(parts.bus, parts.files, parts.check, pair.other_there)
         threads = (
             pair,
             Rounds("kept-copy", 1.0, copying.look, "the other station's accounts are not copied"),
+            Rounds("mending", 5.0, mending.look, "the log is not mended from the other station"),
             Rounds("merging", 2.0, merging.look, "what the other one set aside is not taken"),
         )
         for thread in threads:

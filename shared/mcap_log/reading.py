@@ -134,6 +134,10 @@ class SegmentReader:
             if not outside:
                 yield from self._records_at(data, offsets, wanted)
 
+    def is_whole(self) -> bool:
+        """Whether every chunk is as it was written."""
+        return all(self._chunk_data(chunk) for chunk in self._contents.chunks)
+
     def intact_chunks(self) -> Iterator[IntactChunk]:
         """What can be read, as it stands in the file."""
         for chunk in self._contents.chunks:

@@ -14,8 +14,12 @@ from shared.mcap_log.writing import Segment, SegmentPolicy
 Replace = Callable[[LogRecord], Sequence[LogRecord]]
 
 
-def rewrite_segment(path: Path, replace: Replace) -> int:
+def rewrite_segment(
+    path: Path, replace: Replace, rest: Callable[[], Sequence[LogRecord]] = tuple
+) -> int:
     """Give the number of records that changed; where none did, the file is left as it is.
+
+    ``rest`` gives what is to stand behind the last record.
 
     The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
     Nobody may be writing to it.  Raises LogError when the disk refuses.
@@ -23,7 +27,7 @@ def rewrite_segment(path: Path, replace: Replace) -> int:
     making = path.with_name(path.name + MAKING)
     try:
         making.unlink(missing_ok=True)
-        changed = _rewritten(path, making, replace)
+        changed = _rewritten(path, making, replace, rest)
         if changed:
             making.rename(path)
             sync_folder(path.parent)
@@ -42,7 +46,9 @@ def remove_torn(folder: Path) -> int:
     return len(torn)
 
 
-def _rewritten(path: Path, making: Path, replace: Replace) -> int:
+def _rewritten(
+    path: Path, making: Path, replace: Replace, rest: Callable[[], Sequence[LogRecord]]
+) -> int:
     changed = 0
     segment = Segment(making, SegmentPolicy().chunk_bytes)
     try:
@@ -52,6 +58,9 @@ def _rewritten(path: Path, making: Path, replace: Replace) -> int:
                 changed += len(instead) != 1 or instead[0] != record
                 for t_ns, key, payload in instead:
                     segment.add(t_ns, key, payload)
+        for t_ns, key, payload in rest():
+            changed += 1
+            segment.add(t_ns, key, payload)
         segment.finish()
         segment.file.sync()
     finally:

@@ -1,0 +1,155 @@
+"""What one of two stations' disks has lost of the log, the other one has.
+
+Only events are fetched: what was decided from them a replay decides again.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from threading import Event
+from typing import Protocol
+
+from base_station.feed import LogFeed
+from base_station.log_check import LogCheck
+from base_station.standby.asking import Answers, ask
+from base_station.standby.places import BEGINNING, Place, Record, is_event
+from base_station.standby.shipping import DiskReader, place_of
+from base_station.standby.words import Batch, pack, unpack
+from shared.bus import Bus
+from shared.errors import BusError, LogError
+from shared.mcap_log import SegmentReader, rewrite_segment, segment_paths
+
+logger = logging.getLogger(__name__)
+
+
+class LogFiles(Protocol):
+    """The log as files, while a station writes it."""
+
+    @property
+    def folder(self) -> Path: ...
+
+    @property
+    def rewriting(self) -> AbstractContextManager[object]:
+        """Entered while a complete segment is exchanged."""
+        ...
+
+    def note_rewritten(self, path: Path) -> None:
+        """This segment has another content now."""
+        ...
+
+
+class EventServer(Answers):
+    """Serves ``events``: what stands behind a place in this station's log, whoever leads."""
+
+    def __init__(self, station: str, bus: Bus, disk: LogFeed) -> None:
+        self._disk = DiskReader(disk)
+        super().__init__(station, bus, {"events": self._events})
+
+    def _events(self, _key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
+        place = place_of(parameters)
+        if place is not None:
+            yield pack(Batch(tuple(self._disk.behind(place))))
+
+
+class Mending:
+    """Fills in damaged segments in rounds, one a round, while the other station is there."""
+
+    def __init__(
+        self, bus: Bus, files: LogFiles, check: LogCheck, other: Callable[[], str | None]
+    ) -> None:
+        self._bus = bus
+        self._files = files
+        self._check = check
+        self._other = other
+        self._without_events: set[Path] = set()  # nothing that the other one has is missing in them
+
+    def look(self, stop: Event) -> None:
+        """One round; ``stop`` ends it early.  Raises MusterError where that cannot be done."""
+        damaged = (one for one in self._check.damaged if one not in self._without_events)
+        path, station = next(damaged, None), self._other()
+        if path is None or station is None:
+            return
+        paths = segment_paths(self._files.folder)
+        behind = _first_event(paths[paths.index(path) + 1 :])
+        if behind is None:
+            return  # nobody can tell yet where it ends
+        before = _last_place(paths[: paths.index(path)])
+        filling = Filling(self._events(station, before, stop), behind)
+        with self._files.rewriting:
+            changed = rewrite_segment(path, filling, filling.rest)
+        if not changed:
+            self._without_events.add(path)
+            return
+        self._files.note_rewritten(path)
+        self._check.note_mended(path)
+        logger.warning(
+            "%s: what was lost in %d places was fetched from %s", path.name, changed, station
+        )
+
+    def _events(self, station: str, place: Place, stop: Event) -> Iterator[Record]:
+        while not stop.is_set():
+            question = f"events?t={place.t_ns};n={place.events}"
+            answer = next(iter(ask(self._bus, station, question)), None)
+            if answer is None:
+                break
+            records = unpack(answer, Batch).records
+            if not records:
+                return
+            for record in records:
+                place = place.then(record[0])
+                yield record
+        raise BusError(f"{station} does not answer")
+
+
+class Filling:
+    """Called with each record that is left of a segment, gives it with the events that stood
+    before it; ``rest`` those behind the last one.
+    """
+
+    def __init__(self, theirs: Iterator[Record], behind: Record) -> None:
+        """``theirs``: the other log's events from where the segment begins; ``behind``: the first
+        one that does not belong to it.
+        """
+        self._theirs = theirs
+        self._behind = behind
+
+    def __call__(self, record: Record) -> Sequence[Record]:
+        return [*self._up_to(record), record] if is_event(record[1]) else [record]
+
+    def rest(self) -> Sequence[Record]:
+        return self._up_to(self._behind)
+
+    def _up_to(self, mine: Record) -> list[Record]:
+        missing: list[Record] = []
+        for record in self._theirs:
+            if record == mine:
+                return missing
+            if record[0] > mine[0]:
+                break
+            missing.append(record)
+        raise LogError("the other station's log is not the same as this one's: nothing is mended")
+
+
+def _first_event(paths: Sequence[Path]) -> Record | None:
+    for path in paths:
+        with SegmentReader(path) as reader:
+            for record in reader.records():
+                if is_event(record[1]):
+                    return record
+    return None
+
+
+def _last_place(paths: Sequence[Path]) -> Place:
+    """Behind the last event of the newest of these segments that has any."""
+    for path in reversed(paths):
+        place = BEGINNING
+        with SegmentReader(path) as reader:
+            for t_ns, key, _ in reader.records():
+                if is_event(key):
+                    place = place.then(t_ns)
+        if place != BEGINNING:
+            return place
+    return BEGINNING

@@ -1,0 +1,119 @@
+"""A log with flipped bits is found, said, and mended from the other station's."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from base_station.feed import LogFeed
+from base_station.log_check import LogCheck
+from base_station.recorder import Recorder
+from base_station.standby.mending import EventServer, Mending
+from base_station.standby.places import is_event
+from shared.bus_memory import MemoryRouter
+from shared.channels import FUSED, POSITION
+from shared.clock import SystemClock
+from shared.errors import LogError
+from shared.mcap_log import LogRecord, SegmentPolicy, read_log
+from shared.messages import STATION_ID
+
+T0 = 1_800_000_000 * 10**9
+POLICY = SegmentPolicy(segment_s=1.0, chunk_bytes=4096)
+KEY, DECISION = POSITION.key("anna"), FUSED.key(STATION_ID)
+
+
+def records(luck: int = 1) -> list[LogRecord]:
+    """Five seconds: five segments.  Several events have one time, and a decision follows some."""
+    chance = random.Random(luck)
+    made: list[LogRecord] = []
+    for number in range(1000):
+        t_ns = T0 + number // 3 * 15_000_000
+        made.append((t_ns, KEY, number.to_bytes(4, "big") + chance.randbytes(60)))
+        if chance.random() < 0.3:
+            made.append((t_ns, DECISION, chance.randbytes(20)))
+    return made
+
+
+class Pair:
+    """The logs of two stations, written alike."""
+
+    def __init__(self, folder: Path, closing_all: ExitStack) -> None:
+        router = MemoryRouter()
+        self.mine, self.theirs = (Recorder(folder / name, SystemClock(), POLICY) for name in "ab")
+        for recorder in (self.mine, self.theirs):
+            closing_all.callback(recorder.close)
+        disk = LogFeed(self.theirs.folder, self.theirs.flush)
+        server = EventServer("b", router.attach_station(), disk)
+        closing_all.callback(server.close)
+        self.check = LogCheck("It is mended.")
+        self.mending = Mending(router.attach_station(), self.mine, self.check, lambda: "b")
+
+    def write(self, mine: list[LogRecord], theirs: list[LogRecord]) -> None:
+        for recorder, all_of in ((self.mine, mine), (self.theirs, theirs)):
+            for record in all_of:
+                recorder.write(*record)
+            recorder.flush()
+
+    def look_at_all(self) -> None:
+        for _ in self.mine.segments():
+            self.check.look(self.mine.segments())
+
+    def events(self) -> list[LogRecord]:
+        return [one for one in read_log(self.mine.folder) if is_event(one[1])]
+
+    def damage(self, number: int, at: float, count: int = 1) -> None:
+        """Flip bits of the records of a complete segment, from a part of its length on."""
+        path = self.mine.segments()[number].path
+        content = bytearray(path.read_bytes())
+        begin = 100 + int(at * (len(content) * 0.6 - 100))
+        for offset in range(begin, begin + count):
+            content[offset] ^= 0x10
+        path.write_bytes(content)
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Iterator[Pair]:
+    with ExitStack() as stack:
+        yield Pair(tmp_path, stack)
+
+
+@pytest.mark.parametrize("at", [0.0, 0.3, 0.6, 0.99])
+@pytest.mark.parametrize("number", [0, 2])
+def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
+    pair: Pair, number: int, at: float
+) -> None:
+    written = records()
+    pair.write(written, written)
+    events = [one for one in written if is_event(one[1])]
+    pair.damage(number, at, 3000)
+    assert pair.events() != events
+    pair.look_at_all()
+    (said,) = pair.check.problems()
+    assert pair.mine.segments()[number].path.name in said
+    pair.mending.look(Event())
+    assert pair.events() == events
+    pair.look_at_all()
+    assert pair.check.problems() == ()
+
+
+def test_a_log_is_not_filled_with_another_one_s(pair: Pair) -> None:
+    pair.write(records(), records(luck=2))
+    pair.damage(1, 0.3)
+    pair.look_at_all()
+    before = pair.mine.segments()[1].path.read_bytes()
+    with pytest.raises(LogError, match="not the same"):
+        pair.mending.look(Event())
+    assert pair.mine.segments()[1].path.read_bytes() == before
+    assert len(pair.check.problems()) == 1
+
+
+def test_nothing_is_done_while_the_other_one_is_away(tmp_path: Path) -> None:
+    with closing(Recorder(tmp_path, SystemClock(), POLICY)) as recorder:
+        check = LogCheck("")
+        Mending(MemoryRouter().attach_station(), recorder, check, lambda: None).look(Event())
+        assert check.damaged == ()
