@@ -89,7 +89,10 @@ class ConsoleServer:
     ) -> None:
         """Raises ConfigError where the certificate or its key cannot be used."""
         self._socket = listening
-        self._scheme = "http" if certificate is None else "https"
+        host, port = listening.getsockname()[:2]
+        scheme = "http" if certificate is None else "https"
+        # As a browser on this machine writes it.
+        self.address = f"{scheme}://{f'[{host}]' if ':' in host else host}:{port}"
         config = uvicorn.Config(
             app,
             http=_Connection,
@@ -112,12 +115,6 @@ class ConsoleServer:
                 f"used: {error}"
             ) from error
         self._server = _Server(config)
-
-    @property
-    def address(self) -> str:
-        """As a browser on this machine writes it."""
-        host, port = self._socket.getsockname()[:2]
-        return f"{self._scheme}://{f'[{host}]' if ':' in host else host}:{port}"
 
     async def serve(self) -> None:
         """Until ``stop``."""
@@ -151,7 +148,7 @@ async def serve_until_stopped(
     serving = asyncio.create_task(server.serve())
     starting = asyncio.create_task(server.wait_started())
     await asyncio.wait({serving, starting}, return_when=asyncio.FIRST_COMPLETED)
-    if starting.done():
+    if starting.done() and not serving.done():  # it may have been stopped as it began
         announce(f"ready {server.address}")
     starting.cancel()
     while not serving.done():
