@@ -27,6 +27,7 @@ from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, sensor_of
 from edge.raw_uplink import RawUplink
+from edge.receivers import open_receiver
 from edge.recording_server import RecordingServer
 from edge.runtime import Agent, Parts
 from edge.samples import SensorDescription
@@ -66,8 +67,10 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     if isinstance(source, BusSource):
         if config.tracker == NO_TRACKER:
             raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
-        if config.sightings:
-            raise ConfigError(f"nothing is read beside {config.source}; give it to the unit itself")
+        if config.sightings or config.gps:
+            raise ConfigError(
+                f"nothing is read beside {config.source}: sightings and gps are the unit's own"
+            )
         listener = UnitListener(source.unit_id, station.open_listening_bus)
         with closing(listener):
             _track_for(config, source, listener, station, stop, for_s)
@@ -78,7 +81,12 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
 
 
 def _beside(config: EdgeConfig) -> tuple[Beside, ...]:
-    return (SightingReader(config.sightings, SystemClock()),) if config.sightings else ()
+    beside: list[Beside] = []
+    if config.sightings:
+        beside.append(SightingReader(config.sightings, SystemClock()))
+    if config.gps:
+        beside.append(open_receiver(config.gps, SystemClock()))
+    return tuple(beside)
 
 
 @contextmanager

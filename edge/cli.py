@@ -25,6 +25,13 @@ SamplesFrom = Annotated[
 Sightings = Annotated[
     str | None, typer.Option(help="A reader of beacons and tags: tcp:HOST:PORT or a device's path.")
 ]
+Gps = Annotated[
+    str | None,
+    typer.Option(
+        help="A satellite receiver: gpsd://HOST:PORT, nmea:/dev/PORT?baud=9600 or "
+        "nmea:tcp://HOST:PORT."
+    ),
+]
 Enrolment = Annotated[
     Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
 ]
@@ -59,6 +66,7 @@ def run(
     unit: Unit = None,
     source: SamplesFrom = None,
     sightings: Sightings = None,
+    gps: Gps = None,
     enrolment: Enrolment = None,
     connect: Connect = None,
     data: Data = None,
@@ -80,6 +88,7 @@ def run(
         "enrolment": enrolment,
         "source": source,
         "sightings": sightings,
+        "gps": gps,
         "connect": connect,
         "data": data,
         "tracker": tracker,

@@ -27,6 +27,7 @@ class EdgeConfig:
 
     source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT, ximu3:tcp://HOST
     sightings: str = ""  # a reader of beacons and tags: tcp:HOST:PORT or a device's path
+    gps: str = ""  # a satellite receiver: gpsd://HOST, nmea:/dev/PORT, nmea:tcp://HOST:PORT
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
     connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447

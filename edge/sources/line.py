@@ -40,6 +40,10 @@ class SocketLine:
         except TimeoutError:
             return None
 
+    def write(self, said: bytes) -> None:
+        """For servers that want to be asked.  Raises OSError."""
+        self._socket.sendall(said)
+
     def close(self) -> None:
         self._socket.close()
 

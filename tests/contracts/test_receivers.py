@@ -1,0 +1,158 @@
+"""What every kind of satellite receiver promises, whatever its language."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from edge.receivers import RECEIVERS, open_receiver
+from edge.receivers.gps_reader import GpsReader
+from edge.samples import GpsSample
+from shared.clock import SystemClock
+from shared.errors import ConfigError
+from tests.gps_receiver import NAN, GpsdServer, Told, burst, gpsd_report
+from tests.waiting import until
+from tests.ximu3_device import PtyDevice, TcpDevice
+
+Device = GpsdServer | TcpDevice | PtyDevice
+Saying = Callable[[Told], bytes]
+# How each is pretended, what it says of a fix, and how it is named.
+PRETENDED: dict[str, tuple[Callable[[Iterable[bytes]], Device], Saying]] = {
+    "gpsd": (lambda said: GpsdServer(said, hangs=True), gpsd_report),
+    "nmea on TCP": (lambda said: TcpDevice(said, hangs=True), burst),
+    "nmea on a serial port": (PtyDevice, burst),
+}
+HERE = Told()
+LATER = replace(HERE, of_day_s=HERE.of_day_s + 1.0)
+NO_FIX = replace(HERE, mode=1, quality=0, lat_deg=NAN, lon_deg=NAN, height_m=NAN, satellites=0)
+
+
+@pytest.fixture(params=PRETENDED)
+def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSample]]]:
+    """What a unit makes of a receiver that says these fixes."""
+    make, said = PRETENDED[request.param]
+    opened: list[tuple[Device, GpsReader]] = []
+
+    def heard(*told: Told, held_s: float = 0.0) -> list[GpsSample]:
+        device = make(_said(said, told, held_s))
+        reader = open_receiver(f"{request.param.split()[0]}:{device.source}", SystemClock())
+        opened.append((device, reader))
+        reader.start()
+        found: list[GpsSample] = []
+
+        def all_there() -> bool:
+            found.extend(reader.take())
+            return len(found) >= len(told)
+
+        until(all_there, "every fix", 20.0)
+        assert reader.take_faults() == ()
+        assert reader.garbled == 0
+        return found
+
+    yield heard
+    for device, reader in opened:
+        with closing(device):
+            reader.close()
+        assert not reader.is_alive
+
+
+def _said(saying: Saying, told: tuple[Told, ...], held_s: float) -> Iterator[bytes]:
+    """The first, and after ``held_s`` all others at once."""
+    yield saying(told[0])
+    time.sleep(held_s)
+    yield b"".join(map(saying, told[1:]))
+
+
+def test_every_kind_is_pretended() -> None:
+    assert {name.split()[0] for name in PRETENDED} == {kind.scheme for kind in RECEIVERS}
+
+
+def test_a_fix_is_what_the_receiver_said(fixes) -> None:
+    (fix,) = fixes(replace(HERE, std_m=1.3, vertical_std_m=2.2))
+    assert (fix.lat_deg, fix.lon_deg) == pytest.approx((57.7, 11.97), abs=1e-8)
+    assert fix.height_m == pytest.approx(42.5)
+    assert (fix.horizontal_std_m, fix.vertical_std_m) == pytest.approx((1.3, 2.2))
+    assert (fix.fix_type, fix.satellites) == (3, 12)
+    assert fix.speed_mps == pytest.approx(1.5, abs=1e-3)
+    assert math.degrees(fix.course_rad) == pytest.approx(77.5)
+
+
+def test_all_sides_of_the_earth_are_told_apart(fixes) -> None:
+    places = [(57.7, 11.97), (-33.9, 151.2), (-22.9, -43.2), (40.7, -74.0)]
+    found = fixes(
+        *(
+            replace(HERE, of_day_s=100.0 + k, lat_deg=p[0], lon_deg=p[1])
+            for k, p in enumerate(places)
+        )
+    )
+    got = [(fix.lat_deg, fix.lon_deg) for fix in found]
+    assert [value for place in got for value in place] == pytest.approx(
+        [value for place in places for value in place], abs=1e-8
+    )
+
+
+def test_without_its_own_estimate_the_dilution_makes_the_accuracy(fixes) -> None:
+    """Five metres for one satellite: each axis, and up and down."""
+    good, bad = fixes(replace(HERE, hdop=1.0, vdop=1.5), replace(LATER, hdop=6.0, vdop=99.99))
+    assert good.horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
+    assert good.vertical_std_m == pytest.approx(7.5)
+    assert bad.horizontal_std_m == pytest.approx(30.0 / math.sqrt(2.0))
+    assert math.isnan(bad.vertical_std_m), "99.99 is how receivers say that they do not know"
+
+
+def test_a_height_of_unknown_kind_is_none(fixes) -> None:
+    """Only above the sea, and how high that is nobody says: two dimensions are sure."""
+    (fix,) = fixes(replace(HERE, sep_m=NAN, height_m=NAN))
+    assert fix.fix_type == 2
+    assert math.isnan(fix.height_m)
+    assert math.isfinite(fix.lat_deg)
+
+
+def test_two_dimensions_have_no_height(fixes) -> None:
+    (fix,) = fixes(replace(HERE, mode=2))
+    assert fix.fix_type == 2
+    assert math.isnan(fix.height_m)
+
+
+def test_no_fix_is_said_as_such(fixes) -> None:
+    (fix,) = fixes(NO_FIX)
+    assert (fix.fix_type, fix.satellites) == (0, 0)
+    assert math.isnan(fix.lat_deg)
+
+
+def test_fixes_that_the_line_held_up_are_of_their_own_instants(fixes) -> None:
+    """Ten a second, over midnight."""
+    told = [replace(HERE, of_day_s=86_399.5 + 0.1 * k) for k in range(10)]
+    found = fixes(*told, held_s=0.9)
+    steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(found)]
+    assert steps_ns == pytest.approx([100_000_000] * 9, abs=50_000_000)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("gpds://127.0.0.1", "did you mean gpsd:"),
+        ("gpsd", "Known are gpsd://HOST:PORT"),
+        ("gpsd:", "Known are gpsd://HOST:PORT"),
+        ("/dev/ttyUSB0", "Known are"),
+        ("gpsd://", "gpsd://HOST:PORT"),
+        ("gpsd://h:99999", "gpsd://HOST:PORT"),
+        ("gpsd://h?latency=9", "from 0 to 2"),
+        ("nmea:ttyUSB0", "nmea:/dev/ttyACM0"),
+        ("nmea:tcp://10.0.0.1", "tcp://HOST:PORT"),
+        ("nmea:tcp://10.0.0.1:99999", "tcp://HOST:PORT"),
+        ("nmea:tcp://10.0.0.1:5000?baud=9600", "leave it out"),
+        ("nmea:/dev/ttyUSB0?baud=9601", "this machine knows"),
+        ("nmea:/dev/ttyUSB0?speed=2", "unknown option 'speed'"),
+    ],
+)
+def test_a_text_that_names_no_receiver_is_explained(text: str, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        open_receiver(text, SystemClock())
+    assert said in str(caught.value)
