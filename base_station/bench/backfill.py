@@ -16,17 +16,16 @@ from rich.progress import Progress
 from rich.table import Table
 
 from base_station import collector
-from base_station.bench.bus.report import Latency, latency_of
-from base_station.bench.rig.console import Console, latencies_ms
+from base_station.bench.rig.console import Console, watching
+from base_station.bench.rig.latency import Latency, latencies_ms, latency_of
 from base_station.bench.rig.station import Membership, PlainTcp, StationProcess, station_process
 from base_station.bench.rig.units import BenchUnit, Wearer, speak_in_turn, unit_names
-from base_station.bench.rig.waiting import PATIENCE_S, wait_until
+from base_station.bench.rig.waiting import wait_until
 from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import CHANNELS, ROOT, Direction, Qos, backfilled_key, channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
-from shared.errors import StoreError
 from shared.mcap_log import read_log
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 
@@ -82,13 +81,11 @@ def measure(
         for name in [*names, _BACKLOG_UNIT]:
             station.api.post("/units", {"unit_id": name})
         wait_until("the station listens", lambda: all(unit.is_heard for unit in others))
-        watching = Console(station.api, closing)
-        if not watching.wait_ready(PATIENCE_S):
-            raise StoreError("the station to be measured shows nothing at its console")
+        [console] = watching(station.api, 1, closing)
         return _fetch(
             station,
             others,
-            watching,
+            console,
             _Backlog(backlog, members.endpoint_of(_BACKLOG_UNIT), closing),
             seconds,
             progress,
@@ -98,7 +95,7 @@ def measure(
 def _fetch(
     station: StationProcess,
     others: Sequence[BenchUnit],
-    watching: Console,
+    console: Console,
     backlog: _Backlog,
     seconds: float,
     progress: Progress,
@@ -108,29 +105,24 @@ def _fetch(
     speak_in_turn(others, rate_hz, _WARM_S, lambda: None)
     before_ns = time.time_ns()
     speak_in_turn(others, rate_hz, seconds, lambda: None)
-    began_ns, began_s = time.time_ns(), time.perf_counter()
-    known = station.api.get("/health")["messages"]
-    live_before = sum(unit.sent.messages for unit in others)
+    began_ns = time.time_ns()
+    known = station.api.get("/health")["messages"] - _said_by(others)
     station.begin_measuring()
     backlog.appear()
     progress.update(task, description="fetching")
-    fetched, came_s = 0, began_s
     nearly = backlog.count - round(_TOLD_LATE_S * rate_hz)
-    while fetched < nearly and time.perf_counter() - came_s < _STALLED_S:
-        speak_in_turn(others, rate_hz, _PIECE_S, lambda: None)
-        live = sum(unit.sent.messages for unit in others) - live_before
-        if watching.messages_stepped - known - live > fetched:
-            fetched = watching.messages_stepped - known - live
-            came_s = time.perf_counter()
+    for fetched in _coming(others, console, known):
         progress.update(task, completed=fetched)
+        if fetched >= nearly:
+            break
     cpu_share = station.cpu_share()
     end_ns = time.time_ns()
     time.sleep(_TOLD_LATE_S)
-    watching.close()
+    console.close()
     station.stop()
     recorded = station.recorded()
     fetched, took_s = _fetched(station.log, began_ns)
-    sent = sum(unit.sent.messages for unit in others) + backlog.count + 1
+    sent = _said_by(others) + backlog.count + 1
     return BackfillReport(
         units=len(others),
         backlog=backlog.count,
@@ -139,10 +131,27 @@ def _fetch(
         recorded=recorded.from_units,
         lost=sent - recorded.from_units,
         repeated=recorded.repeated,
-        before=_latency_between(others, watching, before_ns, began_ns),
-        meanwhile=_latency_between(others, watching, began_ns, end_ns),
+        before=_latency_between(others, console, before_ns, began_ns),
+        meanwhile=_latency_between(others, console, began_ns, end_ns),
         cpu_share=cpu_share,
     )
+
+
+def _coming(others: Sequence[BenchUnit], console: Console, known: int) -> Iterator[int]:
+    """How many fetched messages the console knows of, again and again while others speak; ends
+    where no more come.  ``known``: of all that it knew before, those that the others had not said.
+    """
+    fetched, came_s = 0, time.perf_counter()
+    while time.perf_counter() - came_s < _STALLED_S:
+        speak_in_turn(others, _MESSAGES_HZ * len(others), _PIECE_S, lambda: None)
+        now = console.messages_stepped - known - _said_by(others)
+        if now > fetched:
+            fetched, came_s = now, time.perf_counter()
+        yield fetched
+
+
+def _said_by(units: Sequence[BenchUnit]) -> int:
+    return sum(unit.sent.messages for unit in units)
 
 
 class _Backlog:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from base_station.bench.faults.command import suffer
-from base_station.bench.faults.site import MessageId, Site
+from base_station.bench.faults.site import Site
 from base_station.bench.faults.troubles import FAULTS, BadLink
+from base_station.bench.rig.journal import MessageOfUnit
 
 PATIENCE_S = 90.0
 # The others are for `muster bench faults`.
@@ -27,7 +28,7 @@ def test_every_message_is_in_the_log_once(troubled: Site, fault: BadLink) -> Non
         assert_alerts_come_first(troubled, before)
 
 
-def assert_alerts_come_first(running: Site, before: set[MessageId]) -> None:
+def assert_alerts_come_first(running: Site, before: set[MessageOfUnit]) -> None:
     """Of what was fetched."""
     fetched = [one for one in running.logged() if not one.live and one.message not in before]
     assert len(fetched) > 20

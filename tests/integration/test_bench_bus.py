@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from rich.progress import Progress
 
-from base_station.bench.bus.command import measure
-from base_station.bench.rig.console import latencies_ms
+from base_station.bench.bus.command import Load, measure
+from base_station.bench.rig.latency import latencies_ms
 
 MS = 1_000_000
 
 
 def test_a_small_run_accounts_for_every_message() -> None:
     with Progress(disable=True) as progress:
-        report = measure(units=3, rate_hz=10.0, seconds=2.0, consoles=2, progress=progress)
+        report = measure(Load(units=3, rate_hz=10.0, seconds=2.0, consoles=2), progress)
     assert report.sent == 3 * (10 * 2 + 1)
     assert (report.lost, report.repeated) == (0, 0)
     assert report.recorded == report.stepped == report.sent
@@ -32,9 +32,7 @@ def test_a_shown_position_is_that_of_the_nearest_sensor_time() -> None:
 
 def test_many_consoles_and_slow_ones_cost_nobody_a_message() -> None:
     with Progress(disable=True) as progress:
-        report = measure(
-            units=3, rate_hz=7.0, seconds=3.0, consoles=1, progress=progress, beside=(30, 4)
-        )
+        report = measure(Load(3, 7.0, 3.0, consoles=1, onlookers=30, slow=4), progress)
     assert (report.lost, report.stepped) == (0, report.sent)
     assert report.console_gaps == 0
     assert (report.onlookers.onlookers, report.slow.onlookers) == (30, 4)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -16,8 +17,9 @@ from rich.progress import Progress
 from base_station.bench.bus.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
 from base_station.bench.bus.onlookers import Onlookers, Seen
 from base_station.bench.bus.recording import recording_hz
-from base_station.bench.bus.report import BusReport, latency_of, table_of
-from base_station.bench.rig.console import Console, latencies_ms
+from base_station.bench.bus.report import BusReport, table_of
+from base_station.bench.rig.console import Console, watching
+from base_station.bench.rig.latency import latencies_ms, latency_of
 from base_station.bench.rig.station import (
     Membership,
     PlainTcp,
@@ -27,9 +29,8 @@ from base_station.bench.rig.station import (
     station_process,
 )
 from base_station.bench.rig.units import BenchUnit, speak_in_turn, unit_names
-from base_station.bench.rig.waiting import PATIENCE_S, wait_until
+from base_station.bench.rig.waiting import wait_until
 from shared.bench_figures import FiguresFile, write_figures
-from shared.errors import StoreError
 
 _SETTLE_S = 2.0
 _STEADY_S = 5.0
@@ -54,65 +55,54 @@ def bench_bus(
     """Messages a second and latency from sensor to WebSocket through a real station, beside a
     bare Zenoh publisher and subscriber in the same run.
     """
+    load = Load(units, rate, seconds, consoles, onlookers, slow)
     with Progress(transient=True) as progress:
-        report = measure(
-            units, rate, seconds, consoles, progress, beside=(onlookers, slow), plain=plain
-        )
+        report = measure(load, progress, plain=plain)
     Terminal().print(table_of(report))
     for problem in report.problems:
         Terminal().print(f"the station says: {problem}")
     write_figures(json_file, report)
 
 
-def measure(
-    units: int,
-    rate_hz: float,
-    seconds: float,
-    consoles: int,
-    progress: Progress,
-    *,
-    beside: tuple[int, int] = (0, 0),
-    plain: bool = False,
-) -> BusReport:
-    """Bare Zenoh over plain TCP first, then the station, both on this machine.
+@dataclass(frozen=True, slots=True)
+class Load:
+    """What is put on the station."""
 
-    ``beside`` the consoles: onlookers that read, and that hardly do.
-    """
-    total_hz = units * rate_hz
-    steady_s, flood_s = min(_STEADY_S, seconds), min(_FLOOD_S, seconds)
-    task = progress.add_task("bare Zenoh", total=steady_s + flood_s + seconds)
+    units: int
+    rate_hz: float  # messages a second of each unit
+    seconds: float
+    consoles: int
+    onlookers: int = 0  # further consoles that read whatever comes
+    slow: int = 0  # and that hardly do
+
+    @property
+    def total_hz(self) -> float:
+        return self.units * self.rate_hz
+
+
+def measure(load: Load, progress: Progress, *, plain: bool = False) -> BusReport:
+    """Bare Zenoh over plain TCP first, then the station, both on this machine."""
+    steady_s, flood_s = min(_STEADY_S, load.seconds), min(_FLOOD_S, load.seconds)
+    task = progress.add_task("bare Zenoh", total=steady_s + flood_s + load.seconds)
     address = f"tcp/127.0.0.1:{free_port()}"
     with bare_subscriber(address) as far_end:
-        steady = measure_steady(address, far_end, total_hz, steady_s)
+        steady = measure_steady(address, far_end, load.total_hz, steady_s)
         progress.advance(task, steady_s)
         flood = measure_flood(address, far_end, flood_s)
         progress.advance(task, flood_s)
-    progress.update(task, description=f"{units} units")
+    progress.update(task, description=f"{load.units} units")
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
-        names = unit_names(units)
+        names = unit_names(load.units)
         members = Membership(Path(folder), names, plain=plain)
         station = closing.enter_context(station_process(Path(folder), members.address))
         speakers = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
-        return _run_station(
-            station,
-            speakers,
-            total_hz,
-            seconds,
-            consoles,
-            beside,
-            (steady, flood),
-            progress,
-            closing,
-        )
+        return _run_station(station, speakers, load, (steady, flood), progress, closing)
 
 
 def _run_station(
     station: StationProcess,
     units: list[BenchUnit],
-    total_hz: float,
-    seconds: float,
-    console_count: int,
-    beside: tuple[int, int],
+    load: Load,
     bare: tuple[BareFigures, BareFigures],
     progress: Progress,
     closing: ExitStack,
@@ -120,38 +110,35 @@ def _run_station(
     for unit in units:
         station.api.post("/units", {"unit_id": unit.unit_id})
     wait_until("the station listens", lambda: all(unit.is_heard for unit in units))
-    watching = [Console(station.api, closing) for _ in range(console_count)]
-    if not all(console.wait_ready(PATIENCE_S) for console in watching):
-        raise StoreError("the station to be measured shows nothing at its consoles")
-    onlookers = Onlookers(station.api, *beside)
+    consoles = watching(station.api, load.consoles, closing)
+    onlookers = Onlookers(station.api, load.onlookers, load.slow)
     for unit in units:
         unit.introduce()
     time.sleep(_SETTLE_S)
 
     station.begin_measuring()
     [task] = progress.task_ids
-    rate_hz = speak_in_turn(units, total_hz, seconds, lambda: progress.advance(task))
+    rate_hz = speak_in_turn(units, load.total_hz, load.seconds, lambda: progress.advance(task))
     cpu_share, memory_mb = station.cpu_share(), station.memory_mb()
     time.sleep(_SETTLE_S)
 
     stepped = station.api.get("/health")["messages"]
     quick, slow = onlookers.close()
-    for console in watching:
+    for console in consoles:
         console.close()
     station.stop()
-    sent = sum(unit.sent.messages for unit in units)
     return _report(
         station.recorded(),
         bare,
-        watching[0],
+        consoles[0],
         units,
         (quick, slow),
-        units=len(units),
-        consoles=console_count,
-        rate_wanted_hz=total_hz,
+        units=load.units,
+        consoles=load.consoles,
+        rate_wanted_hz=load.total_hz,
         rate_hz=rate_hz,
-        seconds=seconds,
-        sent=sent,
+        seconds=load.seconds,
+        sent=sum(unit.sent.messages for unit in units),
         stepped=stepped,
         cpu_share=cpu_share,
         memory_mb=memory_mb,

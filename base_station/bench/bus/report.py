@@ -4,26 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 from rich.table import Table
 
 from base_station.bench.bus.onlookers import Seen
+from base_station.bench.rig.latency import Latency
 from base_station.drive import DELTA_NS
 from shared.clock import NS_PER_S
 
 _LATENCY_P99_MS = 300.0  # to reach
 _CPU_SHARE = 1.0  # to reach
 _RECORDING_HZ = 150_000  # to reach
-
-
-@dataclass(frozen=True, slots=True)
-class Latency:
-    """Milliseconds."""
-
-    count: int
-    p50_ms: float
-    p99_ms: float
-    max_ms: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +47,6 @@ class BusReport:
     bare_flood_hz: float
     recording_hz: float  # a second of processor time
     cores: int
-
-
-def latency_of(values_ms: list[float] | tuple[float, ...]) -> Latency:
-    if not values_ms:
-        return Latency(0, float("nan"), float("nan"), float("nan"))
-    p50, p99, highest = np.percentile(values_ms, (50.0, 99.0, 100.0))
-    return Latency(len(values_ms), float(p50), float(p99), float(highest))
 
 
 def table_of(report: BusReport) -> Table:

@@ -19,8 +19,9 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station.bench.faults.site import MessageId, Site, site
+from base_station.bench.faults.site import Site, site
 from base_station.bench.faults.troubles import FAULTS, Fault
+from base_station.bench.rig.journal import MessageOfUnit
 from base_station.bench.rig.lossy_link import CLEAN
 from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
@@ -114,8 +115,8 @@ def suffer(one: Site, fault: Fault, patience_s: float) -> FaultReport:
 def _report(
     one: Site,
     fault: Fault,
-    said: set[MessageId],
-    said_before_end: set[MessageId],
+    said: set[MessageOfUnit],
+    said_before_end: set[MessageOfUnit],
     over_ns: int,
     memory_mb: float,
 ) -> FaultReport:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import resource
-import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.lossy_link import LossyLink
 from base_station.bench.rig.station import StationProcess, station_process
 from base_station.pki.folder import PkiFolder
@@ -33,13 +33,11 @@ began_s, utc_ns = time.monotonic(), time.time_ns
 time.time_ns = lambda: utc_ns() + (86_400 * 10**9 * {days} if time.monotonic() - began_s > {after_s} else 0)
 """.strip()  # noqa: E501
 
-MessageId = tuple[int, int]  # boot id, sequence number
-
 
 class Logged(NamedTuple):
     """A message of the unit in the station's log."""
 
-    message: MessageId
+    message: MessageOfUnit
     t_ns: int  # when the station wrote it
     said_ns: int
     live: bool
@@ -77,18 +75,9 @@ class Agent:
         assert self._process is not None
         _set_disk_full(self._process.pid, full=full)
 
-    def said(self) -> set[MessageId]:
+    def said(self) -> set[MessageOfUnit]:
         """All that it has ever said, by its journal."""
-        if not self.journal.exists():
-            return set()
-        with closing(sqlite3.connect(f"file:{self.journal}?mode=ro", uri=True)) as journal:
-            laid_out = journal.execute("SELECT 1 FROM sqlite_master WHERE name = 'message'")
-            if laid_out.fetchone() is None:  # the agent has only just made the file
-                return set()
-            rows = journal.execute(
-                "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
-            ).fetchall()
-        return {(boot_id % 2**64, seq) for boot_id, seq in rows}
+        return said_by(self.journal)
 
 
 class Site:
@@ -123,7 +112,7 @@ class Site:
         order = {"kind": "par_request", "target": {"unit_id": UNIT}, "expires_s": 900}
         self.link.station.call(lambda: self.station.api.post("/commands", order))
 
-    def said(self) -> set[MessageId]:
+    def said(self) -> set[MessageOfUnit]:
         return self.agent.said() | self.clone.said()
 
     def logged(self) -> Iterator[Logged]:
@@ -158,7 +147,7 @@ class Site:
             time.sleep(_LOOK_EVERY_S)
         return True
 
-    def wait_logged(self, wanted: set[MessageId], patience_s: float) -> None:
+    def wait_logged(self, wanted: set[MessageOfUnit], patience_s: float) -> None:
         """Or until the patience is over; what is missing then is lost."""
         end_s = time.monotonic() + patience_s
         while time.monotonic() < end_s:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import time
 import urllib.request
-from bisect import bisect_left
-from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from threading import Event, Thread
 from typing import Any
@@ -15,7 +13,8 @@ import msgspec
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from shared.clock import NS_PER_MS, NS_PER_S
+from base_station.bench.rig.waiting import PATIENCE_S
+from shared.errors import StoreError
 
 
 class _PositionSeen(msgspec.Struct):
@@ -132,28 +131,9 @@ class Console:
             self.problems = message.health.problems
 
 
-def latencies_ms(
-    sent_ns: Mapping[str, Sequence[int]], shown: Mapping[str, Mapping[int, int]]
-) -> list[float]:
-    """Sensor time to WebSocket of each position that was shown, one for each that was sent.
-
-    The station states a position's time by its own idea of the unit's clock, some milliseconds
-    off, so a shown position is that of the nearest sensor time.
-    """
-    latencies: list[float] = []
-    for unit_id, times_ns in sent_ns.items():
-        first_seen: dict[int, int] = {}
-        for t_ms, seen_ns in shown.get(unit_id, {}).items():
-            nearest_ns = _nearest(times_ns, t_ms * NS_PER_MS)
-            if nearest_ns is not None and seen_ns >= nearest_ns:
-                first_seen[nearest_ns] = min(seen_ns, first_seen.get(nearest_ns, seen_ns))
-        latencies += [(seen_ns - t_ns) / NS_PER_MS for t_ns, seen_ns in first_seen.items()]
-    return latencies
-
-
-def _nearest(times_ns: Sequence[int], t_ns: int) -> int | None:
-    """The nearest of rising times, at most a second away."""
-    index = bisect_left(times_ns, t_ns)
-    around = times_ns[max(index - 1, 0) : index + 1]
-    nearest = min(around, key=lambda candidate: abs(candidate - t_ns), default=None)
-    return nearest if nearest is not None and abs(nearest - t_ns) < NS_PER_S else None
+def watching(api: Api, count: int, closing: ExitStack) -> list[Console]:
+    """So many consoles that see something; StoreError where they do not."""
+    consoles = [Console(api, closing) for _ in range(count)]
+    if not all(console.wait_ready(PATIENCE_S) for console in consoles):
+        raise StoreError("the station to be measured shows nothing at its consoles")
+    return consoles

@@ -16,9 +16,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-import psutil
 import typer
 
+from base_station.bench.rig import processes
 from base_station.bench.rig.console import Api
 from base_station.data_folder import DataFolder
 from base_station.pki.folder import PkiFolder
@@ -53,14 +53,13 @@ class StationProcess:
     def __init__(self, data: Path, process: subprocess.Popen[str], patience_s: float) -> None:
         self._data = DataFolder(data)
         self._process = process
-        self._usage = psutil.Process(process.pid)
         self._cpu_s = 0.0
         self._since = 0.0
         self._url = _ready_url(process, data / _SAID, patience_s)
 
     @cached_property
     def api(self) -> Api:
-        return Api(self._url, *_first_login(self._data.first_login))
+        return Api(self._url, *first_login(self._data.first_login))
 
     def begin_measuring(self) -> None:
         self._cpu_s, self._since = self.cpu_s(), time.perf_counter()
@@ -70,8 +69,7 @@ class StationProcess:
         return (self.cpu_s() - self._cpu_s) / (time.perf_counter() - self._since)
 
     def memory_mb(self) -> float:
-        processes = (self._usage, *self._usage.children(recursive=True))
-        return sum(float(process.memory_info().rss) for process in processes) / 1e6
+        return processes.memory_mb(self.pid)
 
     @property
     def pid(self) -> int:
@@ -109,8 +107,7 @@ class StationProcess:
 
     def cpu_s(self) -> float:
         """Spent since it began, children included."""
-        processes = (self._usage, *self._usage.children(recursive=True))
-        return sum(sum(process.cpu_times()[:2]) for process in processes)
+        return processes.cpu_s(self.pid)
 
 
 class Membership:
@@ -181,6 +178,7 @@ def _ready_url(process: subprocess.Popen[str], said: Path, patience_s: float) ->
     raise StoreError(f"the station to be measured did not start: {said.read_text()[-2000:]}")
 
 
-def _first_login(note: Path) -> tuple[str, str]:
+def first_login(note: Path) -> tuple[str, str]:
+    """Name and password, as a station wrote them down when it made them."""
     fields = dict(line.split(": ", 1) for line in note.read_text(encoding="utf-8").splitlines())
     return fields["username"], fields["password"]

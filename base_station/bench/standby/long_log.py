@@ -12,11 +12,11 @@ from threading import Event, Thread
 from typing import Any
 
 import msgspec
-import psutil
 from rich.progress import Progress
 from rich.table import Table
 from websockets.sync.client import connect
 
+from base_station.bench.rig import processes
 from base_station.bench.rig.compressed import compressed_station
 from base_station.bench.rig.units import unit_names
 from base_station.bench.rig.waiting import wait_until
@@ -62,7 +62,7 @@ def measure_long_log(folder: Path, units: int, minutes: float, progress: Progres
             wait_until("the second follows", two.second.follows, _PATIENCE_S)
             joined_s = time.monotonic() - began_s
         assert two.second.process is not None
-        joined_cpu_s = _cpu_s(two.second.process.pid)
+        joined_cpu_s = processes.cpu_s(two.second.process.pid)
         same_picture = _same_picture(two)
         began_s = time.monotonic()
         two.first.kill()
@@ -121,8 +121,7 @@ def _memory(station: Station) -> Iterator[list[float]]:
     def look() -> None:
         while not over.wait(_LOOK_EVERY_S):
             if station.process is not None and station.process.poll() is None:
-                family = _family(station.process.pid)
-                seen.append(sum(float(one.memory_info().rss) for one in family) / 1e6)
+                seen.append(processes.memory_mb(station.process.pid))
 
     looking = Thread(target=look, name="bench-memory")
     looking.start()
@@ -131,15 +130,6 @@ def _memory(station: Station) -> Iterator[list[float]]:
     finally:
         over.set()
         looking.join()
-
-
-def _cpu_s(pid: int) -> float:
-    return sum(sum(one.cpu_times()[:2]) for one in _family(pid))
-
-
-def _family(pid: int) -> list[psutil.Process]:
-    parent = psutil.Process(pid)
-    return [parent, *parent.children(recursive=True)]
 
 
 def _same_picture(two: TwoStations) -> bool:

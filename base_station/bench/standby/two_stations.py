@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 import subprocess
 import sys
 from collections.abc import Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 from pathlib import Path
 
-from base_station.bench.rig.station import free_port
+from base_station.bench.rig.journal import said_by
+from base_station.bench.rig.station import first_login, free_port
 from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.one_of_two import MessageId, Place, Station
 from base_station.pki.folder import PkiFolder
@@ -79,15 +79,12 @@ class TwoStations:
 
     def said(self) -> set[MessageId]:
         """What the units have ever said, by their journals."""
-        said = set()
-        for unit_id in self.units:
-            journal = self._folder / "units" / unit_id / "journal.sqlite"
-            with closing(sqlite3.connect(f"file:{journal}?mode=ro", uri=True)) as database:
-                rows = database.execute(
-                    "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
-                ).fetchall()
-            said |= {(unit_id, int(boot) % 2**64, int(seq)) for boot, seq in rows}
-        return said
+        units = self._folder / "units"
+        return {
+            (unit_id, boot_id, seq)
+            for unit_id in self.units
+            for boot_id, seq in said_by(units / unit_id / "journal.sqlite")
+        }
 
     def _both_ready(self) -> bool:
         return (self.first.data / "first-login.txt").exists() and (
@@ -99,9 +96,7 @@ class TwoStations:
         for station in (self.first, self.second):
             note = station.data / "first-login.txt"
             if note.exists():
-                text = note.read_text(encoding="utf-8")
-                fields = dict(line.split(": ", 1) for line in text.splitlines())
-                return fields["username"], fields["password"]
+                return first_login(note)
         raise StoreError("no station has made a first login yet")
 
 
