@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
 from edge.tracker.kernel_cache import SOURCES
+from edge.tracker.plateaus import seek_plateau
 from edge.tracker.port import Reason
 from edge.tracker.state import Ring
 from shared.errors import ConfigError
@@ -26,9 +27,7 @@ SAMPLE_GAP = int(Reason.SAMPLE_GAP)
 
 NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock was set back
 STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
-PLATEAU_S = 0.008  # a high rate that stays the same to the last bit for so long has clipped
-PLATEAU_RADPS = 2.0  # the lowest full scale that is looked for
-PLATEAU_PASSED = 1.02  # times a full scale: then it was none
+MARK_BACK_S = 0.4  # less than the filter's look-ahead
 PERIOD_WEIGHT = 0.005  # of one interval in the mean period
 
 _NO_VALUES: Floats = np.zeros(0)
@@ -43,8 +42,14 @@ GATE = np.dtype(
         ("gyro_radps", np.float64, 3),
         ("backward", np.int64),  # stamps before the last one, in a row
         ("repeats", np.int64),  # equal samples in a row
-        ("plateau", np.int64, 3),  # equal rates in a row, by axis
-        ("gyro_clip_radps", np.float64),  # that plateaus have shown
+        # By axis; see plateaus.
+        ("clip_radps", np.float64, 3),  # from which a rate has clipped, as plateaus show
+        ("highest_radps", np.float64, 3),  # rate so far
+        ("flat_radps", np.float64, 3),  # first of the last rates that hardly differ
+        ("flat_samples", np.int64, 3),  # how many
+        ("plateau_samples", np.int64, 3),  # the same of a plateau that is yet to be judged
+        ("plateau_stop", np.int64, 3),  # one past its last sample
+        ("plateau_radps", np.float64, 3),  # top of the last one that was right
         ("started", np.bool_),
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
@@ -81,7 +86,7 @@ def new_gate(description: SensorDescription) -> NDArray[Any]:
         )
     gate = np.zeros(1, GATE)
     gate["period_s"] = 1.0 / description.rate_hz
-    gate["gyro_clip_radps"] = np.inf
+    gate["clip_radps"] = np.inf
     return gate
 
 
@@ -138,17 +143,19 @@ def admit(
     for i in range(len(t_ns)):
         slot = (received + i) & mask
         ring[slot].t_ns = t_ns[i]
-        for j in range(3):
-            ring[slot].clipped[j] = 0
         flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
         if flags & BAD_SAMPLES == 0:
             flags |= _time_flags(gate, t_ns[i], gap_s)
         if flags & BAD_SAMPLES == 0:
-            flags |= _clipped_axes(ring, received + i, gate, limits, gyro_radps[i])
+            _heed_plateaus(ring, received + i, gate, limits, gyro_radps[i])
             for j in range(3):
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
         for j in range(3):
+            clipped = abs(gate[0].gyro_radps[j]) >= _rate_limit(gate, limits, j)
+            ring[slot].clipped[j] = clipped
+            if clipped and flags & BAD_SAMPLES == 0:
+                flags |= GYRO_SATURATED
             ring[slot].force_clipped[j] = abs(gate[0].accel_mps2[j]) >= limits.accel_clip_mps2
             ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
             ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
@@ -185,29 +192,32 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
 
 
 @njit()
-def _clipped_axes(ring: Ring, k: int, gate: NDArray[Any], limits: Limits, gyro: Floats) -> int:
-    """Mark the axes on which sample ``k`` has clipped, as told or as a plateau shows.
+def _heed_plateaus(
+    ring: Ring, k: int, gate: NDArray[Any], limits: Limits, gyro_radps: Floats
+) -> None:
+    """Look for a full scale that nobody told.
 
-    A plateau is known by its length, so its first samples are marked afterwards; the filter
-    is far behind.
+    It shows when a plateau is over, so what has clipped is marked afterwards, as far back as no
+    filter has come yet however the samples are batched.
     """
     mask = len(ring) - 1
-    flags = 0
     for j in range(3):
-        rate = abs(gyro[j])
-        if rate > PLATEAU_PASSED * gate[0].gyro_clip_radps:
-            gate[0].gyro_clip_radps = np.inf
-        stays = gyro[j] == gate[0].gyro_radps[j] and gate[0].repeats == 0
-        gate[0].plateau[j] = gate[0].plateau[j] + 1 if stays and rate > PLATEAU_RADPS else 0
-        if gate[0].plateau[j] * gate[0].period_s >= PLATEAU_S:
-            gate[0].gyro_clip_radps = min(gate[0].gyro_clip_radps, 0.999 * rate)
-            for back in range(1, min(gate[0].plateau[j], mask // 8) + 1):
-                ring[(k - back) & mask].clipped[j] = 1
-                ring[(k - back) & mask].flags |= GYRO_SATURATED
-        if rate >= min(limits.gyro_clip_radps, gate[0].gyro_clip_radps):
-            ring[k & mask].clipped[j] = 1
-            flags |= GYRO_SATURATED
-    return flags
+        before_radps = _rate_limit(gate, limits, j)
+        seek_plateau(ring, k, gate, j, abs(gyro_radps[j]))
+        limit_radps = _rate_limit(gate, limits, j)
+        if limit_radps < before_radps:
+            for i in range(k - 1, max(-1, k - mask // 8), -1):
+                if gate[0].arrival_s - ring[i & mask].arrival_s > MARK_BACK_S:
+                    break
+                if abs(ring[i & mask].gyro_radps[j]) >= limit_radps:
+                    ring[i & mask].clipped[j] = 1
+                    ring[i & mask].flags |= GYRO_SATURATED
+
+
+@njit()
+def _rate_limit(gate: NDArray[Any], limits: Limits, axis: int) -> float:
+    """Return the rate from which an axis has clipped, as told or as plateaus show."""
+    return float(min(limits.gyro_clip_radps, gate[0].clip_radps[axis]))
 
 
 @njit()

@@ -11,6 +11,8 @@ has done to heading and position meanwhile is put right, as far as that is linea
 
 from __future__ import annotations
 
+import math
+
 from numba import njit
 
 from edge.samples import Floats
@@ -65,8 +67,10 @@ def believe_rest(state: FilterState, config: EskfConfig) -> None:
     if variance >= square:
         return
     stated = max(state.unshown_bias_std_radps, config.start_gyro_bias_std_radps)
-    for i in range(2):  # what is not linear was stated for one deviation
-        state.bent_n_m[i] *= min(max(square / stated**2, 1.0), BENT_MOST)
+    if square > stated**2:
+        for i in range(2):  # what is not linear was stated for one deviation
+            state.bent_n_m[i] *= min(square / stated**2, BENT_MOST)
+        state.unshown_bias_std_radps = math.sqrt(square)
     for i in range(SIZE):
         state.column[i] = _with_bias(state, i, off) / variance
     for i in range(SIZE):

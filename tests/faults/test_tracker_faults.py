@@ -237,8 +237,39 @@ def test_clipping_that_nobody_told_shows_by_its_plateaus(rate_hz):
 
 def test_a_full_scale_that_is_passed_was_none():
     t_ns, accel, gyro = copy()
-    k = index(IN_SWING)
-    gyro[k : k + 4, 1] = 4.0  # for once the same to the last bit
+    full_scale = 0.85 * np.abs(gyro).max()
+    early = slice(0, index(IN_STANCE))
+    gyro[early] = np.clip(gyro[early], -full_scale, full_scale)
     rows = run(t_ns, accel, gyro)
-    assert flagged(rows, Reason.GYRO_SATURATED)[k]
+    assert flagged(rows, Reason.GYRO_SATURATED)[early].any()
     assert not flagged(rows, Reason.GYRO_SATURATED)[-300:].any()
+
+
+def test_a_gyroscope_that_hides_most_of_a_swing_is_not_stated_endlessly():
+    """What a rest shows of its bias then differs from sample to sample."""
+    t_ns, accel, gyro = copy()
+    rows = run(t_ns, accel, np.clip(gyro, -1.5, 1.5))  # too slow to be taken for a full scale
+    assert np.sqrt(rows.position_cov_m2[-1, 0, 0]) < 100.0
+
+
+def test_a_lull_in_a_rise_is_no_full_scale():
+    t_ns, accel, gyro = copy()
+    k = int(np.argmax(np.abs(gyro[:, 1]) > 0.85 * np.abs(gyro).max()))
+    gyro[k : k + 4, 1] = gyro[k, 1]  # for once the same to the last bit
+    assert not flagged(run(t_ns, accel, gyro), Reason.GYRO_SATURATED).any()
+
+
+@pytest.mark.parametrize("full_scale", [0.8, 0.85])
+def test_plateaus_that_were_smoothed_show_a_full_scale(full_scale):
+    """Real sensors filter and rotate what has clipped."""
+    t_ns, accel, gyro = copy()
+    full_scale *= np.abs(gyro).max()
+    clipped = np.clip(gyro, -full_scale, full_scale)
+    weights = (0.2, 0.6, 0.2)
+    smooth = np.column_stack([np.convolve(clipped[:, j], weights, "same") for j in range(3)])
+    ripple = 1.0 + 0.003 * np.sin(0.7 * np.arange(len(smooth)))
+    rows = run(t_ns, accel, ripple[:, np.newaxis] * smooth)
+    late = slice(index(IN_SWING), None)
+    assert flagged(rows, Reason.GYRO_SATURATED)[late][np.abs(gyro[late, 1]) >= full_scale].all()
+    flat_n_m = run(t_ns, accel, gyro).position_n_m
+    assert np.abs(rows.position_n_m[-1] - flat_n_m[-1]).max() < 0.3
