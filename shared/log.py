@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import time
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import Literal
 
 LogLevel = Literal["DEBUG", "INFO", "WARNING", "ERROR"]
 
+# What ends a line, or does more to a terminal than be shown: what others say gets into messages.
+_UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 _FILE_BYTES = 5_000_000
 _FILES_KEPT = 3
 
@@ -25,7 +28,7 @@ class OneLineFormatter(logging.Formatter):
         )
 
     def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802  # logging's name
-        return super().formatMessage(record).replace("\r", "\\r").replace("\n", "\\n")
+        return _UNPRINTABLE.sub(_escaped, super().formatMessage(record))
 
 
 def set_up_logging(level: LogLevel = "INFO", file: Path | None = None) -> None:
@@ -41,3 +44,7 @@ def set_up_logging(level: LogLevel = "INFO", file: Path | None = None) -> None:
     for handler in handlers:
         handler.setFormatter(OneLineFormatter())
     logging.basicConfig(level=level, handlers=handlers, force=True)
+
+
+def _escaped(found: re.Match[str]) -> str:
+    return found[0].encode("unicode_escape").decode("ascii")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from shared.log import set_up_logging
+from shared.log import OneLineFormatter, set_up_logging
 
 
 @pytest.fixture(autouse=True)
@@ -47,3 +47,16 @@ def test_a_traceback_follows_its_line(tmp_path: Path) -> None:
     assert re.search(
         r"ERROR {3}edge {2}step failed\nTraceback .*\nValueError: a bug", file.read_text(), re.S
     )
+
+
+@pytest.mark.parametrize("character", "\x00\b\x1b\r\x7f\x85\x9b\u2028\u202e")
+def test_what_others_say_forges_no_line_and_moves_no_terminal(character: str) -> None:
+    record = logging.LogRecord("bus", logging.INFO, "", 0, "from %s", (f"an{character}na",), None)
+    said = OneLineFormatter().format(record)
+    assert character not in said
+    assert len(said.splitlines()) == 1
+
+
+def test_other_writing_stays_as_it_is() -> None:
+    record = logging.LogRecord("bus", logging.INFO, "", 0, "Zoë 李 👩🏽\u200d🚒 C:\\new", (), None)
+    assert OneLineFormatter().format(record).endswith("Zoë 李 👩🏽\u200d🚒 C:\\new")
