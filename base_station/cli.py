@@ -67,7 +67,7 @@ def replay(
     config: ConfigOption = None,
     data: DataOption = None,
     http: HttpOption = None,
-    speed: Annotated[float, typer.Option(help="Times real time.")] = 1.0,
+    speed: Annotated[float, typer.Option(min=0.25, max=1000.0, help="Times real time.")] = 1.0,
     insecure: InsecureOption = None,
 ) -> None:
     """Show a past incident in a console of its own; the folder is only read."""

@@ -11,6 +11,7 @@ import msgspec
 
 from base_station.assessment.tally import LONGEST_S
 from base_station.live_state import StationState, UnitState
+from base_station.site.roaming import RADII_95
 from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
 from shared.quality import Quality
@@ -21,8 +22,7 @@ AMBER_M = 5.0  # radius that holds the wearer with 95 % probability
 RED_M = 20.0
 AMBER_DOWN_M = 1.5  # half a storey
 AMBER_FLOOR = 0.7  # probability of the floor shown
-_RADII_95 = math.sqrt(-2.0 * math.log(0.05))
-_AMBER_M2 = (AMBER_M / _RADII_95) ** 2  # variance
+_AMBER_M2 = (AMBER_M / RADII_95) ** 2  # variance
 
 
 class Trust(msgspec.Struct, frozen=True):
@@ -83,7 +83,7 @@ def _doubts(unit: UnitState, conflicts: int) -> Iterator[Trust]:
     if fused.quality is Quality.LOST:
         yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
     if fused.std_north_m**2 + fused.std_east_m**2 > _AMBER_M2:  # else no axis is longer
-        within_m = _RADII_95 * math.sqrt(_largest_var_m2(fused))
+        within_m = RADII_95 * math.sqrt(_largest_var_m2(fused))
         if within_m > AMBER_M:
             level = "red" if within_m > RED_M else "amber"
             yield Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")

@@ -28,23 +28,15 @@ from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDesc
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
-    CheckIn,
     CloseIncident,
-    ConfirmCommand,
-    DoneApart,
     ForgetWearers,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
-    SendCommand,
-    SetAccountability,
     SetAnchor,
     SetPlan,
-    SetReference,
-    SetRest,
     SetStart,
-    TakeOver,
     Unassign,
 )
 
@@ -118,12 +110,9 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             _add(session, UnitStart, **key, **columns)
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
             pass  # what it changed of the alarms comes with the same step
-        case SendCommand() | ConfirmCommand() | CheckIn() | SetAccountability() | SetRest():
-            pass  # the audit and the log have it
         case ForgetWearers():
             pass  # what is stored was rewritten before
-
-        case TakeOver() | DoneApart() | SetReference():
+        case _:
             pass  # the audit and the log have it
 
 

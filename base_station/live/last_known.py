@@ -29,6 +29,7 @@ from base_station.db import models
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.live.sinks import ActionDone, LiveSink
+from base_station.site.roaming import RADII_95
 from base_station.views import alarm_view, anchor_view
 from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
@@ -36,7 +37,6 @@ from shared.messages.station import Action
 
 _RECENT_NS = 3600 * NS_PER_S  # of trails, and of alarms where no incident is open
 _TRAIL_EVERY_S = 5
-_RADIUS_95 = math.sqrt(-2.0 * math.log(0.05))  # of a plane's standard deviation
 _SAID_AGAIN_NS = 2 * NS_PER_S
 _OLD = TrustView("red", "as it was last stored; the station is reading its log")
 
@@ -162,7 +162,7 @@ class LastKnown:
 
 def _position(sample: TrackSample) -> PositionView:
     """The larger error on both axes: the tables have no more of the region."""
-    radius_m = _RADIUS_95 * max(sample.std_north_m, sample.std_east_m)
+    radius_m = RADII_95 * max(sample.std_north_m, sample.std_east_m)
     return PositionView(
         t_ms=to_ms(sample.t_ns),
         north_m=sample.north_m,

@@ -16,11 +16,12 @@ from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import ReplayView
+from base_station.past.replay import FASTEST, SLOWEST
 from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["replays"])
 
-Speed = Annotated[float, Field(gt=0.0, le=1000.0)]
+Speed = Annotated[float, Field(ge=SLOWEST, le=FASTEST)]
 
 
 class NewReplay(Form):
