@@ -55,7 +55,9 @@ class Sender(msgspec.Struct):
                 if silent_ns >= STALE_AFTER_S * NS_PER_S:
                     self._let_run(boot)
         latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
-        if boot is not self.boots[-1] or header.t_mono_ns < latest_mono_ns:
+        if boot is not self.boots[-1] or (
+            header.t_mono_ns < latest_mono_ns and header.seq < boot.seen.lasts[-1]
+        ):  # one that is said last of all is new: the clock was wrong before
             self.out_of_order += 1
             return "old"
         self.latest_mono_ns[channel.name] = header.t_mono_ns

@@ -111,11 +111,14 @@ class GpsInertialFuser:
         if last is not None:
             duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
             if duration_s < 0.0:
-                return "older than the last position"
+                self._go_back_to(t_ns)
             north_m, east_m = position.north_m - last.north_m, position.east_m - last.east_m
-            if math.hypot(north_m, east_m) > self._kind.fastest_mps * max(duration_s, 0.2) + 1.0:
-                self._horizontal.spread((self._kind.unguided_mps * duration_s) ** 2)
+            jumped_m = math.hypot(north_m, east_m)
+            if jumped_m > self._kind.fastest_mps * max(duration_s, 0.2) + 1.0:
+                strayed_m = max(self._kind.unguided_mps * duration_s, self._kind.restart_m)
+                self._horizontal.spread(min(strayed_m, jumped_m) ** 2)
                 memory.last, memory.path = position, PathMemory()
+                memory.path.note(position)
                 return "the unit's own path jumped"
         self._walk(memory.own.stretch(self._kind, last, position), position.std_down_m)
         self._horizontal.expect_drift(memory.own.drift_radps(self._kind, position))
@@ -228,6 +231,14 @@ class GpsInertialFuser:
         self._horizontal.stand_at(down_m)
         self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
         self._memory.recognition.follow(stretch, down_m)
+
+    def _go_back_to(self, t_mono_ns: int) -> None:
+        """The unit's clock was ahead when it was last heard, and is right again."""
+        memory = self._memory
+        memory.path = PathMemory()
+        memory.wander_t_mono_ns = t_mono_ns
+        if memory.fix_t_mono_ns is not None:
+            memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
     def _restart(self) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown."""

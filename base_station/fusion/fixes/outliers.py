@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 BELIEVED = 20  # so many fixes that draw the shape of the walk are right after all
+KEPT = 60  # fixes: who walks slowly comes far enough in a minute, and not in twenty seconds
 SPREAD_M = 7.0  # root mean square of that stretch of path
 UNLIKE = 0.25  # part of the fixes' variance that is not the shape of the walk
 SCALES = (0.75, 1.33)
@@ -42,12 +43,12 @@ class Outliers(msgspec.Struct):
         wanders or hangs has no walk in it.
         """
         self.kept.append(_Outlier(*place_m, *own_m))
-        del self.kept[:-BELIEVED]
+        del self.kept[:-KEPT]
         own = np.array([complex(o.own_north_m, o.own_east_m) for o in self.kept])
         seen = np.array([complex(o.north_m, o.east_m) for o in self.kept])
         own, seen = own - own.mean(), seen - seen.mean()
         walked_m2, seen_m2 = np.vdot(own, own).real, np.vdot(seen, seen).real
-        if len(own) < BELIEVED or walked_m2 < BELIEVED * SPREAD_M**2:
+        if len(own) < BELIEVED or walked_m2 < len(own) * SPREAD_M**2:
             return None
         turn = complex(np.vdot(own, seen) / walked_m2)
         unlike = 1.0 - abs(turn) ** 2 * walked_m2 / seen_m2

@@ -51,11 +51,12 @@ class OwnPath(msgspec.Struct):
                 east_m - last.east_m,
                 down_m - last.down_m,
             )
-            duration_s = (position.header.t_mono_ns - last.header.t_mono_ns) / NS_PER_S
+            duration_s = max(0.0, (position.header.t_mono_ns - last.header.t_mono_ns) / NS_PER_S)
             if position.heading_std_rad > last.heading_std_rad:
                 sudden_var = self._sudden_var(kind, last, position, duration_s)
             if position.quality is not Quality.GOOD:
-                doubt_m2 = _added_m2(last, position)
+                furthest_m = kind.fastest_mps * duration_s
+                doubt_m2 = min(_added_m2(last, position), furthest_m**2)
         length_m = math.hypot(north_m, east_m)
         moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
         self.moving_s += moving_s
