@@ -1,20 +1,26 @@
 """What the log holds beside its own records so that Foxglove and Lichtblick show it as it is: a
-place on the map for each unit, and the alarms as log lines.  Our own readers skip these topics.
+place on the map for each unit, the building below them, and the alarms as log lines.  Our own
+readers skip these topics.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import msgspec
+from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from google.protobuf.timestamp_pb2 import Timestamp
 
+from base_station.site.plan import Plan
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
-from shared.mcap_log import location_topic, log_topic
+from shared.mcap_log import PLAN_TOPIC, location_topic, log_topic
 from shared.messages import STATION_ID, AlarmChange, AlarmState, FusedPosition
 
+_PLAN_EVERY_NS = 900 * NS_PER_S  # as a segment of the log is long: each is opened by itself
 _LEVEL_BY_PRIORITY = {1: Log.FATAL, 2: Log.ERROR, 3: Log.WARNING}
 
 
@@ -23,6 +29,9 @@ class FoxgloveTopics:
 
     def __init__(self) -> None:
         self._last_second: dict[str, int] = {}
+        self._building: tuple[Plan, Anchor] | None = None  # that was told of last
+        self._plan = b""
+        self._plan_told_ns = 0
 
     def of(
         self, decision: FusedPosition | AlarmChange, anchor: Anchor | None
@@ -39,6 +48,39 @@ class FoxgloveTopics:
             return None
         self._last_second[decision.unit_id] = second
         return location_topic(decision.unit_id), _location(decision, anchor).SerializeToString()
+
+    def plan(self, plan: Plan | None, anchor: Anchor | None, t_ns: int) -> tuple[str, bytes] | None:
+        """The building on the Earth, where it is known: when it changes, and again now and then."""
+        if plan is None or anchor is None:
+            return None
+        told = self._building
+        if told is None or told[0] is not plan or told[1] is not anchor:
+            self._building = plan, anchor
+            self._plan = _on_earth(plan, anchor).SerializeToString()
+        elif t_ns - self._plan_told_ns < _PLAN_EVERY_NS:
+            return None
+        self._plan_told_ns = t_ns
+        return PLAN_TOPIC, self._plan
+
+
+def _on_earth(plan: Plan, anchor: Anchor) -> GeoJSON:
+    """The plan's features in WGS-84; heights are left out, as a map shows none."""
+
+    def placed(coordinates: Any) -> Any:
+        """One ``[east_m, north_m, ...]``, or lists of such to any depth."""
+        if isinstance(coordinates[0], int | float):
+            lat_deg, lon_deg, _ = anchor.to_geodetic(coordinates[1], coordinates[0], 0.0)
+            return [round(lon_deg, 8), round(lat_deg, 8)]
+        return [placed(part) for part in coordinates]
+
+    features = []
+    for feature in msgspec.json.decode(plan.geojson)["features"]:
+        geometry = feature.get("geometry") or {}
+        if geometry.get("coordinates"):
+            geometry = {**geometry, "coordinates": placed(geometry["coordinates"])}
+            features.append({**feature, "geometry": geometry})
+    collection = {"type": "FeatureCollection", "features": features}
+    return GeoJSON(geojson=msgspec.json.encode(collection).decode())
 
 
 def _log_line(change: AlarmChange) -> Log:

@@ -98,6 +98,7 @@ class Keeping:
         for output in outputs:
             if isinstance(output, _DECISIONS):
                 self._keep_output(output)
+        self._show_building(event.t_ns)
         return outputs
 
     def settle(self) -> None:
@@ -123,5 +124,11 @@ class Keeping:
         t_ns = output.header.t_utc_ns
         self._log.write(t_ns, _KEYS[type(output)], encode(output))
         shown = self._foxglove.of(output, self._pipeline.state.anchor)
+        if shown is not None:
+            self._log.write(t_ns, *shown)
+
+    def _show_building(self, t_ns: int) -> None:
+        state = self._pipeline.state
+        shown = self._foxglove.plan(state.plan, state.anchor, t_ns)
         if shown is not None:
             self._log.write(t_ns, *shown)

@@ -8,7 +8,13 @@ from shared.mcap_log.folder import segment_began_ns, segment_paths, segments_wit
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment
-from shared.mcap_log.schemas import is_derived, location_topic, log_topic, wire_type_of
+from shared.mcap_log.schemas import (
+    PLAN_TOPIC,
+    is_derived,
+    location_topic,
+    log_topic,
+    wire_type_of,
+)
 from shared.mcap_log.writing import (
     SegmentInfo,
     SegmentPolicy,
@@ -17,6 +23,7 @@ from shared.mcap_log.writing import (
 )
 
 __all__ = [
+    "PLAN_TOPIC",
     "LogRecord",
     "Recovery",
     "SegmentInfo",

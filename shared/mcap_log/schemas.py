@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from google.protobuf.descriptor import FileDescriptor
@@ -16,7 +17,8 @@ from shared.errors import UnknownChannelError
 from shared.messages.muster.v1.header_pb2 import Header
 
 DERIVED = "foxglove/"  # topics made from others for Foxglove; our own readers skip them
-_DERIVED_TYPES: dict[str, Any] = {"location": LocationFix, "log": Log}
+_DERIVED_TYPES: dict[str, Any] = {"location": LocationFix, "log": Log, "plan": GeoJSON}
+PLAN_TOPIC = f"{DERIVED}station/plan"
 
 
 def location_topic(unit_id: str) -> str:

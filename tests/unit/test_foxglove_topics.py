@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import msgspec
 import pytest
+from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
 from base_station.bench.rig import said
 from base_station.live.foxglove_topics import FoxgloveTopics
+from base_station.site.plan import read_plan
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, AlarmState, FusedPosition, Header
@@ -101,3 +104,40 @@ def test_who_acknowledged_the_stations_own_alarm_is_said() -> None:
     assert shown[0] == "foxglove/station/log"
     assert Log.FromString(shown[1]).message == "station: too hot (acknowledged by chief)"
     assert Log.FromString(shown[1]).level == Log.INFO
+
+
+def wall(*line: tuple[float, float]) -> bytes:
+    properties = {"kind": "wall", "floor": 0}
+    nowhere: dict[str, object] = {"type": "Feature", "properties": {}, "geometry": None}
+    geometry = {"type": "LineString", "coordinates": line}
+    feature = {"type": "Feature", "properties": properties, "geometry": geometry}
+    floors = [{"floor": 0, "down_m": 0.0}]
+    muster = {"frame": "site-m", "floors": floors}
+    plan = {"type": "FeatureCollection", "muster": muster, "features": [feature, nowhere]}
+    return msgspec.json.encode(plan)
+
+
+def test_the_building_lies_on_the_map_below_its_people() -> None:
+    plan = read_plan(wall((0.0, 0.0), (0.0, 100.0)))
+    shown = FoxgloveTopics().plan(plan, ANCHOR, T0_NS)
+    assert shown is not None
+    topic, payload = shown
+    assert topic == "foxglove/station/plan"
+    drawn = msgspec.json.decode(GeoJSON.FromString(payload).geojson)
+    (feature,) = drawn["features"]
+    assert feature["properties"]["kind"] == "wall"
+    (lon_deg, lat_deg), far = feature["geometry"]["coordinates"]
+    assert (lat_deg, lon_deg) == pytest.approx((60.0, 10.0))
+    fix = location_of(FUSED)  # 100 m along the same line
+    assert far == pytest.approx([fix.longitude, fix.latitude], abs=1e-6)
+
+
+def test_the_building_is_told_when_it_changes_and_now_and_then() -> None:
+    topics, plan = FoxgloveTopics(), read_plan(wall((0.0, 0.0), (0.0, 1.0)))
+    moved = replace(ANCHOR, lat_deg=61.0)
+    assert topics.plan(None, ANCHOR, T0_NS) is None
+    assert topics.plan(plan, None, T0_NS) is None
+    assert topics.plan(plan, ANCHOR, T0_NS)
+    assert topics.plan(plan, ANCHOR, T0_NS + 800 * NS_PER_S) is None
+    assert topics.plan(plan, moved, T0_NS + 801 * NS_PER_S)
+    assert topics.plan(plan, moved, T0_NS + 1701 * NS_PER_S)
