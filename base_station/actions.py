@@ -18,7 +18,8 @@ from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
 from base_station.pins import book as pin_book
-from base_station.pins.book import PinAction, change_pins
+from base_station.pins.book import PinAction, change_pins, units_of
+from base_station.pins.late import note_late
 from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
 from shared.errors import UserError
@@ -101,6 +102,8 @@ class Actions:
         else:
             state.plan = read_plan(action.geojson)
             self._positioning.consider(state.plan)
+            for unit_id in sorted(set().union(*map(units_of, state.pins.values()))):
+                note_late(state.late, unit_id, state.t_ns)  # one by one: live goes first
 
     def _alarm(
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm

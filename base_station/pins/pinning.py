@@ -45,14 +45,25 @@ class Past:
     grid: FloorGrid | None  # the plan's walls
     _alone: dict[str, SmoothedPath] = field(default_factory=dict)
 
-    def solve(self, unit_id: str, history: PathHistory, places: Sequence[PlaceSeen]) -> Solution:
-        return self.smoother.solve({unit_id: _evidence(history, places, self.grid)})
+    def solve(
+        self,
+        state: StationState,
+        unit_id: str,
+        history: PathHistory,
+        places: Sequence[PlaceSeen],
+    ) -> Solution:
+        """One unit's past; the station's receiver tells what all receivers err by."""
+        evidence = _receiver_of_station(state)
+        evidence[unit_id] = _evidence(history, places, self.grid)
+        solution = self.smoother.solve(evidence)
+        verdicts = {place.name: solution.verdicts[place.name] for place in places}
+        return Solution({unit_id: solution.paths[unit_id]}, verdicts)
 
     def alone(self, state: StationState, unit_id: str, history: PathHistory) -> SmoothedPath:
         """A unit's path by all that is known of it but its meetings; the same at each of them."""
         if unit_id not in self._alone:
             places = _own_places(state, unit_id, history)
-            self._alone[unit_id] = self.solve(unit_id, history, places).paths[unit_id]
+            self._alone[unit_id] = self.solve(state, unit_id, history, places).paths[unit_id]
         return self._alone[unit_id]
 
 
@@ -86,7 +97,7 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
             places, waiting = _places(state, past, unit_id, history, pins)
             _await(history, pins, waiting)
             if places:
-                solution = past.solve(unit_id, history, places)
+                solution = past.solve(state, unit_id, history, places)
         else:
             waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
         for pin_id, why in waiting.items():
@@ -199,6 +210,15 @@ def _places(
         else:
             places.append(place)
     return places, waiting
+
+
+def _receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
+    """Of the unit that stays there, where somebody has said that it stands."""
+    unit_id = state.barometers.reference_id or ""
+    history = state.paths.get(unit_id)
+    if history is None or history.begin_ns is None or history.start is None:
+        return {}
+    return {unit_id: _evidence(history, _own_places(state, unit_id, history), None)}
 
 
 def _own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:

@@ -39,8 +39,7 @@ def place_fix(
         _anchor_by(state, fix, estimate())
     if state.anchor is None:
         return FixVerdict(False, "the site has no anchor")
-    place = in_incident_frame(in_clock_of_path(unit, fix), state.anchor)
-    return place if isinstance(place, FixVerdict) else _without_sky(state, unit, place)
+    return in_incident_frame(in_clock_of_path(unit, fix), state.anchor)
 
 
 def _anchor_by(state: StationState, fix: GpsFix, here: Estimate | None) -> None:
@@ -49,7 +48,7 @@ def _anchor_by(state: StationState, fix: GpsFix, here: Estimate | None) -> None:
     state.anchor_by_gps = True
 
 
-def _without_sky(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFix:
+def without_sky(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFix:
     """The fix without what all receivers err by, as the unit tells that stays at the station and
     whose place somebody has said.
     """

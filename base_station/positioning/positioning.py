@@ -20,7 +20,7 @@ from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
 from base_station.pins.pinning import floors_said
 from base_station.positioning.clocks import station_ns
-from base_station.positioning.fixes import place_fix
+from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.said import said
@@ -232,7 +232,9 @@ class Positioning:
                 fuser.rest_on(storeys)
 
     def _correct(self, state: StationState, unit: UnitState, place: PlaceFix) -> FixVerdict:
-        verdict, *_ = [fuser.correct(place) for fuser in self._told(unit)]
+        """The past is solved again with the fix as it came, and with the station's receiver."""
+        own = without_sky(state, unit, place)
+        verdict, *_ = [fuser.correct(own) for fuser in self._told(unit)]
         if verdict.accepted:
             t_ns = station_ns(state, unit, place.t_mono_ns)
             _history(state, unit).fix(place, t_ns)

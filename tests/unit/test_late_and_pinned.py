@@ -16,11 +16,17 @@ from shared.codec import encode
 from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, GpsFix, Header, Position
 from shared.messages.pins import SetPin
-from shared.messages.station import OpenIncident, SetAnchor, SetStart
+from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
 from tests.live_station import make_pipeline
 from tests.station_script import Script
 
 ANCHOR = Anchor(52.0, 4.0, 0.0, 0.0)
+PLAN = b"""{"type":"FeatureCollection",
+"muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0}]},
+"features":[{"type":"Feature","properties":{"kind":"outline","floor":0},"geometry":{"type":"Polygon",
+"coordinates":[[[-9,10],[9,10],[9,150],[-9,150],[-9,10]]]}},
+{"type":"Feature","properties":{"kind":"wall","floor":0},"geometry":{"type":"LineString",
+"coordinates":[[0.5,20],[0.5,150]]}}]}"""
 TURN_RAD_PER_M = 0.004  # by which the unit's own path turns away while nobody hears it
 
 
@@ -53,7 +59,8 @@ class Walker:
                 self.missed.append(self.fix(script.header("FF-01"), float(second)))
             else:
                 script.say(own)
-        script.act(SetPin("p1", "FF-01", script.t_ns, 140.0, 0.0, 0.5, None, None, 0.0, ""))
+        self.pin_ns = script.t_ns
+        script.act(SetPin("p1", "FF-01", self.pin_ns, 140.0, 0.0, 0.5, None, None, 0.0, ""))
 
     def fix(self, header: Header, north_m: float) -> GpsFix:
         lat_deg, lon_deg, _ = ANCHOR.to_geodetic(north_m, 0.0, 0.0)
@@ -113,6 +120,25 @@ def test_a_unit_without_pins_waits_for_nothing() -> None:
     late = said.position(script.header("FF-01", 4.5), north_m=4.5)
     script.record(backfilled_key("FF-01", POSITION.suffix), encode(late))
     assert script.pipeline.state.late == {}
+
+
+def test_a_plan_that_comes_after_pins_is_heeded_in_seconds(walker: Walker) -> None:
+    """As it is at the next change of a pin."""
+
+    def trail() -> list[tuple[float, float]]:
+        trail = walker.script.pipeline.state.units["FF-01"].trail
+        return [(one.north_m, one.east_m) for one in trail]
+
+    before = trail()
+    walker.script.act(SetPlan(PLAN))
+    assert trail() == before
+    walker.script.now_s += 3.0
+    assert walker.solved() == 1
+    assert walker.solved() == 0
+    heeded = trail()
+    assert heeded != before
+    walker.script.act(SetPin("p1", "FF-01", walker.pin_ns, 140.0, 0.0, 0.5, None, None, 0.0, ""))
+    assert trail() == heeded
 
 
 def test_whoever_has_waited_longest_is_solved_first_and_one_at_a_time() -> None:

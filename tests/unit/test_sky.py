@@ -6,15 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from base_station.fusion.fixes.sky import OWN_PART, Sky, common_m2
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
+from shared.messages.pins import SetPin
 from shared.messages.station import SetAnchor, SetReference, SetStart
 from tests.station_script import Script
-
-Floats = NDArray[np.float64]
 
 STD_M = 1.27
 COMMON_M = math.sqrt(common_m2(STD_M))
@@ -83,12 +81,11 @@ def test_a_bad_fix_never_becomes_a_good_one() -> None:
     assert fix.horizontal_std_m > 19.0
 
 
-def fixes_of_a_unit(*, station_has_a_receiver: bool) -> Floats:
-    """North and east of the fixes taken from a unit at the anchor; all receivers err by 3 m."""
+def a_site(*, station_has_a_receiver: bool) -> Script:
+    """FF-01 stands at the anchor; all receivers err by 3 m north."""
     script = Script()
     script.register("FF-01", "FF-09")
     script.act(SetAnchor(53.5, 10.0, 0.0, 0.0))
-    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, math.pi))
     if station_has_a_receiver:
         script.act(SetReference("FF-09", 0.0))
         script.act(SetStart("FF-09", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
@@ -97,11 +94,26 @@ def fixes_of_a_unit(*, station_has_a_receiver: bool) -> Floats:
         for unit_id in ("FF-09", "FF-01"):
             script.position(unit_id, 0.0, 0.0)
             script.gps(unit_id, 53.5 + 3.0 / 111_200.0, 10.0)
-    return script.pipeline.state.paths["FF-01"].arrays().fix_m
+    return script
+
+
+def north_m(script: Script) -> float:
+    fused = script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    return fused.north_m
 
 
 def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -> None:
-    alone = fixes_of_a_unit(station_has_a_receiver=False)
-    helped = fixes_of_a_unit(station_has_a_receiver=True)
-    assert alone[-1, 0] == pytest.approx(3.0, abs=0.1)
-    assert 0.5 < helped[-1, 0] < 2.2
+    alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
+    assert north_m(alone) == pytest.approx(3.0, abs=0.1)
+    assert 0.5 < north_m(helped) < 2.2
+
+
+def test_a_past_that_is_solved_again_hears_the_reference_too_and_each_fix_once() -> None:
+    alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
+    for script in (alone, helped):
+        fixes = script.pipeline.state.paths["FF-01"].arrays().fix_m
+        assert fixes[:, 0] == pytest.approx(3.0, abs=0.1)  # as they came
+        script.act(SetPin("p", "FF-01", 0, 0.0, 0.0, 3.0, None, None, 0.35, ""))
+    assert 0.0 < north_m(helped) < north_m(alone) - 0.2
+    assert set(helped.pipeline.state.pin_verdicts) == {"p"}

@@ -1,8 +1,9 @@
 """One unit's path as a chain of knots, and how it errs.
 
-The unknowns of a knot are ``[north, east, c, s, w]``: with ``c + i s`` the own path is turned and
-scaled onto the plan (linear: see ``base_station.fusion.plane.horizontal``), and ``w`` is the rate
-at which the own heading drifts while the wearer moves.
+The unknowns of a knot are ``[north, east, c, s, w, n, e]``: with ``c + i s`` the own path is turned
+and scaled onto the plan (linear: see ``base_station.fusion.plane.horizontal``), ``w`` is the rate
+at which the own heading drifts while the wearer moves, and ``n, e`` is by how much the receiver
+errs for a while (``receivers``).
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from base_station.fusion.smoother.port import UnitEvidence
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-STATES = 5
+STATES = 7
+WALKED = 5  # of which tell of the own path
+SLOW = 5  # the first of the receiver's
 NS_TO_S = 1e-9
 
 
@@ -26,7 +29,7 @@ NS_TO_S = 1e-9
 class WalkNoise:
     """How own paths err."""
 
-    walk_m_per_sqrt_m: float = 0.04  # each axis
+    walk_m_per_sqrt_m: float = 0.03  # each axis
     turn_rad_per_sqrt_m: float = 0.004
     turn_part: float = 0.004
     scale_std: float = 0.015
@@ -35,10 +38,6 @@ class WalkNoise:
     open_drift_s: float = 600.0  # while turn and drift are not known: the drift goes on so long
     restart_m: float = 5.0
     unguided_mps: float = 1.5
-    wander_part: float = 0.7  # of a fix's variance that wanders slowly
-    wander_s: float = 30.0
-    excess: float = 2.0  # what a receiver admits beyond its best is but half of it
-    fix_tail: float = 2.4  # standard deviations from which a fix counts less (Cauchy)
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ class Chain:
 class Belief:
     """What was last believed: the knots' unknowns, and where the turn is known."""
 
-    x: Floats  # (k, 5)
+    x: Floats  # (k, 7)
     aligned: NDArray[np.bool_]  # (k,)
 
     @staticmethod

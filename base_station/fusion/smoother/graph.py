@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from base_station.fusion.smoother.agreement import Expected
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise, place_of
 from base_station.fusion.smoother.equations import Equations, NormalEquations
+from base_station.fusion.smoother.landmarks import Landmark, Visit, Visited
 from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
-from base_station.fusion.smoother.links import Link, Places, add_link, told_by_links
 from base_station.fusion.smoother.live_estimates import add_shown
 from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
-from base_station.fusion.smoother.path_equations import add_fixes, add_path, add_places, add_seen
+from base_station.fusion.smoother.path_equations import add_path, add_places, add_seen
 from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence
+from base_station.fusion.smoother.receivers import add_receiver
 from base_station.fusion.smoother.shared import Shared
 from base_station.fusion.smoother.walls import Words
 
@@ -41,7 +42,7 @@ class Graph:
         self.places: dict[str, list[PlaceSeen]] = {unit_id: [] for unit_id in units}
         self.shown: dict[str, Ints] = {}  # rows where the live estimate is heeded
         self.words: dict[str, Words] = {}  # of walls
-        self.links: list[Link] = []
+        self.landmarks: list[Landmark] = []
         self.beliefs = {one: Belief.none(len(chain)) for one, chain in chains.items()}
         self._columns: dict[str, slice] = {}
         first = 0
@@ -49,16 +50,34 @@ class Graph:
             self._columns[unit_id] = slice(first, first + STATES * len(chain))
             first = self._columns[unit_id].stop
         self.shared = Shared(first, units)
+        bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
+        self.visited = Visited(bases, self.beliefs)
         self._legs = {unit_id: Legs.of(chain) for unit_id, chain in chains.items()}
         self._axis_rad: float | None = None
         self._normal: NormalEquations
 
+    def visit(self, unit_id: str, t_ns: int) -> Visit:
+        knot, since = self.chains[unit_id].at(np.array([t_ns], dtype=np.int64))
+        return Visit(unit_id, int(knot[0]), since[0])
+
+    def lead_through(self, landmarks: Sequence[Landmark]) -> None:
+        """Paths led through these places too, wherever those are."""
+        self.landmarks += landmarks
+        for one in landmarks:
+            self.shared.add_landmarks(self.visited.places_m(one).mean(axis=0))
+
     def relax(self, noise: WalkNoise) -> None:
-        """Solve from the beginning, again and again about the last, until nothing moves."""
-        self.beliefs = {one: Belief.none(len(chain)) for one, chain in self.chains.items()}
+        """Solve from the beginning, and then about that."""
+        for unit_id, chain in self.chains.items():
+            self.beliefs[unit_id] = Belief.none(len(chain))
+        self.shared.forget()
         self._axis_rad = None
         self.step(noise)
         self._align()
+        self.settle(noise)
+
+    def settle(self, noise: WalkNoise) -> None:
+        """Solve about what is believed, again and again, until nothing moves."""
         for _ in range(TURNS):
             if self._axis_rad is None:
                 self._axis_rad = axis_of(self._legs, self.beliefs)
@@ -78,13 +97,13 @@ class Graph:
             belief.x = now
         return moved_m
 
-    def _equations(self, noise: WalkNoise, *, with_links: bool = True) -> NormalEquations:
+    def _equations(self, noise: WalkNoise) -> NormalEquations:
         equations, shared = Equations(self.shared.end), self.shared
         shared.add_priors(equations)
         for unit_id, chain in self.chains.items():
             base, belief = self._columns[unit_id].start, self.beliefs[unit_id]
             add_path(equations, base, chain, belief, shared, noise)
-            add_fixes(equations, base, chain, belief, shared, noise)
+            add_receiver(equations, base, chain, belief, shared)
             add_seen(equations, base, chain, self.places[unit_id])
             if self._axis_rad is not None:
                 axis = self._axis_rad, shared.axis
@@ -93,8 +112,10 @@ class Graph:
                 add_shown(equations, base, chain, belief, self.shown[unit_id])
             if unit_id in self.words:
                 self.words[unit_id].add(equations, base, shared.plan)
-        for link in self.links if with_links else ():
-            add_link(equations, link, self._linked)
+        column = shared.landmarks
+        for landmark, place_m in zip(self.landmarks, shared.landmarks_m, strict=True):
+            self.visited.add(equations, landmark, column, place_m)
+            column += 2
         return equations.normal()
 
     def _align(self) -> None:
@@ -143,27 +164,18 @@ class Graph:
         distances: Floats = np.hypot(apart[:, 0], apart[:, 1])
         return distances
 
-    def apart_m(self, link: Link) -> float:
-        return self._linked.apart_m(link)
-
-    def spreads(self, noise: WalkNoise, *, on_plan: bool = False) -> dict[str, Floats]:
-        """Covariances of all knots (k, 5, 5) by unit; ``on_plan``: of where they lie on the plan,
+    def spreads(self, *, on_plan: bool = False) -> dict[str, Floats]:
+        """Covariances of all knots (k, 7, 7) by unit; ``on_plan``: of where they lie on the plan,
         which may lie aside itself.
         """
-        solved = self._equations(noise, with_links=False) if self.links else self._normal
-        information = solved.information
-        blocks = {one: information[own, own].tocsc() for one, own in self._columns.items()}
         plus = self.shared.plan if on_plan else None
+        information = self._normal.information
         shared = shared_spreads(information, self._columns, self.shared.axis, STATES, plus)
-        spreads = {one: chain_covariances(block, STATES) for one, block in blocks.items()}
-        if self.links:
-            told = told_by_links(self.links, self._linked, spreads)
-            spreads = {
-                one: chain_covariances(block, STATES, told[one]) for one, block in blocks.items()
-            }
-        return {one: spreads[one] + shared[one] for one in spreads}
+        own = self.own_spreads()
+        return {one: own[one] + shared[one] for one in own}
 
-    @property
-    def _linked(self) -> Places:
-        bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
-        return Places(self.chains, bases, self.beliefs)
+    def own_spreads(self) -> dict[str, Floats]:
+        """The same without what all units err by together."""
+        information = self._normal.information
+        blocks = {one: information[own, own].tocsc() for one, own in self._columns.items()}
+        return {one: chain_covariances(block, STATES) for one, block in blocks.items()}

@@ -33,7 +33,8 @@ Ints = NDArray[np.int64]
 
 OUTSIDE_NS = 10_000_000_000  # so near a fix people are outside, where nothing is at right angles
 UNSURE_RAD = 0.1  # of headings before they have heard of an axis
-ALIKE = 2.0  # legs one after the other err alike, as a variance
+WALLS_STD_RAD = math.radians(1.5)  # walls of one building are not quite parallel
+ASIDE_M = 0.4  # so far from the wall's direction leads one end of a leg from the other
 UNLIKELY = 0.05
 
 
@@ -58,7 +59,8 @@ class Legs:
             leg = watch.follow(north_m, east_m)
             if leg is not None and is_inside[row]:
                 rows.append(row - 1)
-                found.append((leg.direction_rad, leg.length_m, ALIKE * leg.variance))
+                variance = WALLS_STD_RAD**2 + (ASIDE_M / leg.length_m) ** 2
+                found.append((leg.direction_rad, leg.length_m, variance))
         knot = np.searchsorted(chain.knots, np.array(rows, dtype=np.int64), side="right") - 1
         columns = np.array(found).reshape(-1, 3).T
         return Legs(knot, *columns)

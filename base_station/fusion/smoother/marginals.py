@@ -6,7 +6,7 @@ Matrix Computations, section 4.5).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numba import njit
@@ -21,16 +21,10 @@ _BLOCKS = float64[:, :, ::1]
 UNKNOWN_VAR = 1e8  # said of a knot where the numbers are too far apart to tell
 
 
-def chain_covariances(
-    information: csc_matrix, states: int, told: Sequence[tuple[int, Floats]] = ()
-) -> Floats:
-    """(k, states, states), of a chain's part of an information matrix; ``told`` is what else is
-    known of the first unknowns of some knots, as information (2, 2).
-    """
+def chain_covariances(information: csc_matrix, states: int) -> Floats:
+    """(k, states, states), of a chain's part of an information matrix."""
     count = information.shape[0] // states
     diagonal, beside = _blocks(information, count, states)
-    for knot, known in told:
-        diagonal[knot, :2, :2] += known
     covariances = np.empty_like(diagonal)
     _substitute(diagonal, beside, covariances)
     variances = np.diagonal(covariances, axis1=1, axis2=2)

@@ -1,4 +1,4 @@
-"""The linear equations of one unit's chain: its path, its start, its fixes, its pins.
+"""The linear equations of one unit's chain: its path, its start, its pins.
 
 Only the drift of the heading is not linear; the equations are about what was last believed of turn
 and drift.
@@ -11,14 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.smoother.chain import (
-    NS_TO_S,
-    STATES,
-    Belief,
-    Chain,
-    WalkNoise,
-    place_of,
-)
+from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.port import PlaceSeen
 from base_station.fusion.smoother.shared import Shared, Term
@@ -54,30 +47,6 @@ def add_path(
     _add_turning(equations, here, there, chain, belief, n)
     wander = np.sqrt(n.drift_wander_radps**2 * chain.moving_s / 60.0 + LEAST_WANDER_RADPS**2)
     equations.add(wander, 0.0, (there + 4, 1.0), (here + 4, -1.0))
-
-
-def add_fixes(
-    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
-) -> None:
-    """Fixes near each other tell little more than one; what lies far off counts less and less."""
-    path = chain.path
-    inside = path.fix_t_ns <= path.t_ns[-1] + 1_000_000_000
-    t_ns, place = path.fix_t_ns[inside], path.fix_m[inside]
-    if not len(t_ns):
-        return
-    knot, since = chain.at(t_ns)
-    best = path.fix_std_m.min()
-    admitted = n.excess**2 * (path.fix_std_m[inside] ** 2 - best**2)
-    std = np.sqrt(best**2 - shared.sky_std_m**2 + admitted)
-    sky = shared.sky(t_ns)
-    gap_s = np.diff(t_ns, prepend=t_ns[0] - 2 * int(n.wander_s * 1e9)) * NS_TO_S
-    repeats = np.clip(2.0 * n.wander_s / np.maximum(gap_s, 1e-3), 1.0, None)
-    spread = std * np.sqrt(n.wander_part * repeats + 1.0 - n.wander_part)
-    if belief.aligned.any():
-        off = place_of(belief.x[knot], since) + shared.sky_m(t_ns) - place
-        apart = np.linalg.norm(off, axis=1)
-        spread = spread * np.sqrt(1.0 + (apart / (n.fix_tail * std)) ** 2)
-    add_places(equations, base + STATES * knot, since, place, spread, *sky)
 
 
 def add_seen(equations: Equations, base: int, chain: Chain, places: Sequence[PlaceSeen]) -> None:

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.smoother.agreement import GATE2, Expected, agreeing, most_against
-from base_station.fusion.smoother.chain import Chain, WalkNoise
+from base_station.fusion.smoother.chain import WALKED, Chain, WalkNoise
 from base_station.fusion.smoother.graph import Graph
-from base_station.fusion.smoother.links import Link
+from base_station.fusion.smoother.landmarks import Landmark
 from base_station.fusion.smoother.live_estimates import choose_shown, shown_floor_m
 from base_station.fusion.smoother.port import (
     PlaceSeen,
@@ -25,7 +25,7 @@ from base_station.fusion.smoother.port import (
     UnitEvidence,
     Verdict,
 )
-from base_station.fusion.smoother.revisits import find_crossings
+from base_station.fusion.smoother.stairs import find_stairs
 from base_station.fusion.smoother.trail import trail_of
 from base_station.fusion.smoother.walls import Pieces, Words
 
@@ -69,10 +69,7 @@ class _Solving:
             for unit_id, one in units.items()
         }
         self._graph = Graph(units, chains)
-        self._graph.links = [
-            Link((tie.unit_id, tie.t_ns), (tie.other_id, tie.t_ns), tie.std_m, TIE_TAIL)
-            for tie in self._ties
-        ]
+        self._graph.lead_through([self._meeting(tie) for tie in self._ties])
         self._graph.relax(self._noise)
         if any(one.places for one in units.values()):
             self._choose_places()
@@ -80,6 +77,10 @@ class _Solving:
             self._drop_misfits()
         self._heed_live_estimates()
         self._heed_walls()
+
+    def _meeting(self, tie: Tie) -> Landmark:
+        visits = [self._graph.visit(one, tie.t_ns) for one in (tie.unit_id, tie.other_id)]
+        return Landmark(visits, tie.std_m / np.sqrt(2.0), TIE_TAIL)
 
     def _choose_places(self) -> None:
         for unit_id, evidence in self._units.items():
@@ -107,7 +108,7 @@ class _Solving:
 
     def _heed_live_estimates(self) -> None:
         """What they alone knew: the building as it was learnt, and where walls held people."""
-        graph, spreads = self._graph, self._graph.spreads(self._noise)
+        graph, spreads = self._graph, self._graph.spreads()
         for unit_id, chain in graph.chains.items():
             belief, places = graph.beliefs[unit_id], graph.places[unit_id]
             rows = choose_shown(chain, belief, spreads[unit_id], places)
@@ -127,7 +128,7 @@ class _Solving:
                 if len(words.pieces):
                     graph.words[unit_id] = words
         for sweep in range(SWEEPS if graph.words else 0):
-            spreads = graph.spreads(self._noise, on_plan=True)
+            spreads = graph.spreads(on_plan=True)
             for unit_id, words in list(graph.words.items()):
                 words.renew(graph.beliefs[unit_id], graph.shared.plan_m, spreads[unit_id])
                 if sweep > 0 and words.lost > CONTRADICTED:
@@ -136,24 +137,24 @@ class _Solving:
             graph.step(self._noise)
 
     def close_loops(self) -> None:
-        """Where trails lead through the same narrow place again, they are drawn together."""
+        """Where trails lead over the same stairs again, they are drawn together."""
         graph = self._graph
-        crossings = find_crossings(graph.chains, graph.beliefs, graph.spreads(self._noise))
-        if crossings:
-            graph.links += crossings
-            graph.relax(self._noise)
+        stairs = find_stairs(graph.chains, graph.beliefs, graph.own_spreads())
+        if stairs:
+            graph.lead_through(stairs)
+            graph.settle(self._noise)
 
     def solution(self) -> Solution:
         graph = self._graph
         for unit_id, used in graph.places.items():
             if used:
                 self._judge_used(unit_id, used)
-        for tie, link in zip(self._ties, graph.links, strict=False):
-            apart_m = graph.apart_m(link)
+        for tie, meeting in zip(self._ties, graph.landmarks, strict=False):
+            apart_m = graph.visited.apart_m(meeting)
             sigmas = apart_m / tie.std_m
             self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
-        spreads = graph.spreads(self._noise)
-        on_plan = graph.spreads(self._noise, on_plan=True) if graph.words else spreads
+        spreads = graph.spreads()
+        on_plan = graph.spreads(on_plan=True) if graph.words else spreads
         paths = {one: self._trail(one, spreads[one], on_plan[one]) for one in self._units}
         return Solution(paths, self._verdicts)
 
@@ -167,11 +168,11 @@ class _Solving:
         graph = self._graph
         chain, belief = graph.chains[unit_id], graph.beliefs[unit_id]
         least_m = shown_floor_m(chain.path, graph.shown.get(unit_id))
-        now = belief.x[-1].copy(), spreads[-1]
+        now, known = belief.x[-1, :WALKED].copy(), spreads[-1, :WALKED, :WALKED]
         if unit_id in graph.words:
-            now[0][:2] += graph.shared.plan_m
-            now = now[0], on_plan[-1]
-        return trail_of(chain, belief, spreads, least_m, graph.places[unit_id], now)
+            now[:2] += graph.shared.plan_m
+            known = on_plan[-1, :WALKED, :WALKED]
+        return trail_of(chain, belief, spreads, least_m, graph.places[unit_id], (now, known))
 
 
 def _refused(

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.fixes.sky import COMMON_PART, COMMON_S
+from base_station.fusion.fixes.sky import COMMON_S, common_m2
 from base_station.fusion.port import Start
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.port import UnitEvidence
@@ -30,8 +30,8 @@ SKY_S = 600.0  # from one knot of the common error to the next
 
 class Shared:
     """Columns behind those of the chains: what has to be added to the building's axis, and pairs
-    of north and east: how far off each place is where units begin, and the receivers' common error
-    at knots of time.
+    of north and east: how far off each place is where units begin, the receivers' common error at
+    knots of time, how far off the plan lies, and landmarks.
     """
 
     def __init__(self, first: int, units: Mapping[str, UnitEvidence]) -> None:
@@ -48,9 +48,9 @@ class Shared:
             step_ns = int(SKY_S * NS_PER_S)
             self._sky_t_ns = np.arange(begin, end + step_ns, step_ns, dtype=np.int64)
             best_m = min(u.path.fix_std_m.min() for u in units.values() if len(u.path.fix_t_ns))
-            self.sky_std_m = float(np.sqrt(COMMON_PART) * best_m)
+            self.sky_std_m = float(np.sqrt(common_m2(best_m)))
         self.plan = self._sky + 2 * len(self._sky_t_ns)
-        self.end = self.plan + 2
+        self.landmarks = self.end = self.plan + 2
         self._x = np.zeros(self.end - first)  # as last believed
 
     def add_priors(self, equations: Equations) -> None:
@@ -85,6 +85,15 @@ class Shared:
         behind = np.minimum(columns + 2, self.plan - 2)
         return (columns, 1.0 - part), (behind, part)
 
+    def add_landmarks(self, places_m: Floats) -> None:
+        """More of them (n, 2), believed there."""
+        self._x = np.concatenate((self._x, places_m.ravel()))
+        self.end += places_m.size
+
+    def forget(self) -> None:
+        """Believe nothing any more."""
+        self._x = np.zeros(self.end - self.axis)
+
     def take(self, x: Floats) -> None:
         """Believe a solution."""
         self._x = x[self.axis :]
@@ -92,7 +101,12 @@ class Shared:
     @property
     def plan_m(self) -> Floats:
         """How far north and east (2,) of where it should be the plan lies, as it is believed."""
-        return self._x[-2:]
+        return self._x[self.plan - self.axis :][:2]
+
+    @property
+    def landmarks_m(self) -> Floats:
+        """Where landmarks are (n, 2), as it is believed."""
+        return self._x[self.landmarks - self.axis :].reshape(-1, 2)
 
     def sky_m(self, t_ns: Ints) -> Floats:
         """The common error (n, 2), as it is believed."""
