@@ -1,0 +1,203 @@
+"""What receivers say in NMEA 0183, put together into fixes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+import pytest
+
+from edge.receivers.nmea import Nmea
+from edge.receivers.port import Report
+from edge.receivers.sentences import sentence_of
+from edge.samples import GpsSample
+from shared.clock import NS_PER_S
+from shared.errors import WireError
+from tests.gps_receiver import NAN, Told, burst, gga, gsa, gst, rmc, sentence
+
+HERE = Told()
+WITH_GST = replace(HERE, std_m=1.3, vertical_std_m=2.2)
+S = NS_PER_S
+
+
+def heard(said: Iterable[bytes], step_ns: int = S) -> list[Report]:
+    """Of a receiver that says each part ``step_ns`` after the one before."""
+    receiver = Nmea("/dev/ttyUSB0")
+    reports: list[Report] = []
+    for number, part in enumerate(said):
+        for line in part.split(b"\n"):
+            reports += receiver.hear(line, number * step_ns)
+    return [*reports, *receiver.pause()]
+
+
+def fix(*said: bytes) -> GpsSample:
+    (report,) = heard([b"".join(said)])
+    return report.fix
+
+
+def seconds(count: int, told: Told = HERE, step_s: float = 1.0) -> list[Told]:
+    return [replace(told, of_day_s=told.of_day_s + k * step_s) for k in range(count)]
+
+
+def test_every_instant_is_one_fix_that_begins_with_its_first_sentence() -> None:
+    reports = heard(map(burst, seconds(5)))
+    assert [report.fix.t_ns for report in reports] == [k * S for k in range(5)]
+    assert [report.of_day_ns for report in reports] == [(34_045 + k) * S for k in range(5)]
+
+
+@pytest.mark.parametrize(
+    "order",
+    [
+        (rmc, gga, gsa, gst),  # u-blox
+        (gga, gsa, rmc),  # SiRF
+        (gsa, gga, gst, rmc),
+        (gst, rmc, gga),
+        (gga,),
+    ],
+)
+def test_the_order_of_sentences_is_learnt(order) -> None:
+    """From the second one on a fix is whole with its last sentence and waits for nothing."""
+    receiver = Nmea("/dev/ttyUSB0")
+    whole_at: list[int] = []
+    for told in seconds(6, WITH_GST):
+        whole = [len(receiver.hear(say(told).rstrip(b"\n"), 0)) for say in order]
+        whole_at.append(whole.index(1) if 1 in whole else -1)
+        assert len(receiver.pause()) + sum(whole) == 1, "once each"
+    assert whole_at == [-1, *[len(order) - 1] * 5]
+
+
+def test_ten_a_second_need_no_pause() -> None:
+    receiver = Nmea("/dev/ttyUSB0")
+    said = [line for told in seconds(50, WITH_GST, 0.1) for line in burst(told).split(b"\n")]
+    reports = [report for line in said for report in receiver.hear(line, 0)]
+    assert len(reports) == 50
+    assert {report.fix.horizontal_std_m for report in reports} == {1.3}, "all with their GST"
+
+
+def test_the_receivers_own_accuracy_goes_before_the_dilutions() -> None:
+    assert fix(burst(WITH_GST)).horizontal_std_m == pytest.approx(1.3)
+    assert fix(burst(WITH_GST)).vertical_std_m == pytest.approx(2.2)
+    other = replace(WITH_GST, of_day_s=WITH_GST.of_day_s + 1)
+    two = heard([gga(HERE) + gst(other)])
+    assert two[0].fix.horizontal_std_m == pytest.approx(0.8 * 5.0 / math.sqrt(2.0)), "another's"
+
+
+def test_an_ellipse_is_as_wide_as_its_axes_together() -> None:
+    ellipse = sentence("GNGST,092725.00,19,3.0,1.0,45.0,,,2.0")
+    assert fix(gga(HERE), ellipse).horizontal_std_m == pytest.approx(math.sqrt(5.0))
+
+
+@pytest.mark.parametrize(("quality", "uere_m"), [(1, 5.0), (2, 2.5), (4, 1.0), (5, 1.0), (3, 5.0)])
+def test_corrections_make_the_dilution_worth_more(quality: int, uere_m: float) -> None:
+    told = replace(HERE, quality=quality, hdop=1.0)
+    assert fix(gga(told)).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
+
+
+def test_nothing_said_of_accuracy_is_nothing_known() -> None:
+    assert math.isnan(fix(rmc(HERE)).horizontal_std_m)
+    assert math.isnan(fix(gga(replace(HERE, hdop=99.99))).horizontal_std_m)
+    assert math.isnan(fix(gga(replace(HERE, hdop=0.0))).horizontal_std_m)
+
+
+def test_height_is_above_the_ellipsoid_or_none() -> None:
+    told = gga(HERE)
+    assert fix(told).height_m == pytest.approx(42.5)
+    south = fix(gga(replace(HERE, height_m=-20.0, sep_m=-30.0)))
+    assert south.height_m == pytest.approx(-20.0)
+    blank = sentence("GNGGA,092725.00,5742.0,N,01158.2,E,1,08,0.9,7.3,M,,M,,")
+    assert (fix(blank).fix_type, math.isnan(fix(blank).height_m)) == (2, True)
+    assert fix(rmc(HERE)).fix_type == 2
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        gga(replace(HERE, quality=0)) + rmc(HERE),
+        gga(replace(HERE, quality=6)),  # estimated from what was
+        gga(replace(HERE, quality=7)),  # typed in
+        gga(replace(HERE, quality=8)),  # simulated
+        gga(HERE) + rmc(replace(HERE, mode=1)),
+        gga(HERE) + gsa(replace(HERE, mode=1)),
+        rmc(replace(HERE, lat_deg=NAN)),
+        sentence("GNGGA,092725.00,,,,,,,,,,,,,"),
+        sentence("GNGGA,092725.00,5742.0,,01158.2,,1,08,0.9,7.3,M,35.2,M,,"),  # no sides
+        sentence("GNGNS,092725.00,5742.0,N,01158.2,E,NNNN,08,0.9,7.3,35.2,,,V"),
+        sentence("GNRMC,092725.00,A,5742.0,N,01158.2,E,0.0,,211126,,,E,V"),
+    ],
+)
+def test_who_says_that_there_is_no_fix_is_believed(said: bytes) -> None:
+    none = fix(said)
+    assert none.fix_type == 0
+    assert math.isnan(none.lat_deg)
+    assert math.isnan(none.lon_deg)
+    assert math.isnan(none.height_m)
+
+
+def test_without_gga_there_is_gns() -> None:
+    told = sentence("GNGNS,092725.00,5742.0,N,01158.2,W,AANN,17,1.0,7.3,35.2,,,V")
+    assert fix(told, rmc(HERE)).satellites == 17
+    assert fix(told).lon_deg == pytest.approx(-11.97)
+    assert fix(told).height_m == pytest.approx(42.5)
+    assert fix(told).horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
+
+
+def test_a_fix_of_an_old_receiver_has_neither_gsa_nor_modes() -> None:
+    old = fix(
+        sentence("GPRMC,092725,A,5742.0000,N,01158.2000,E,3.0,077.5,211126,003.1,W"),
+        sentence("GPGGA,092725,5742.0000,N,01158.2000,E,1,05,1.5,7.3,M,35.2,M,,0000"),
+    )
+    assert (old.fix_type, old.satellites) == (3, 5)
+    assert old.speed_mps == pytest.approx(3.0 * 1852.0 / 3600.0)
+
+
+@pytest.mark.parametrize("talker", ["GP", "GN", "GL", "GA", "GB", "GQ", "BD"])
+def test_every_constellation_may_speak(talker: str) -> None:
+    assert fix(burst(replace(WITH_GST, talker=talker))).fix_type == 3
+
+
+def test_what_has_no_time_is_by_its_arrival() -> None:
+    (report,) = heard([sentence("GNGGA,,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+    assert report.of_day_ns is None
+    assert report.fix.fix_type == 3
+
+
+def test_a_leap_second_is_no_time_and_no_error() -> None:
+    (report,) = heard([sentence("GNGGA,235960.00,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+    assert report.of_day_ns is None
+
+
+def test_a_date_that_is_off_is_not_looked_at() -> None:
+    """A receiver whose week counter has wrapped says 2007."""
+    said = sentence("GNRMC,092725.00,A,5742.0,N,01158.2,E,0.0,,070407,,,A,V")
+    assert heard([said])[0].of_day_ns == 34_045 * S
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"GNGGA,092725.00,5742.0,N",
+        gga(HERE)[:40],
+        gga(HERE)[7:],
+        gga(HERE).replace(b"57", b"58").strip(),
+        gga(HERE).strip() + b"0",
+        b"\xff\x00\x81",
+        b"$",
+        sentence("GNGGA,092725.00,9942.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,").strip(),
+    ],
+)
+def test_what_is_no_whole_sentence_is_refused(line: bytes) -> None:
+    with pytest.raises(WireError):
+        sentence_of(line)
+
+
+@pytest.mark.parametrize("line", [b"", b"\r", b"!AIVDM,1,1,,A,15M,0*00"])
+def test_a_line_may_say_nothing(line: bytes) -> None:
+    assert sentence_of(line) is None
+
+
+def test_what_stands_before_a_sentence_is_left_out() -> None:
+    for before in (b"\xb5b\x01\x07\x5c\x00", b"\\s:GPS1*5F\\", gga(HERE)[:20]):
+        found = sentence_of(before + gga(HERE).strip())
+        assert found is not None
+        assert found.number("quality") == 1.0
