@@ -1,7 +1,7 @@
 """Users, their login sessions and API tokens.
 
-Passwords are argon2 hashes.  Sessions, tokens and tickets are 256 random bits, of which only the
-SHA-256 is stored: who reads the database cannot log in with it.
+Sessions, tokens and tickets are 256 random bits, of which only the SHA-256 is stored: who reads
+the database cannot log in with it.
 
 Of two stations each has sessions of its own, and one table of users.  So what ends a user's
 sessions begins a new *generation* of them in that table: it ends those at the other station too,
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import hashlib
 import secrets
-import threading
 from collections.abc import Collection, Sequence
 from enum import IntEnum
 
@@ -22,14 +21,13 @@ from sqlalchemy import ColumnElement, and_, delete, func, select
 from sqlalchemy.orm import Session
 
 from base_station.db.models import ApiToken, HandOver, LoginSession, User
+from base_station.db.passwords import Passwords
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 
 SESSION_S = 12 * 3600
 HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
-MIN_PASSWORD = 10
-_HASHES_AT_ONCE = 2  # each takes 64 MB
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
 
 
@@ -67,17 +65,14 @@ class Accounts:
     def __init__(self, store: Store, clock: Clock, hasher: PasswordHash | None = None) -> None:
         self._store = store
         self._clock = clock
-        self._hasher = hasher or PasswordHash.recommended()
-        self._hashing = threading.BoundedSemaphore(_HASHES_AT_ONCE)
-        # Checked for names that do not exist, so that the answer takes as long.
-        self._nobody = self._hasher.hash(secrets.token_urlsafe())
+        self._passwords = Passwords(hasher)
 
     # ---- users
 
     def add_user(self, username: str, password: str, role: Role) -> None:
         if not username.strip():
             raise UserError("a user needs a name")
-        password_hash = self._hash(password)
+        password_hash = self._passwords.hash(password)
         with self._store.write() as session:
             if session.get(User, username) is not None:
                 raise UserError(f"there is a user {username!r} already")
@@ -93,7 +88,7 @@ class Accounts:
 
     def change_user(self, username: str, password: str | None, role: Role | None) -> None:
         """A new password ends the user's sessions and tokens."""
-        password_hash = "" if password is None else self._hash(password)
+        password_hash = "" if password is None else self._passwords.hash(password)
         with self._store.write() as session:
             user = _user(session, username)
             if role is not None and role is not Role.ADMINISTRATOR:
@@ -136,13 +131,14 @@ class Accounts:
         """Takes as long for a name that does not exist."""
         with self._store.read() as session:
             user = session.get(User, username)
-        return self._verified(user, password)
+        return self._passwords.is_right(password, None if user is None else user.password_hash)
 
     def log_in(self, username: str, password: str) -> str | None:
         """The secret of a new session; None where name or password is wrong."""
         with self._store.read() as session:
             user = session.get(User, username)
-        if not self._verified(user, password) or user is None:
+        stored = None if user is None else user.password_hash
+        if not self._passwords.is_right(password, stored) or user is None:
             return None
         now_ns = self._clock.utc_ns()
         with self._store.write() as session:
@@ -150,17 +146,6 @@ class Accounts:
             # Of the generation whose password was right: it may have been changed since.
             expires_ns = now_ns + SESSION_S * NS_PER_S
             return self._begin_session(session, username, user.generation, expires_ns)
-
-    def _verified(self, user: User | None, password: str) -> bool:
-        stored = self._nobody if user is None else user.password_hash
-        with self._hashing:
-            return self._hasher.verify(password, stored) and user is not None
-
-    def _hash(self, password: str) -> str:
-        """UserError where it is too short to be one."""
-        _check_password(password)
-        with self._hashing:
-            return self._hasher.hash(password)
 
     def _begin_session(
         self, session: Session, username: str, generation: int, expires_ns: int
@@ -318,11 +303,6 @@ def _keep_an_administrator(session: Session, user: User) -> None:
     )
     if user.role == Role.ADMINISTRATOR.word and administrators == 1:
         raise UserError(f"{user.username!r} is the only administrator; make another one first")
-
-
-def _check_password(password: str) -> None:
-    if len(password) < MIN_PASSWORD:
-        raise UserError(f"a password needs at least {MIN_PASSWORD} characters")
 
 
 def _sha256(secret: str) -> str:
