@@ -5,9 +5,16 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+from base_station.bench.rig import said
+from shared.channels import FUSED, STATUS
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.mcap_log import SegmentWriter
+from shared.messages import STATION_ID, Header
 from tests.conftest import PROJECT_ROOT
 
 # By page: the tuple that the entry is named in, and the suite that runs over it.
@@ -46,7 +53,8 @@ def example_of(page: str) -> str:
 
 
 def test_every_page_with_an_example_is_known() -> None:
-    assert {page.stem for page in PAGES if "```python" in page.read_text()} == PLACES.keys()
+    pages = {page.stem for page in PAGES if "```python" in page.read_text()}
+    assert pages == {*PLACES, "read-an-incident"}
 
 
 @pytest.mark.parametrize("page", PLACES)
@@ -63,3 +71,24 @@ def test_the_example_keeps_the_contract_of_its_kind(page: str) -> None:
         check=False,
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+def test_the_example_that_reads_a_log_says_where_people_were(tmp_path: Path) -> None:
+    log = SegmentWriter(tmp_path)
+    for second in range(3):
+        t_ns = (1_800_000_000 + second) * NS_PER_S
+        header = Header(STATION_ID, 1, second, 0, t_ns)
+        place = said.fused(header, "FF-01", north_m=1.5 * second, floor=1)
+        log.write(t_ns, FUSED.key(STATION_ID), encode(place))
+        log.write(t_ns, STATUS.key("FF-01"), encode(said.status(Header("FF-01", 1, 1, 0))))
+    log.close()
+    ran = subprocess.run(
+        [sys.executable, "-c", example_of("read-an-incident"), str(tmp_path)],
+        cwd=PROJECT_ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stderr
+    rows = [line.split() for line in ran.stdout.splitlines()]
+    assert [row[1:] for row in rows] == [["FF-01", f"{1.5 * n}", "0.0", "1"] for n in range(3)]
