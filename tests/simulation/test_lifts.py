@@ -12,6 +12,7 @@ import pytest
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
 from base_station.fusion.vertical.height import HeightFilter
+from base_station.site.storeys import Storey
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import Floats
 from edge.simulation import open_simulation
@@ -123,6 +124,16 @@ def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None
     rest(height, 30, ramp)
     assert abs(height.down_m) < 0.3
     assert math.sqrt(height.variance_m2) > 3.2
+
+
+def test_after_a_ride_that_nobody_felt_the_only_storey_known_is_not_the_one() -> None:
+    """The first thing that somebody does; then they walk where nobody has walked before."""
+    height = HeightFilter(Parameters())
+    height.begin(0.0, 0.2)
+    rest(height, 0, [5.0] * 5 + [5.0 - 0.9 * min(second, 18) for second in range(25)])
+    height.climb(0.0, 8.0, 0.1)
+    height.rest_near([Storey(0, 0.0, std_m=0.2)])
+    assert math.sqrt(height.variance_m2) > 8.0
 
 
 def test_doors_that_slam_are_no_ride() -> None:

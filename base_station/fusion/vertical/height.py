@@ -20,6 +20,7 @@ from base_station.fusion import kernels
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import AirHeight
 from base_station.fusion.vertical.rides import Rides
+from base_station.site import levels
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 
@@ -157,7 +158,7 @@ class HeightFilter:
     def rest_near(self, storeys: Sequence[Storey]) -> None:
         """Somebody who walked on the level is on one of these.  A storey that was learnt from
         people's heights tells no more than it is known by itself, so that nobody grows surer by
-        their own word.
+        their own word; and who may be a storey off may be on one where nobody has walked yet.
         """
         if not storeys:
             return
@@ -169,11 +170,21 @@ class HeightFilter:
         ]
         best = min(range(len(storeys)), key=apart2.__getitem__)
         weights = [math.exp(-0.5 * (one - apart2[best])) for one in apart2]
-        sure = 1.0 / sum(weights) > kind.level_sure and apart2[best] < _GATE_STD**2
+        near = _within(storeys[best].down_m - self.down_m, math.sqrt(variance_m2), levels.LEAST_M)
+        sure = near / sum(weights) > kind.level_sure and apart2[best] < _GATE_STD**2
         if sure and variance_m2 > level_m2[best]:
             noise_m2 = 1.0 / (1.0 / level_m2[best] - 1.0 / variance_m2)
             level_m = np.array([[storeys[best].down_m]])
             self._filter.update(level_m, R=np.array([[noise_m2]]), H=_OBSERVE_LEVEL)
+
+
+def _within(off_m: float, std_m: float, reach_m: float) -> float:
+    """Probability that a height is nearer than that to what lies so far from its mean."""
+    over, under = (
+        math.erf((off_m + side_m) / max(math.sqrt(2.0) * std_m, 1e-9))
+        for side_m in (reach_m, -reach_m)
+    )
+    return 0.5 * (over - under)
 
 
 def climb_var_m2(kind: Parameters, climbed_m: float, walked_m: float) -> float:
