@@ -21,7 +21,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from base_station.bench.fusion import smoothing
-from base_station.bench.fusion.kept_paths import PathKeeping
+from base_station.bench.fusion.kept_paths import PathKeeping, engine_evidence
 from base_station.bench.fusion.recorded import print_recorded
 from base_station.bench.incident.bound import bound_m2, draw_errors_m
 from base_station.bench.incident.people import PEOPLE
@@ -129,8 +129,8 @@ class _Tally:
                 self._right.note(person.truth, person.building, run.floors, run.surenesses)
             else:
                 self._walked_m.append(run.heading_walked_m)
-        truths, shown_m = [one.truth for one in people], [run.places_m for run in runs]
-        self._afterwards.note(name, truths, shown_m, keeping, rng)
+        evidence = keeping.evidence(runs) | (engine_evidence(people[0]) if known.engine else {})
+        self._afterwards.note(name, people, runs, evidence, rng)
 
     def report(self, incidents: int, seed: int) -> FusionReport:
         ways, timing, walked_m = self._ways, self._timing, self._walked_m

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
+from base_station.bench.incident.bound import ENGINE_STD_M
+from base_station.bench.incident.people import RATE_HZ
+from base_station.bench.incident.run import Person, Run
+from base_station.bench.rig import said
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.port import Estimate, FixVerdict, Fuser, FuserKind, PlaceFix, Start
+from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
+from base_station.fusion.smoother.port import UnitEvidence
 from base_station.site.floor_grid import FloorGrid
-from shared.messages import Position
+from shared.messages import Header, Position
+
+ENGINE = "engine"
 
 
 class PathKeeping:
@@ -23,17 +32,35 @@ class PathKeeping:
     def name(self) -> str:
         return self._kind.name
 
-    @property
-    def grid(self) -> FloorGrid | None:
-        """The plan's walls, as the fusers heard of them."""
-        return self._known.grid
-
     def restore(self, saved: bytes) -> Fuser:
         return self._kind.restore(saved)
 
     def new(self) -> Fuser:
         self.histories.append(PathHistory())
         return cast("Fuser", _Keeping(self._kind.new(), self.histories[-1], self._known))
+
+    def evidence(self, runs: Sequence[Run]) -> dict[str, UnitEvidence]:
+        """Of each person that was fused, by number."""
+        found = {}
+        for number, (history, run) in enumerate(zip(self.histories, runs, strict=True)):
+            for fix in run.taken:
+                history.fix(fix, fix.t_mono_ns)
+            found[str(number)] = UnitEvidence(
+                history.arrays(), history.start, history.start_ns, grid=self._known.grid
+            )
+        return found
+
+
+def engine_evidence(person: Person) -> dict[str, UnitEvidence]:
+    """Of the receiver on the engine's roof."""
+    history = PathHistory()
+    for row in range(0, len(person.truth.t_s), RATE_HZ):
+        t_ns = said.mono_ns(float(person.truth.t_s[row]))
+        history.note(said.position(Header(ENGINE, 1, row + 1, t_ns)), t_ns, jumped=False)
+    history.begin_with(Start(*person.engine_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
+    for fix in person.engine_fixes.values():
+        history.fix(fix, fix.t_mono_ns)
+    return {ENGINE: UnitEvidence(history.arrays(), history.start, history.start_ns)}
 
 
 @dataclass
@@ -60,12 +87,6 @@ class _Keeping:
         reason = self._fuser.advance(position)
         self._history.note(position, position.header.t_mono_ns, bool(reason))
         return reason
-
-    def correct(self, fix: PlaceFix) -> FixVerdict:
-        verdict = self._fuser.correct(fix)
-        if verdict.accepted:
-            self._history.fix(fix, fix.t_mono_ns)
-        return verdict
 
     def estimate(self) -> Estimate | None:
         estimate = self._fuser.estimate()

@@ -1,38 +1,33 @@
 """What is known afterwards beside what was shown at the time, and what one pin is worth.
 
 The incidents are those of ``muster bench fusion``; the trails of all six people are smoothed
-together.  A pin half a metre off is set in the middle of the ten minutes inside, once with all
-that came until then and nothing later.  The times are those of ten units that walk for an hour.
+together.  A pin is set in the middle of the ten minutes inside, once with all that came until
+coming out and nothing later: half a metre off, or of a place that was surveyed.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.progress import track as progress_bar
 from rich.table import Table
 
-from base_station.bench.fusion.kept_paths import PathKeeping
-from base_station.bench.fusion.walks import RATE_HZ as WALK_RATE_HZ
-from base_station.bench.fusion.walks import Receiver, Walk
+from base_station.bench.fusion.hours import UNITS, times_s
+from base_station.bench.fusion.kept_paths import ENGINE
 from base_station.bench.incident.people import Truth
+from base_station.bench.incident.run import Person, Run
 from base_station.bench.incident.scores import CHI2_95_2DOF
 from base_station.bench.rig.said import mono_ns
-from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
 
 Floats = NDArray[np.float64]
 
-PIN_STD_M = 0.5
+PIN_STD_M = {"a pin": 0.5, "a pin at a surveyed place": 0.3}  # each axis
 AROUND_S = 120.0  # of a pin: the trail that it should better
-UNITS, HOUR_S, OUTSIDE_S = 10, 3600.0, 180.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +42,8 @@ class SmoothingReport:
     bound_mean_m: dict[str, tuple[float, float]]  # best by path and fixes: live, afterwards
     held_95: dict[str, dict[str, float]]  # the smoothed trail's stated region held the truth
     pin_before_m: dict[str, float]  # mean error of the trail around a pin, without it
-    pin_after_m: dict[str, float]  # and with it
-    hour_s: float  # CPU time of smoothing ten units that walked for an hour
-    pin_solve_s: float  # and of solving one of them again with a pin
+    pin_after_m: dict[str, dict[str, float]]  # and with it, by way and kind of pin
+    times_s: dict[str, float]  # CPU time of smoothing ten units' hour, and of solving with a pin
 
 
 @dataclass
@@ -65,7 +59,8 @@ class SmoothingScores:
     def __init__(self, smoother: Smoother) -> None:
         self._smoother = smoother
         self._errors: dict[str, dict[str, _Errors]] = {}
-        self._pins: dict[str, list[tuple[float, float]]] = {}
+        self._pins: dict[str, list[list[float]]] = {}
+        self._walled: Mapping[str, UnitEvidence] = {}
         self._bound: dict[str, list[tuple[Floats, Floats]]] = {}
 
     def note_bound(self, truth: Truth, live_m: Floats, afterwards_m: Floats) -> None:
@@ -77,33 +72,28 @@ class SmoothingScores:
     def note(
         self,
         way: str,
-        truths: list[Truth],
-        shown_m: list[Floats],
-        recorded: PathKeeping,
+        people: Sequence[Person],
+        runs: Sequence[Run],
+        evidence: Mapping[str, UnitEvidence],
         rng: np.random.Generator,
     ) -> None:
-        """One incident, person by person in the same order."""
-        evidence = {
-            str(number): UnitEvidence(
-                history.arrays(), history.start, history.start_ns, grid=recorded.grid
-            )
-            for number, history in enumerate(recorded.histories)
-        }
+        """One incident; ``evidence`` by a person's number, and the engine's if heard."""
         paths = self._smoother.smooth(evidence).paths
-        for number, truth in enumerate(truths):
+        if evidence["0"].grid is not None or not self._walled:
+            self._walled = {one: kept for one, kept in evidence.items() if one != ENGINE}
+        for number, (person, run) in enumerate(zip(people, runs, strict=True)):
+            truth = person.truth
             errors, held = _against(truth, paths[str(number)])
-            live = np.linalg.norm(shown_m[number] - truth.place_m[:, :2], axis=1)
+            live = np.linalg.norm(run.places_m - truth.place_m[:, :2], axis=1)
             for stage, rows in _stages(truth).items():
                 one = self._errors.setdefault(way, {}).setdefault(stage, _Errors())
                 one.live.append(live[rows])
                 one.smoothed.append(errors[rows])
                 one.held.append(held[rows])
-            gain = self._pin_gain(truth, evidence[str(number)], rng)
-            self._pins.setdefault(way, []).append(gain)
+            self._pins.setdefault(way, []).append(self._pinned_m(truth, evidence, str(number), rng))
 
     def report(self, seed: int) -> SmoothingReport:
         pins = {way: np.array(gains) for way, gains in self._pins.items()}
-        hour_s, pin_solve_s = _times(self._smoother, seed)
         return SmoothingReport(
             smoother=self._smoother.name,
             live_mean_m=self._each(lambda one: float(np.concatenate(one.live).mean())),
@@ -113,9 +103,11 @@ class SmoothingScores:
             bound_mean_m={stage: _means(pairs) for stage, pairs in self._bound.items()},
             held_95=self._each(lambda one: float(np.concatenate(one.held).mean())),
             pin_before_m={way: float(gains[:, 0].mean()) for way, gains in pins.items()},
-            pin_after_m={way: float(gains[:, 1].mean()) for way, gains in pins.items()},
-            hour_s=hour_s,
-            pin_solve_s=pin_solve_s,
+            pin_after_m={
+                way: dict(zip(PIN_STD_M, gains[:, 1:].mean(axis=0).tolist(), strict=True))
+                for way, gains in pins.items()
+            },
+            times_s=times_s(self._smoother, seed, self._walled),
         )
 
     def _each(self, figure: Any) -> dict[str, dict[str, float]]:
@@ -124,22 +116,29 @@ class SmoothingScores:
             for way, stages in self._errors.items()
         }
 
-    def _pin_gain(
-        self, truth: Truth, evidence: UnitEvidence, rng: np.random.Generator
-    ) -> tuple[float, float]:
-        """Mean error of the trail around a pin, without and with it, as of coming out."""
-        until = _until(evidence, mono_ns(truth.comes_out_s))
+    def _pinned_m(
+        self,
+        truth: Truth,
+        evidence: Mapping[str, UnitEvidence],
+        unit_id: str,
+        rng: np.random.Generator,
+    ) -> list[float]:
+        """Mean error of the trail around a pin, without and with each kind, as of coming out."""
+        out_ns = mono_ns(truth.comes_out_s)
+        until = {one: _until(evidence[one], out_ns) for one in (unit_id, ENGINE) if one in evidence}
         row = int(np.searchsorted(truth.t_s, (truth.goes_in_s + truth.comes_out_s) / 2.0))
-        north_m, east_m = truth.place_m[row, :2] + rng.normal(0.0, PIN_STD_M, 2)
-        t_ns = mono_ns(float(truth.t_s[row]))
-        pin = PlaceSeen("pin", t_ns, float(north_m), float(east_m), PIN_STD_M)
+        off, t_ns = rng.normal(0.0, 1.0, 2), mono_ns(float(truth.t_s[row]))
+        pins: list[tuple[PlaceSeen, ...]] = [()]
+        for std_m in PIN_STD_M.values():
+            north_m, east_m = (truth.place_m[row, :2] + std_m * off).tolist()
+            pins.append((PlaceSeen("pin", t_ns, north_m, east_m, std_m),))
         around = np.abs(truth.t_s - truth.t_s[row]) < AROUND_S
         means = []
-        for places in ((), (pin,)):
-            solved = self._smoother.solve({"0": replace(until, places=places)})
-            errors, _ = _against(truth, solved.paths["0"])
+        for places in pins:
+            known = until | {unit_id: replace(until[unit_id], places=places)}
+            errors, _ = _against(truth, self._smoother.solve(known).paths[unit_id])
             means.append(float(errors[around].mean()))
-        return means[0], means[1]
+        return means
 
 
 def tables_of(report: SmoothingReport) -> list[Table]:
@@ -165,46 +164,19 @@ def tables_of(report: SmoothingReport) -> list[Table]:
     for heading in ("", "measured", "to reach"):
         figures.add_column(heading, justify="left" if not heading else "right")
     for way, before_m in report.pin_before_m.items():
-        after_m = report.pin_after_m[way]
-        figures.add_row(
-            f"trail around a pin, without and with it, {way}",
-            f"{before_m:.2f} m, {after_m:.2f} m ({after_m / before_m:.2f})",
-            "0.50",
-        )
-    figures.add_row(f"smoothing {UNITS} units of an hour", f"{report.hour_s:.2f} s", "5 s")
-    figures.add_row("one pin, an hour's path solved again", f"{report.pin_solve_s:.2f} s", "0.5 s")
-    return [errors, figures]
-
-
-def _times(smoother: Smoother, seed: int) -> tuple[float, float]:
-    """CPU seconds of ten units' hour, and of one pin in one of them."""
-    evidence: dict[str, UnitEvidence] = {}
-    for number in progress_bar(
-        range(UNITS), description="An hour", console=Console(stderr=True), transient=True
+        for kind, after_m in report.pin_after_m[way].items():
+            figures.add_row(
+                f"trail around {kind}, without and with it, {way}",
+                f"{before_m:.2f} m, {after_m:.2f} m ({after_m / before_m:.2f})",
+                "0.50",
+            )
+    for what, took_s, least in (
+        (f"smoothing {UNITS} units of an hour", "hour", "5 s"),
+        (f"smoothing {UNITS} units of an hour among walls", "hour among walls", "5 s"),
+        ("one pin, an hour's path solved again", "pin", "0.5 s"),
     ):
-        evidence[str(number)] = UnitEvidence(_hour(seed + number).arrays(), None)
-    begin_s = time.thread_time()
-    smoother.smooth(evidence)
-    hour_s = time.thread_time() - begin_s
-    path = evidence["0"].path
-    row = len(path) // 2
-    place = path.own_m[row]
-    pin = PlaceSeen("pin", int(path.t_ns[row]), float(place[0]), float(place[1]), 5.0)
-    begin_s = time.thread_time()
-    smoother.solve({"0": replace(evidence["0"], places=(pin,))})
-    return hour_s, time.thread_time() - begin_s
-
-
-def _hour(seed: int) -> PathHistory:
-    rng = np.random.default_rng(seed)
-    walk, receiver, history = Walk.wander(rng, HOUR_S), Receiver(rng), PathHistory()
-    for row in range(len(walk)):
-        position = walk.position(row)
-        t_ns, t_s = position.header.t_mono_ns, float(walk.t_s[row])
-        history.note(position, t_ns, jumped=False)
-        if row % WALK_RATE_HZ == 0 and t_s < OUTSIDE_S:
-            history.fix(receiver.fix(t_s, walk.truth_m[row]), t_ns)
-    return history
+        figures.add_row(what, f"{report.times_s[took_s]:.2f} s", least)
+    return [errors, figures]
 
 
 def _until(evidence: UnitEvidence, t_ns: int) -> UnitEvidence:

@@ -103,6 +103,7 @@ class Run:
     heading_walked_m: float
     floors: list[int | None]  # row by row
     surenesses: Floats  # (n,) the stated probability of that floor
+    taken: list[PlaceFix]  # fixes that were, as they came
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ class Follower:
         if known.engine:
             self._fuser.start(Start(*person.engine_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
         count = len(person.truth.t_s)
-        self.run = Run(np.zeros((count, 2)), np.zeros(count), math.inf, [], np.zeros(count))
+        self.run = Run(np.zeros((count, 2)), np.zeros(count), math.inf, [], np.zeros(count), [])
 
     def step(self, row: int, site: Site) -> None:
         person, fuser = self._person, self._fuser
@@ -155,11 +156,13 @@ class Follower:
         fuser.feel(AirHeight(position.header.t_mono_ns, air_down_m, referenced=True))
         site.learnt = fuser.recognise(site.learnt)
         if fix is not None:
-            fuser.correct(site.sky.corrected(fix, fix.t_mono_ns))
+            verdict = fuser.correct(site.sky.corrected(fix, fix.t_mono_ns))
         estimate = fuser.estimate()
         took_ns = time.thread_time_ns() - began_ns
         (self._timing.steps_ns if fix is None else self._timing.fixes_ns).append(took_ns)
         assert estimate is not None
+        if fix is not None and verdict.accepted:
+            self.run.taken.append(fix)
         self._note(row, estimate)
 
     def _note(self, row: int, estimate: Estimate) -> None:
