@@ -26,6 +26,7 @@ from base_station.app.parts import (
 from base_station.clock_server import ClockServer
 from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig
+from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
 from base_station.drive import StationDrive
@@ -36,6 +37,7 @@ from base_station.live.recovering import Watch, recovering
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
 from base_station.log_check import LogCheck
+from base_station.past.checkpoints import Checkpoints, SavedState
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
@@ -58,6 +60,7 @@ class _Again(NamedTuple):
     """The station is to start anew, as the standby of another one."""
 
     cut: Place | None  # behind which the log goes its own way
+    mended: bool = False  # what was saved of it was made without what was missing
 
 
 def run_station(config: StationConfig, announce: Announce) -> None:
@@ -74,6 +77,9 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         if again.cut is not None:
             tell("what the other station does not have is set aside, and handed to it")
             cut_log(config.data, again.cut, lambda _: manager.working())
+        if again.mended:
+            tell("what the disk had lost of the log is there again, and is stepped")
+            Checkpoints(DataFolder(config.data).checkpoints).clear()
 
 
 def _run_once(config: StationConfig, announce: Announce, manager: ServiceManager) -> _Again | None:
@@ -109,8 +115,10 @@ class _LiveStation:
         self._forgettings = self._disk.forgetting_desk(
             opened.recordings, self._act, self._save_soon, self._leads
         )
+        saved = self._disk.checkpoints.latest()
+        self._stepped_from_ns = saved.t_ns if saved else 0
         self._drive = _start_drive(
-            self._disk.log, self._surroundings(), self._begin, self._recovering()
+            self._disk.log, saved, self._surroundings(), self._begin, self._recovering()
         )
         self._gate = self._side.gate_to(self._drive)
         # Ends behind the drive: the other station gets all.
@@ -152,6 +160,7 @@ class _LiveStation:
                 disk.accounts, disk.folder.first_login, self._announce
             ),
             start_again=self._start_again,
+            step_again=self._step_again,
             forget=self._forget,
         )
         standby = opened.config.standby
@@ -243,6 +252,12 @@ class _LiveStation:
         self._again = self._again or _Again(cut)
         self._server.stop()
 
+    def _step_again(self, end_ns: int) -> None:
+        """A standby shows what the active station shows; that one goes on as it is."""
+        if not self._leads() and end_ns >= self._stepped_from_ns:
+            self._again = self._again or _Again(None, mended=True)
+            self._server.stop()
+
     def _may_forget(self) -> bool:
         return self._side.may_forget() and not self._opened.feed.late_waits
 
@@ -298,12 +313,12 @@ class _LiveStation:
 
 def _start_drive(
     log: LogFeed,
+    saved: SavedState | None,
     surroundings: Surroundings,
     begin: Callable[[tuple[int, int], StationState], None],
     recovery: AbstractContextManager[Watch],
 ) -> StationDrive:
     """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
-    saved = surroundings.checkpoints.latest()
     pipeline = new_pipeline(saved.pipeline if saved else None)
     drive = StationDrive(pipeline, surroundings)
     place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 from google.protobuf.message import Message as WireMessage
 
-from base_station.events import Received, event_of
+from base_station.events import Received, Rejected, event_of
 from base_station.forgetting.erasure import Clocks, Erasure, Record
 from base_station.live_state import FORGOTTEN
 from shared.channels import (
@@ -22,13 +22,22 @@ from shared.channels import (
     OPERATOR,
     Direction,
     backfilled_key,
+    is_backfilled,
     parse_key,
+    parse_unread_key,
     tracked_unit,
 )
 from shared.codec import encode
 from shared.errors import UnknownChannelError
 from shared.mcap_log import is_derived, wire_type_of
-from shared.messages import STATION_ID, AlarmChange, FusedPosition, Heartbeat, OperatorAction
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    FusedPosition,
+    Header,
+    Heartbeat,
+    OperatorAction,
+)
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
 
@@ -51,9 +60,26 @@ class Redactor:
         if self._is_of_others(key) and not self._holds_a_name(payload):
             return [record]
         event = event_of(t_ns, key, payload)
-        if not isinstance(event, Received):  # unreadable: nobody knows what is in it
-            return [] if self._holds_a_name(payload) else [record]
+        if not isinstance(event, Received):
+            return self._unread(record, event)
         return self._heard(record, event)
+
+    def _unread(self, record: Record, event: Rejected) -> list[Record]:
+        """Nobody knows what is in it.  Of what may be of somebody who is to be forgotten, a sign of
+        life is left, so that it is not missing and fetched again; out of a journal, nobody can tell
+        when it was said.
+        """
+        t_ns, key, payload = record
+        if event.number is None:
+            return [] if self._holds_a_name(payload) else [record]
+        sender, boot_id, seq = event.number
+        wearer = tracked_unit(sender) or sender
+        came_late = is_backfilled(key) or parse_unread_key(key) is not None
+        at_any_time = came_late and wearer in self._erasure.unit_ids
+        if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._holds_a_name(payload)):
+            return [record]
+        alive = Heartbeat(Header(sender, boot_id, seq, 0), 0, 0)
+        return [(t_ns, backfilled_key(sender, HEARTBEAT.suffix), encode(alive))]
 
     def _heard(self, record: Record, event: Received) -> list[Record]:
         match event.message:

@@ -58,8 +58,15 @@ class Mending:
     """Fills in damaged segments in rounds, one a round, while the other station is there."""
 
     def __init__(
-        self, bus: Bus, files: LogFiles, check: LogCheck, other: Callable[[], str | None]
+        self,
+        bus: Bus,
+        files: LogFiles,
+        check: LogCheck,
+        other: Callable[[], str | None],
+        on_mended: Callable[[int], None],
     ) -> None:
+        """``on_mended`` hears up to which time a segment goes that is whole again."""
+        self._on_mended = on_mended
         self._bus = bus
         self._files = files
         self._check = check
@@ -85,9 +92,9 @@ class Mending:
             return
         self._files.note_rewritten(path)
         self._check.note_mended(path)
-        logger.warning(
-            "%s: what was lost in %d places was fetched from %s", path.name, changed, station
-        )
+        logger.warning("%s is mended: what was lost came from %s", path.name, station)
+        with SegmentReader(path) as reader:
+            self._on_mended(reader.info().end_ns)
 
     def _events(self, station: str, place: Place, stop: Event) -> Iterator[Record]:
         while not stop.is_set():

@@ -50,6 +50,7 @@ class Parts:
     on_people: Callable[[], None]  # people or photos may have changed
     on_lead: Callable[[], None]
     start_again: Callable[[Place | None], None]
+    step_again: Callable[[int], None]  # the log up to this time, in which something was missing
     forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
 
 
@@ -205,7 +206,7 @@ class OneOfTwo:
             lambda: not parts.live.late_waits and self.log.flush(),
             lambda: pair.other_there() if pair.leads else None,
         )
-        mending = Mending(parts.bus, parts.files, parts.check, pair.other_there)
+        mending = Mending(parts.bus, parts.files, parts.check, pair.other_there, parts.step_again)
         threads = (
             pair,
             Rounds("kept-copy", 1.0, copying.look, "the other station's accounts are not copied"),

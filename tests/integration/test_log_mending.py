@@ -51,7 +51,10 @@ class Pair:
         server = EventServer("b", router.attach_station(), disk)
         closing_all.callback(server.close)
         self.check = LogCheck("It is mended.")
-        self.mending = Mending(router.attach_station(), self.mine, self.check, lambda: "b")
+        self.mended_ns: list[int] = []
+        self.mending = Mending(
+            router.attach_station(), self.mine, self.check, lambda: "b", self.mended_ns.append
+        )
 
     def write(self, mine: list[LogRecord], theirs: list[LogRecord]) -> None:
         for recorder, all_of in ((self.mine, mine), (self.theirs, theirs)):
@@ -97,6 +100,7 @@ def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
     assert pair.mine.segments()[number].path.name in said
     pair.mending.look(Event())
     assert pair.events() == events
+    assert pair.mended_ns == [pair.mine.segments()[number].end_ns]
     pair.look_at_all()
     assert pair.check.problems() == ()
 
@@ -114,6 +118,6 @@ def test_a_log_is_not_filled_with_another_one_s(pair: Pair) -> None:
 
 def test_nothing_is_done_while_the_other_one_is_away(tmp_path: Path) -> None:
     with closing(Recorder(tmp_path, SystemClock(), POLICY)) as recorder:
-        check = LogCheck("")
-        Mending(MemoryRouter().attach_station(), recorder, check, lambda: None).look(Event())
-        assert check.damaged == ()
+        bus, check, mended_ns = MemoryRouter().attach_station(), LogCheck(""), list[int]()
+        Mending(bus, recorder, check, lambda: None, mended_ns.append).look(Event())
+        assert mended_ns == []

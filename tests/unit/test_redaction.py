@@ -5,12 +5,29 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from base_station.forgetting.erasure import Clocks, Erasure
+from base_station.forgetting.erasure import Clocks, Erasure, Wearing
 from base_station.forgetting.redaction import Redactor, name_pattern
 from base_station.live_state import FORGOTTEN
-from shared.channels import ALARM, OPERATOR, Channel
+from shared.channels import (
+    ALARM,
+    HEARTBEAT,
+    OPERATOR,
+    TEMPERATURE,
+    Channel,
+    backfilled_key,
+    unread_key,
+)
 from shared.codec import decode, encode
-from shared.messages import STATION_ID, AlarmChange, AlarmState, CommandKind, Header, OperatorAction
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    AlarmState,
+    CommandKind,
+    Header,
+    Heartbeat,
+    OperatorAction,
+    Temperature,
+)
 from shared.messages.station import Assign, SendCommand
 
 HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
@@ -75,3 +92,31 @@ def test_ids_stay_so_that_what_belongs_together_does() -> None:
     found = redacted("Max", OPERATOR, said)
     assert isinstance(found, OperatorAction)
     assert found.action == Assign("Max", "p2", FORGOTTEN, f"{FORGOTTEN} crew", "")
+
+
+def newer(unit_id: str, seq: int) -> bytes:
+    """What a unit says that this program cannot read."""
+    return encode(Temperature(Header(unit_id, 7, seq, 5, schema=99), 20.0))
+
+
+@pytest.mark.parametrize(
+    ("key", "t_ns", "stays"),
+    [
+        (TEMPERATURE.key("anna"), 100, True),
+        (TEMPERATURE.key("anna"), 150, False),
+        (backfilled_key("anna", TEMPERATURE.suffix), 300, False),
+        (unread_key("anna", 7, 3, TEMPERATURE.suffix), 300, False),
+        (TEMPERATURE.key("bert"), 150, True),
+        (backfilled_key("bert", TEMPERATURE.suffix), 150, True),
+    ],
+)
+def test_of_what_nobody_can_read_a_sign_of_life_is_left(key: str, t_ns: int, stays: bool) -> None:
+    redact = Redactor(Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), Clocks())
+    record = (t_ns, key, newer(key.split("/")[2], 3))
+    ((left_ns, left_key, payload),) = redact(record)
+    assert left_ns == t_ns
+    if stays:
+        assert (left_key, payload) == record[1:]
+        return
+    assert left_key == backfilled_key("anna", HEARTBEAT.suffix)
+    assert decode(HEARTBEAT, payload) == Heartbeat(Header("anna", 7, 3, 0), 0, 0)
