@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from base_station.db.models import Assignment, Incident
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
-from base_station.exporters.port import ExportPoint, IncidentTracks, WornTrack
+from base_station.exporters.port import IncidentTracks, WornTrack
 
 
 def incident_tracks(
@@ -43,7 +43,7 @@ def _split(
     unit_id: str, points: Sequence[TrackSample], assignments: Sequence[Assignment]
 ) -> Iterable[WornTrack]:
     """Consecutive points with the same wearer make one track."""
-    run: list[ExportPoint] = []
+    run: list[TrackSample] = []
     wearer: Assignment | None = None
     for point in points:
         now = _wearer_at(point.t_ns, assignments)
@@ -51,7 +51,7 @@ def _split(
             yield _worn(unit_id, wearer, run)
             run = []
         wearer = now
-        run.append(_export_point(point))
+        run.append(point)
     if run:
         yield _worn(unit_id, wearer, run)
 
@@ -63,11 +63,6 @@ def _wearer_at(t_ns: int, assignments: Sequence[Assignment]) -> Assignment | Non
     return None
 
 
-def _worn(unit_id: str, wearer: Assignment | None, run: Sequence[ExportPoint]) -> WornTrack:
+def _worn(unit_id: str, wearer: Assignment | None, run: Sequence[TrackSample]) -> WornTrack:
     name, crew = ("", "") if wearer is None else (wearer.person_name, wearer.crew)
     return WornTrack(unit_id, name, crew, tuple(run))
-
-
-def _export_point(point: TrackSample) -> ExportPoint:
-    names = ExportPoint.__struct_fields__
-    return ExportPoint(**{name: getattr(point, name) for name in names})

@@ -7,22 +7,9 @@ from dataclasses import dataclass
 
 import msgspec
 
+from base_station.db.records import TrackSample
 from shared.errors import UserError
 from shared.geo import Anchor
-
-
-class ExportPoint(msgspec.Struct, frozen=True):
-    """NED metres in the incident frame."""
-
-    t_ns: int
-    north_m: float
-    east_m: float
-    down_m: float
-    std_north_m: float
-    std_east_m: float
-    std_down_m: float
-    floor: int | None
-    quality: str
 
 
 class WornTrack(msgspec.Struct, frozen=True):
@@ -31,7 +18,7 @@ class WornTrack(msgspec.Struct, frozen=True):
     unit_id: str
     person_name: str  # empty: nobody was assigned
     crew: str
-    points: tuple[ExportPoint, ...]
+    points: tuple[TrackSample, ...]  # NED metres in the incident frame
 
     @property
     def title(self) -> str:

@@ -11,12 +11,13 @@ from xml.etree import ElementTree as ET
 import msgspec
 import pytest
 
+from base_station.db.records import TrackSample
 from base_station.exporters import EXPORTERS
 from base_station.exporters.csv_tracks import CSV
 from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
 from base_station.exporters.kml import KML
-from base_station.exporters.port import Exporter, ExportPoint, IncidentTracks, WornTrack
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import Anchor
@@ -32,7 +33,7 @@ anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exp
 def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
     """Two wearers, of whom one went north."""
     walked = tuple(
-        ExportPoint(T0_NS + n * NS_PER_S, float(n), 0.5, -1.5, 0.1, 0.1, 0.2, None, "good")
+        TrackSample(T0_NS + n * NS_PER_S, float(n), 0.5, -1.5, 0.1, 0.1, 0.2, 0.0, None, "good")
         for n in range(points)
     )
     tracks = (
