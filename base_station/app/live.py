@@ -254,7 +254,7 @@ class _LiveStation:
 
     def _step_again(self, end_ns: int) -> None:
         """A standby shows what the active station shows; that one goes on as it is."""
-        if not self._leads() and end_ns >= self._stepped_from_ns:
+        if not self._leads() and end_ns > self._stepped_from_ns:
             self._again = self._again or _Again(None, mended=True)
             self._server.stop()
 
