@@ -10,17 +10,23 @@ from pathlib import Path
 import pytest
 
 from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
+from base_station.bench.rig.said import position
 from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
+from edge.spool import Journaled, Spool
+from shared.channels import POSITION
 from shared.clock import NS_PER_S
+from shared.codec import encode
 from shared.errors import BusError
+from shared.messages import Header
 from tests.set_clock import MachineClock
 
 pytestmark = pytest.mark.timeout(300)
 
 APART_S = 3.0
 DAY_S = 86_400.0
+OLD_BOOT, BACKLOG = 0xABCD, 40_000
 
 
 @pytest.fixture
@@ -44,6 +50,25 @@ def tell_everyone(station: Station, text: str) -> None:
     station.post("/commands", {"kind": "text", "target": {"everyone": True}, "text": text})
 
 
+def fill_journal(folder: Path, unit_id: str) -> None:
+    """What a unit has said in an hour without a station."""
+    folder.mkdir(parents=True)
+    spool = Spool(folder / "journal.sqlite", lambda: OLD_BOOT, time.time_ns(), 10**9)
+    for first in range(1, BACKLOG, 1000):
+        headers = [
+            Header(unit_id, OLD_BOOT, seq, seq * 10**8) for seq in range(first, first + 1000)
+        ]
+        spool.append(
+            [Journaled(one.seq, POSITION, one.seq, encode(position(one))) for one in headers]
+        )
+    spool.close()
+
+
+def count_old(station: Station) -> int:
+    """How much of that is in a station's log."""
+    return sum(boot_id == OLD_BOOT for _, boot_id, _ in station.logged().messages)
+
+
 def complete(two: TwoStations) -> None:
     """Wait until both logs have everything that the units have said by now."""
     said = two.said()
@@ -65,8 +90,9 @@ def end_and_compare(two: TwoStations, ends_first: Station) -> None:
 def test_the_other_station_takes_over_and_the_first_comes_back(
     tmp_path: Path, closing: ExitStack
 ) -> None:
-    """Though the clocks of the two machines differ by a day."""
+    """In the middle of a long backlog, and though the two machines' clocks differ by a day."""
     two = two_stations(tmp_path, (Place(), Place()), closing)
+    fill_journal(tmp_path / "units" / "anna", "anna")
     ahead = MachineClock(tmp_path, "second")
     ahead.set_ahead(DAY_S)
     with ahead.ticks():
@@ -79,7 +105,9 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     two.wait_heard(two.first)
     two.first.post("/incidents", {"name": "Mill Lane"})
     assert two.second.refuses("/incidents", {"name": "Other"})
+    wait_until("the backlog comes", lambda: count_old(two.first) > 1000)
     two.first.kill()
+    assert count_old(two.first) < BACKLOG  # in the middle
     wait_until("the second leads", two.second.leads)
     assert [one["name"] for one in two.second.get("/incidents")] == ["Mill Lane"]
     tell_everyone(two.second, "come out")
