@@ -103,13 +103,14 @@ def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
 
 
 def note_answer(
-    state: StationState, unit: UnitState, command: SentCommand, by: str
+    state: StationState, unit: UnitState, command: SentCommand, by: str, answered_ns: int
 ) -> list[UnitState]:
-    """A person answered a command; who has heard of an evacuation is not out by that."""
+    """A person answered a command, at some time since it was given; who has heard of an evacuation
+    is not out by that.
+    """
     if command.kind is not CommandKind.PAR_REQUEST or unit.duty is None:
         return []
-    delivery = command.deliveries[unit.unit_id]
-    vouch(state, unit, by, delivery.acknowledged_ns or state.t_ns)
+    vouch(state, unit, by, max(answered_ns, command.issued_ns))
     return [unit]
 
 

@@ -134,7 +134,7 @@ class Actions:
         else:
             command = command_book.confirm(state, by, action)
             unit = state.units[action.unit_id]
-            touched = accountability.note_answer(state, unit, command, by)
+            touched = accountability.note_answer(state, unit, command, by, state.t_ns)
         yield command
         yield from self._reviewed(state, touched)
 

@@ -6,6 +6,8 @@ there at the same time are two machines under one name.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import msgspec
 
 from shared.clock import NS_PER_S
@@ -82,6 +84,16 @@ class BootState(msgspec.Struct):
         return min(self.there_to_ns, other.there_to_ns) - max(
             self.there_from_ns, other.there_from_ns
         )
+
+
+def captured_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int | None:
+    """When a message was captured, by the station's clock, at the latest now; None of a run of the
+    unit whose clock is not known.
+    """
+    boot = next((one for one in boots if one.boot_id == header.boot_id), None)
+    if boot is None or not boot.is_placed:
+        return None
+    return min(boot.station_ns(header.t_mono_ns), now_ns)
 
 
 def _said_ns(header: Header, drifted_ns: int) -> int | None:

@@ -14,6 +14,7 @@ from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
 from base_station.assessment.trust import note_trust
+from base_station.boot_state import captured_ns
 from base_station.checkpoint import Checkpoint
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
@@ -232,7 +233,9 @@ class StationPipeline:
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
         command = command_book.note_reply(self.state, unit, reply)
         if command is not None and reply.state is CommandState.ACKNOWLEDGED:
-            accountability.note_answer(self.state, unit, command, unit.name)
+            now_ns = self.state.t_ns  # an answer may have waited in the unit's journal
+            answered_ns = captured_ns(unit.boots, reply.header, now_ns) or now_ns
+            accountability.note_answer(self.state, unit, command, unit.name, answered_ns)
         return _touched(command)
 
     def _repin(self, unit_ids: Collection[str]) -> list[Output]:

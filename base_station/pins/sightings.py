@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from base_station.boot_state import captured_ns
 from base_station.live_state import StationState, UnitState
 from base_station.pins.book import MOST_PINS, put, units_of
 from base_station.pins.pin import Pin, PinKind
@@ -30,7 +31,7 @@ _KINDS: dict[SightingKind, PinKind] = {
 
 def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> set[str]:
     """The units whose past it changes; counts by reason what cannot be used."""
-    t_ns = _time_of(unit, sighting, state.t_ns)
+    t_ns = captured_ns(unit.boots, sighting.header, state.t_ns)
     reason = _reason_against(state, unit, sighting, t_ns)
     if reason:
         unit.not_used[reason] = unit.not_used.get(reason, 0) + 1
@@ -75,14 +76,6 @@ def _reason_against(
         (len(state.pins) >= MOST_SIGHTINGS, "more sightings than are kept"),
     )
     return next((why for holds, why in causes if holds), "")
-
-
-def _time_of(unit: UnitState, sighting: Sighting, now_ns: int) -> int | None:
-    """Station time; None of a run of the unit whose clock is not known."""
-    boots = [boot for boot in unit.boots if boot.boot_id == sighting.header.boot_id]
-    if not boots or not boots[0].is_placed:
-        return None
-    return min(boots[0].station_ns(sighting.header.t_mono_ns), now_ns)
 
 
 def _std_m(state: StationState, sighting: Sighting) -> float:

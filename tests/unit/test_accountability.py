@@ -8,7 +8,14 @@ from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
 from base_station.live_state import Duty, UnitState
 from shared.clock import NS_PER_S
-from shared.messages import AlarmChange, AlarmState, CommandKind, CommandState, EventKind
+from shared.messages import (
+    AlarmChange,
+    AlarmState,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    EventKind,
+)
 from shared.messages.station import (
     Assign,
     CheckIn,
@@ -151,6 +158,34 @@ def test_the_wearers_own_button_answers_a_roll_call_and_having_it_does_not(scrip
     assert left_s(script) == INTERVAL_S
     script.act(ConfirmCommand("c1", "FF-02"))
     assert duty(script, "FF-02").checked_in_by == "chief"
+
+
+def answer(script: Script, captured_s: float) -> None:
+    """The wearer's press, out of the journal of a unit whose clock is known."""
+    header = script.header("FF-01", captured_s)
+    script.say(CommandReply(header, "c1", CommandState.ACKNOWLEDGED, ""))
+
+
+def test_an_answer_that_waited_for_the_link_counts_from_when_it_was_given(script: Script) -> None:
+    script.status("FF-01")
+    script.wait(10)
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(5)
+    pressed_s = script.now_s
+    script.wait(30)
+    answer(script, pressed_s)
+    assert duty(script).asked_ns is None
+    assert left_s(script) == pytest.approx(INTERVAL_S - 30.0, abs=0.1)
+
+
+def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
+    """Whatever a unit believes of the time: who answered is not overdue."""
+    script.status("FF-01")
+    script.wait(10)
+    order(script, CommandKind.PAR_REQUEST)
+    answer(script, script.now_s - 8.0)
+    assert duty(script).asked_ns is None
+    assert left_s(script) == pytest.approx(INTERVAL_S)
 
 
 def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
