@@ -3,8 +3,9 @@
 A swinging foot turns past the full scale of many gyroscopes for some tens of
 milliseconds.  The hidden part is taken as the parabola that joins the slopes
 before and after; how wrong that may be enters the covariance about the clipped
-axis only.  A clipped force is bridged likewise: what is cut off a sprinter's swing would make the
-way too short by a sixth.
+axis only.  A clipped force is bridged and doubted likewise, along its axis: what is cut off a
+sprinter's swing would make the way too short by a sixth, and the next stance tells, by the velocity
+that is missing, how much of it was there.
 """
 
 from __future__ import annotations
@@ -64,7 +65,8 @@ def _bridge_run(ring: Ring, first: int, end: int, stop: int, axis: int, config: 
 def bridge_force(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
     """At the first sample ``k`` of a run of clipped force put the whole run right, in the ring.
 
-    Looks at samples before ``stop`` and within the look-ahead.
+    Looks at samples before ``stop`` and within the look-ahead.  ``hidden_force_noise`` of the run
+    becomes the density (m^2/s^3) of what may still be wrong.
     """
     mask = len(ring) - 1
     for axis in range(3):
@@ -94,11 +96,12 @@ def _bridge_force_run(
     if end + 1 < stop:
         fall = ring[end & mask].accel_mps2[axis] - ring[(end + 1) & mask].accel_mps2[axis]
     slope_mps3 = 0.5 * (max(side * rise, 0.0) + max(side * fall, 0.0)) / max(period_s, 1e-4)
-    peak_mps2 = config.hidden_force_share * 0.25 * slope_mps3 * duration_s
-    peak_mps2 = min(peak_mps2, config.hidden_force_limit_mps2)
+    peak_mps2 = min(0.25 * slope_mps3 * duration_s, config.hidden_force_limit_mps2)
+    doubt_mps2 = config.hidden_force_floor_mps2 + config.hidden_force_doubt * peak_mps2
     for k in range(first, end):
         u = (ring[k & mask].t_s - begin_s + 0.5 * period_s) / duration_s
         ring[k & mask].accel_mps2[axis] += side * 4.0 * u * (1.0 - u) * peak_mps2
+        ring[k & mask].hidden_force_noise[axis] = doubt_mps2**2 * duration_s
 
 
 @njit()

@@ -160,6 +160,7 @@ def admit(
             ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
             ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
             ring[slot].hidden_noise[j] = 0.0
+            ring[slot].hidden_force_noise[j] = 0.0
         for j in range(3):
             ring[slot].mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
         ring[slot].pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan

@@ -131,8 +131,8 @@ class EskfConfig(NamedTuple):
     hidden_rate_floor_radps: float = 0.5
     hidden_rate_doubt: float = 1.0  # of the bridged peak
     hidden_force_limit_mps2: float = 300.0
-    hidden_force_share: float = 0.7  # of the parabola: blows are sharper at their feet
-    hidden_force_mps2_rthz: float = 1.0  # by a clipped accelerometer
+    hidden_force_floor_mps2: float = 5.0
+    hidden_force_doubt: float = 1.0  # of the bridged peak
 
     # What is known at the start.
     start_gyro_bias_std_radps: float = 0.005

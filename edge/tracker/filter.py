@@ -163,11 +163,14 @@ def _add_noise(
     gyro_noise = config.gyro_noise_radps_rthz**2
     accel_noise = config.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
-        accel_noise += config.hidden_force_mps2_rthz**2
+        for axis in range(3):
+            hidden = ring[slot].hidden_force_noise[axis] + ring[before].hidden_force_noise[axis]
+            _doubt_axis(state, VELOCITY, axis, 0.5 * dt_s * hidden)
     accel_noise += dt_s * state.accel_bend_var
     gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
-        _doubt_clipped(ring, state, slot, dt_s)
+        for axis in range(3):
+            _doubt_axis(state, ATTITUDE, axis, dt_s * ring[slot].hidden_noise[axis])
     warmth_known = math.isfinite(progress.temperature_degc)
     bias_walk = (
         config.gyro_bias_walk_warm_radps2_rthz
@@ -184,16 +187,14 @@ def _add_noise(
 
 
 @njit()
-def _doubt_clipped(ring: Ring, state: FilterState, slot: int, dt_s: float) -> None:
-    """Widen the attitude about the axes that clipped."""
+def _doubt_axis(state: FilterState, errors: int, axis: int, variance: float) -> None:
+    """Widen three errors in navigation axes along, or about, one axis of the sensor."""
     rotation = state.rotation_nb
-    for axis in range(3):
-        variance = ring[slot].hidden_noise[axis] * dt_s
-        for i in range(3):
-            for j in range(3):
-                state.covariance[ATTITUDE + i, ATTITUDE + j] += (
-                    rotation[i, axis] * rotation[j, axis] * variance
-                )
+    for i in range(3):
+        for j in range(3):
+            state.covariance[errors + i, errors + j] += (
+                rotation[i, axis] * rotation[j, axis] * variance
+            )
 
 
 @njit()

@@ -39,6 +39,7 @@ RING = np.dtype(
         ("clipped", np.uint8, 3),  # 1 where the rate of an axis has
         ("force_clipped", np.uint8, 3),  # the same of the force, until it is bridged
         ("hidden_noise", np.float64, 3),  # rad^2/s in doubt about each axis after clipping
+        ("hidden_force_noise", np.float64, 3),  # m^2/s^3 in doubt along each axis, likewise
         ("pressure_pa", np.float64),
         ("temperature_degc", np.float64),  # inside the sensor
         ("flags", np.int64),  # Reason bits of the sample itself

@@ -1,0 +1,39 @@
+"""A sprinter whose accelerometer clips in every stride."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from edge.bench.honesty import inertial
+from edge.bench.scoring import CHI2_95_2DOF, horizontal_nees
+from edge.bench.walk_errors import track, true_way_m
+from edge.simulation import Simulation
+from edge.simulation.imu import GRAVITY_MPS2
+from edge.simulation.legs import Stand, Walk
+from edge.simulation.scenario import Scenario
+from edge.tracker.port import Reason
+
+LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
+
+
+@pytest.mark.parametrize(("full_scale_g", "short"), [(8.0, 0.03), (6.0, 0.05)])
+def test_what_was_cut_off_is_found_by_the_next_stance(full_scale_g, short):
+    simulation = Simulation(Scenario("sprint", "sprints", LEGS), seed=1)
+    full_scale_mps2 = full_scale_g * GRAVITY_MPS2
+    imu = inertial(simulation)
+    clipped = np.clip(imu.accel_mps2, -full_scale_mps2, full_scale_mps2)
+    told = replace(simulation.description, accel_full_scale_mps2=full_scale_mps2)
+    rows = track(told, replace(imu, accel_mps2=clipped), "eskf")
+    truth = simulation.truth(np.asarray(rows.t_ns * 1e-9, np.float64))
+    way_m, _ = true_way_m(rows.quaternion_nb, truth)
+    walked_m, true_m = (
+        np.hypot(*np.diff(path[::20, :2], axis=0).T).sum() for path in (rows.position_n_m, way_m)
+    )
+    assert walked_m == pytest.approx(true_m, rel=short)
+    every = slice(100, None, 100)
+    nees = horizontal_nees(rows.position_n_m[every], way_m[every], rows.position_cov_m2[every])
+    assert np.mean(nees <= CHI2_95_2DOF) > 0.9
+    assert np.mean(rows.reasons & int(Reason.ACCEL_SATURATED) != 0) > 0.3
