@@ -6,6 +6,7 @@ is tried again for ever.  That there is no fix is no fault: it is what happens i
 
 from __future__ import annotations
 
+import errno
 import logging
 from collections import deque
 from dataclasses import replace
@@ -101,10 +102,15 @@ class GpsReader:
         return True
 
     def gone(self, error: OSError | None) -> None:
-        if error is None:
-            self._say_gone("it has ended the connection; is it on, and its program running?")
-        else:
+        if self._garbled > self._understood:
+            self._say_gone(self._why_silent())
+        elif error is not None:
             self._say_gone(why_not(error, self._dialect.place))
+        elif self._dialect.place.host:
+            self._say_gone("it has ended the connection; is its program running?")
+        else:
+            self._say_gone(why_not(OSError(errno.EIO, "the line has ended"), self._dialect.place))
+        self._count_anew(self._looked_ns)
 
     def _put(self, reports: tuple[Report, ...]) -> None:
         for report in reports:
@@ -128,10 +134,7 @@ class GpsReader:
         if self._repeats:
             return "it says the same instant again and again: it hangs; switch it off and on"
         if self._garbled > self._understood:
-            return (
-                f"what comes is nothing that a GPS receiver says: {self._first_garbled}; is this "
-                "the right device, and on a serial line the right ?baud="
-            )
+            return f"what comes is no receiver's: {self._first_garbled}; {self._dialect.hint}"
         if self._has_spoken:
             return "it has fallen silent; is it on, and the cable in?"
         return "the line is open and nothing comes; is it on, and the cable in?"
@@ -142,7 +145,7 @@ class GpsReader:
         if self._garbled > max(_FEW, _MANY * came):
             self._say(
                 f"{self._garbled} of {came} lines in {_LOOK_NS // NS_PER_S} s could not be read, "
-                f"such as {self._first_garbled}; look at the cable or ?baud="
+                f"such as {self._first_garbled}; {self._dialect.hint}"
             )
         self._count_anew(now_ns)
 

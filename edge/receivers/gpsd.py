@@ -50,6 +50,7 @@ class Gpsd:
             )
         self.place = LinePlace(host, port, "", 0)
         self.longest = _LONGEST
+        self.hint = "is this the port of gpsd (2947)?"
         self._present: set[str]
         self._forget()
 

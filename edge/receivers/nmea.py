@@ -26,6 +26,7 @@ class Nmea:
         self.place: LinePlace = line_place("nmea", text, values, port=None, baud=_BAUD)
         self.latency_s = values.get("latency", _LATENCY_S)
         self.longest = LONGEST
+        self.hint = "is the cable good, this the right device, and on a serial line ?baud= right?"
         self._forget()
 
     def __str__(self) -> str:

@@ -35,6 +35,11 @@ class Dialect(Protocol):
         """Bytes of a line."""
         ...
 
+    @property
+    def hint(self) -> str:
+        """What to look at where its lines cannot be understood."""
+        ...
+
     def __str__(self) -> str:
         """Which receiver, for a person."""
         ...

@@ -1,0 +1,225 @@
+"""A satellite receiver that is off, cut, noisy, stuck or set wrongly: told, and survived."""
+
+from __future__ import annotations
+
+import math
+import socket
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import pytest
+
+from edge.receivers import open_receiver
+from edge.receivers.gps_reader import GpsReader
+from edge.samples import GpsSample
+from shared.clock import SystemClock
+from tests.gps_receiver import (
+    DEVICE,
+    GpsdServer,
+    Hasty,
+    Told,
+    burst,
+    gga,
+    gpsd_report,
+    json_line,
+    sentence,
+)
+from tests.waiting import until
+from tests.ximu3_device import PtyDevice, TcpDevice
+
+HERE = Told()
+Device = GpsdServer | TcpDevice | PtyDevice
+OneDevice = TypeVar("OneDevice", GpsdServer, TcpDevice, PtyDevice)
+MANY = [replace(HERE, of_day_s=HERE.of_day_s + k) for k in range(40)]
+NOISE = np.random.default_rng(2).bytes(3000)
+
+
+class Heard:
+    """What a unit takes of a receiver."""
+
+    def __init__(self, text: str, hasty: bool) -> None:
+        self.reader: GpsReader = open_receiver(text, Hasty() if hasty else SystemClock())
+        self._fixes: list[GpsSample] = []
+        self._faults: list[str] = []
+        self.reader.start()
+
+    @property
+    def fixes(self) -> list[GpsSample]:
+        self._fixes += self.reader.take()
+        return self._fixes
+
+    @property
+    def faults(self) -> list[str]:
+        self._faults += self.reader.take_faults()
+        return self._faults
+
+    def hears(self, words: str) -> None:
+        until(lambda: any(words in fault for fault in self.faults), words, 20.0)
+
+    def has(self, count: int) -> None:
+        until(lambda: len(self.fixes) >= count, f"{count} fixes", 20.0)
+
+
+class Ears:
+    """Devices are closed after those who listen to them."""
+
+    def __init__(self) -> None:
+        self.listening: list[Heard] = []
+        self.pretended: list[Device] = []
+
+    def pretend(self, device: OneDevice) -> OneDevice:
+        self.pretended.append(device)
+        return device
+
+    def __call__(self, text: str, hasty: bool = False) -> Heard:
+        self.listening.append(Heard(text, hasty))
+        return self.listening[-1]
+
+
+@pytest.fixture
+def hear() -> Iterator[Ears]:
+    ears = Ears()
+    yield ears
+    for heard in ears.listening:
+        heard.reader.close()
+        assert not heard.reader.is_alive
+    for device in ears.pretended:
+        device.close()
+
+
+def test_half_lines_and_noise_cost_what_they_hit(hear: Ears) -> None:
+    """Eleven bursts: half of the first one, one of which a byte is wrong, noise between."""
+    first, *others = map(burst, MANY[:11])
+    others[4] = others[4].replace(b"5742", b"5743", 1)
+    said = b"".join([first[150:], *others[:7], b"\xff\x00\n\x81\n", *others[7:]])
+    device = hear.pretend(TcpDevice([said], hangs=True))
+    heard = hear(f"nmea:{device.source}")
+    heard.has(10)
+    assert {fix.fix_type for fix in heard.fixes} == {3}
+    assert sum(math.isnan(fix.speed_mps) for fix in heard.fixes) == 1, "one has lost its RMC"
+    assert all(fix.lat_deg == pytest.approx(57.7) for fix in heard.fixes)
+    assert heard.reader.garbled == 4
+    assert heard.faults == []
+
+
+def test_a_line_that_loses_much_is_told(hear: Ears) -> None:
+    def said() -> Iterator[bytes]:
+        for told in MANY:
+            time.sleep(0.05)  # a second, at the hasty clock's pace
+            yield burst(told) + b"$GNRMC,0927\n" * 2
+
+    device = hear.pretend(TcpDevice(said(), hangs=True))
+    hear(f"nmea:{device.source}", hasty=True).hears("could not be read, such as b'$GNRMC,0927'")
+
+
+def test_a_receiver_that_is_not_there_yet_is_waited_for(hear: Ears) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    heard = hear(f"gpsd://127.0.0.1:{port}")
+    heard.hears("no fixes: the connection is refused")
+    server = hear.pretend(GpsdServer([gpsd_report(HERE)], port=port, hangs=True))
+    heard.has(1)
+    assert server.asked[0].startswith(b"?WATCH=")
+    assert len([fault for fault in heard.faults if "refused" in fault]) == 1
+
+
+def test_gpsd_that_is_restarted_is_told_and_taken_up_again(hear: Ears) -> None:
+    sessions = [gpsd_report(MANY[0])], [gpsd_report(MANY[5])]
+    server = hear.pretend(GpsdServer(*sessions))
+    heard = hear(f"gpsd:{server.source}")
+    heard.has(2)
+    heard.hears("it has ended the connection")
+    steps_s = np.diff([fix.t_ns for fix in heard.fixes]) * 1e-9
+    assert 0.0 < steps_s[0] < 10.0
+
+
+OTHERS = sentence("GNVTG,,T,,M,0.02,N,0.04,K,A") + sentence("GPGSV,1,1,00,1")
+UBX = b"\xb5b\x01\x07\x5c\x00" + bytes(range(92)) + b"\n"
+STUCK = [gga(HERE)] * 20
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ([], "the line is open and nothing comes"),
+        ([NOISE], "what comes is no receiver's"),
+        ([UBX * 5], "it sends u-blox's binary messages"),
+        ([OTHERS * 5], "it sends GSV, VTG and no GGA, GNS or RMC sentences"),
+        (STUCK, "it says the same instant again and again"),
+        ([burst(HERE)], "it has fallen silent"),
+    ],
+    ids=["nothing", "noise", "binary", "others", "stuck", "silent"],
+)
+def test_a_line_without_fixes_is_told_and_opened_again(
+    hear: Ears, said: Iterable[bytes], told: str
+) -> None:
+    again = replace(HERE, of_day_s=HERE.of_day_s + 60.0)
+    device = hear.pretend(TcpDevice(said, [burst(again)], hangs=True))
+    heard = hear(f"nmea:{device.source}", hasty=True)
+    heard.hears(told)
+    until(lambda: any(math.isfinite(fix.speed_mps) for fix in heard.fixes), "a fix")
+
+
+@pytest.mark.parametrize(
+    ("devices", "said", "told"),
+    [
+        ((), [], "gpsd has no receiver; is it plugged in"),
+        ((DEVICE,), [], "gpsd hears nothing of its receiver"),
+        ((DEVICE,), [json_line("DEVICE", path=DEVICE, activated=0)], "gpsd has no receiver"),
+        ((DEVICE,), [b"SSH-2.0-OpenSSH_9.6\r\n" * 9], "gpsd hears nothing"),
+    ],
+    ids=["no device", "silent device", "unplugged", "odd words"],
+)
+def test_gpsd_without_a_receiver_is_told(
+    hear: Ears, devices: tuple[str, ...], said: Iterable[bytes], told: str
+) -> None:
+    server = hear.pretend(GpsdServer(said, [gpsd_report(HERE)], devices=devices, hangs=True))
+    heard = hear(f"gpsd:{server.source}", hasty=True)
+    heard.hears(told)
+    heard.has(1)
+
+
+def test_what_is_no_gpsd_is_told(hear: Ears) -> None:
+    server = hear.pretend(TcpDevice([b"SSH-2.0-OpenSSH_9.6\r\n"]))
+    hear(f"gpsd://127.0.0.1:{server.port}").hears("is this the port of gpsd")
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        port = silent.getsockname()[1]
+        hear(f"gpsd://127.0.0.1:{port}", hasty=True).hears("the line is open and nothing comes")
+
+
+def test_another_speed_than_said_is_garbage_on_a_serial_line(hear: Ears) -> None:
+    device = hear.pretend(PtyDevice([NOISE]))
+    hear(f"nmea:{device.source}?baud=38400", hasty=True).hears("?baud= right")
+
+
+def test_a_cable_that_is_pulled_is_told(hear: Ears) -> None:
+    device = hear.pretend(PtyDevice(map(burst, MANY[:3])))
+    heard = hear(f"nmea:{device.source}")
+    heard.has(3)
+    device.close()
+    heard.hears("no fixes: it went away; is the cable in")
+
+
+def test_a_receiver_is_plugged_in_again(hear: Ears, tmp_path: Path) -> None:
+    """As udev names it: the same name for another terminal."""
+    name = tmp_path / "gps"
+    heard = None
+    for told in (MANY[0], MANY[9]):
+        device = PtyDevice([burst(told)])
+        name.unlink(missing_ok=True)
+        name.symlink_to(device.source)
+        heard = heard or hear(f"nmea:{name}")
+        count = len(heard.fixes)
+        heard.has(count + 1)
+        device.close()
+
+
+def test_what_is_no_serial_port_is_told(hear: Ears, tmp_path: Path) -> None:
+    plain = tmp_path / "file"
+    plain.write_bytes(burst(HERE))
+    hear(f"nmea:{plain}").hears("it is no serial port")
+    hear(f"nmea:{tmp_path / 'ttyACM7'}").hears("there is no such device")
