@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
 from base_station.api.field_errors import sentence_of
-from shared.errors import ConfigError, MusterError, StoreError, UserError
+from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
 
 _log = logging.getLogger(__name__)
 
@@ -65,8 +65,11 @@ def handle_problems(app: FastAPI) -> None:
         return problem_response(422, "; ".join(sentences))
 
     @app.exception_handler(MusterError)
-    async def failed(_request: Request, error: MusterError) -> JSONResponse:
-        return problem_response(_status_of(error), str(error))
+    async def failed(request: Request, error: MusterError) -> JSONResponse:
+        status = _status_of(error)
+        if status >= 500:  # nobody's mistake but the station's
+            _log.warning("%s %s: %s", request.method, request.url.path, error)
+        return problem_response(status, str(error))
 
     @app.exception_handler(Exception)
     async def broke(request: Request, error: Exception) -> JSONResponse:
@@ -80,7 +83,7 @@ def _status_of(error: MusterError) -> int:
             return 409
         case ConfigError():
             return 422
-        case StoreError():
+        case StoreError() | LogError():
             return 503
         case _:
             return 500
