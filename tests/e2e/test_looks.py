@@ -78,3 +78,16 @@ def test_evacuate_is_at_hand_however_far_the_list_is_scrolled(stage: Stage, scre
     assert bar is not None
     assert card is not None
     assert card["y"] >= bar["y"] + bar["height"] - 1
+
+
+@pytest.mark.parametrize(("screen", "least_px"), [("phone", 240), ("phone on its side", 100)])
+def test_in_the_past_a_phone_has_room_for_the_plan(
+    stage: Stage, screen: str, least_px: float
+) -> None:
+    page, _ = stage.open(scenes.past(), screen)
+    page.get_by_role("button", name="Plan").first.click()
+    box = page.locator(".map").bounding_box()
+    assert box is not None
+    footer = page.locator(".footer").bounding_box()
+    assert footer is not None
+    assert min(box["y"] + box["height"], footer["y"]) - box["y"] >= least_px
