@@ -17,10 +17,10 @@ from base_station.fusion.learnt.legs import (
     Axis,
     Drift,
     Leg,
+    Weighed,
     along_wall,
     quarter,
     remember,
-    shown_by,
 )
 
 WINDOW = 16  # of the last legs, one after each turn, that are asked for an axis
@@ -63,7 +63,7 @@ class AxisFilter(msgspec.Struct):
             return self._find(turn_rad, variance, known, drift)
         self._catch_up(variance)
         held = self._held(turn_rad, variance)
-        shown = shown_by(self.legs, drift, held)
+        shown = Weighed.of(self.legs, drift, held.direction_rad).given(held.variance)
         if shown.evidence < 0.0:
             return turn_rad, variance  # nobody walks along walls here
         off_rad = shown.direction_rad - held.direction_rad
@@ -82,12 +82,13 @@ class AxisFilter(msgspec.Struct):
         self, turn_rad: float, variance: float, known: Axis | None, drift: Drift
     ) -> tuple[float, float]:
         """The same while no axis is held."""
-        shown = shown_by(self.legs, drift, None)
+        about_rad = 0.0 if known is None else known.direction_rad - turn_rad
+        weighed = Weighed.of(self.legs, drift, about_rad)
+        shown = weighed.alone()
         if shown.evidence > SHOWN:
             return self._begin(shown.direction_rad, drift)
         if known is not None:
-            there = Axis(known.direction_rad - turn_rad, known.variance + variance)
-            shown = shown_by(self.legs, drift, there)
+            shown = weighed.given(known.variance + variance)
             if shown.evidence > TOLD and shown.variance < SETTLED_RAD**2:
                 return self._begin(shown.direction_rad, drift)
         return turn_rad, variance

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from shared.geo import wrap_pi
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 LOOK_M = 0.4  # way after which the direction is looked at
 BENT_RAD = math.radians(25.0)  # from the leg so far: another one begins
@@ -32,9 +33,12 @@ SHOWN = 3.0  # log odds from which they show an axis
 TRIALS = 2.4  # of log odds that some axis fits by chance: a quarter turn by a leg's width
 WANDER_VAR_PER_S = 0.004**2  # of an own heading beside its drift, while moving
 CELLS = 44  # of a quarter turn
+STEP_RAD = QUARTER_RAD / CELLS
 RATES = np.linspace(-2.0, 2.0, 7)  # of drift, in standard deviations from what is believed
 ASTRAY = 0.02  # of what is believed of a direction: that it is quite another
 OFF = 2.5  # standard deviations from a direction: not that one
+
+_RATE_WEIGHTS = np.exp(-0.5 * RATES**2) / np.exp(-0.5 * RATES**2).sum()
 
 
 class Leg(msgspec.Struct, frozen=True):
@@ -96,41 +100,54 @@ class Shown(NamedTuple):
     kept: float  # of the belief: that it is the one that was held before
 
 
-def shown_by(legs: Sequence[Leg], drift: Drift, held: Axis | None) -> Shown:
-    """``held``: what was believed before; None: any direction is as likely."""
-    since_s = legs[-1].moved_s - np.array([leg.moved_s for leg in legs])
-    std_radps = math.sqrt(drift.variance)
-    rates_radps = drift.radps + std_radps * RATES
-    now_rad = np.array([leg.direction_rad for leg in legs])[:, None]
-    now_rad = now_rad - rates_radps * since_s[:, None]  # (legs, rates)
-    variances = np.array([leg.variance for leg in legs]) + WANDER_VAR_PER_S * since_s
-    variances += (std_radps * (RATES[1] - RATES[0]) * since_s) ** 2 / 12.0
-    step_rad = QUARTER_RAD / CELLS
-    quarters = 1 if held is None else 2  # past an eighth of a turn it may be the next wall
-    cells = step_rad * np.arange(-quarters * CELLS // 2, quarters * CELLS // 2 + quarters - 1)
-    about_rad = float(now_rad[-1, 0]) if held is None else held.direction_rad
-    odds = _odds(now_rad[..., None] - about_rad - cells, variances[:, None, None]).sum(axis=0)
-    likely = np.exp(-0.5 * RATES**2) @ np.exp(odds - odds.max()) / np.exp(-0.5 * RATES**2).sum()
-    if held is None:
-        best = int(likely.argmax())
-        about_rad += float(cells[best])
-        likely = np.roll(likely, CELLS // 2 - best)
-        before = np.full(CELLS, 1.0 / CELLS)
-    else:
-        spread = held.variance + step_rad**2 / 12.0  # a cell stands for its width
-        before = np.exp(-0.5 * cells**2 / spread)
-        near = np.abs(cells) < QUARTER_RAD / 2.0
+class Weighed(NamedTuple):
+    """How much likelier legs are with an axis in one direction or another than as legs of any."""
+
+    about_rad: float
+    likely: Floats  # (CELLS,): in that direction, and ``STEP_RAD`` further with each cell
+
+    @staticmethod
+    def of(legs: Sequence[Leg], drift: Drift, about_rad: float) -> Weighed:
+        """Whatever the drift was."""
+        since_s = legs[-1].moved_s - np.array([leg.moved_s for leg in legs])
+        std_radps = math.sqrt(drift.variance)
+        drifted_rad = np.outer(since_s, drift.radps + std_radps * RATES)  # (legs, rates)
+        then_rad = np.array([leg.direction_rad for leg in legs]) - about_rad
+        off_rad = quarter(
+            (then_rad[:, None] - drifted_rad)[..., None] - STEP_RAD * np.arange(CELLS)
+        )
+        variances = np.array([leg.variance for leg in legs]) + WANDER_VAR_PER_S * since_s
+        variances += (std_radps * (RATES[1] - RATES[0]) * since_s) ** 2 / 12.0
+        fits = np.exp(off_rad**2 * (-0.5 / variances)[:, None, None])
+        fits *= (ALONG_WALLS * QUARTER_RAD / np.sqrt(math.tau * variances))[:, None, None]
+        by_rate = (fits + (1.0 - ALONG_WALLS)).prod(axis=0)
+        return Weighed(about_rad, _RATE_WEIGHTS @ by_rate)
+
+    def alone(self) -> Shown:
+        """Where any direction is as likely beforehand."""
+        best = int(self.likely.argmax())
+        rows = np.arange(-CELLS // 2, CELLS // 2)
+        believed = self.likely[(rows + best) % CELLS] / CELLS
+        return _shown(self.about_rad + best * STEP_RAD, rows, believed, 0.0)
+
+    def given(self, variance: float) -> Shown:
+        """Where the direction that they are weighed about was believed with this variance."""
+        rows = np.arange(-CELLS, CELLS + 1)  # past an eighth of a turn it may be the next wall
+        spread = variance / STEP_RAD**2
+        before = np.exp(-0.5 * rows**2 / (spread + 1.0 / 12.0))  # a cell stands for its width
+        near = np.abs(rows) < CELLS / 2.0
         before = (1.0 - ASTRAY) * before / before.sum() + ASTRAY * near / near.sum()
-    believed = before * likely
+        believed = before * self.likely[rows % CELLS]
+        kept = float(believed[rows**2 < OFF**2 * spread + 1.0].sum() / believed.sum())
+        return _shown(self.about_rad, rows, believed, kept)
+
+
+def _shown(about_rad: float, rows: Ints, believed: Floats, kept: float) -> Shown:
     whole = float(believed.sum())
-    believed /= whole
-    mean_rad = float(believed @ cells)
-    variance = float(believed @ (cells - mean_rad) ** 2) + step_rad**2 / 12.0
-    kept = 0.0
-    if held is not None:
-        kept = float(believed[cells**2 < OFF**2 * held.variance + step_rad**2].sum())
-    evidence = math.log(whole) + float(odds.max())
-    return Shown(evidence, about_rad + mean_rad, variance, kept)
+    believed = believed / whole
+    mean = float(believed @ rows)
+    variance = float(believed @ (rows - mean) ** 2) + 1.0 / 12.0
+    return Shown(math.log(whole), about_rad + mean * STEP_RAD, variance * STEP_RAD**2, kept)
 
 
 Angle = TypeVar("Angle", float, Floats)
@@ -145,9 +162,13 @@ def remember(legs: list[Leg], leg: Leg) -> None:
 
 def evidence(legs: Sequence[Leg], axis: Axis) -> float:
     """Log odds of walls with such an axis against legs of any direction."""
-    off_rad = np.array([leg.direction_rad for leg in legs]) - axis.direction_rad
-    variances = axis.variance + np.array([leg.variance for leg in legs])
-    return float(_odds(off_rad, variances).sum())
+    odds = 0.0
+    for leg in legs:
+        spread = axis.variance + leg.variance
+        off_rad = quarter(leg.direction_rad - axis.direction_rad)
+        fits = math.exp(-0.5 * off_rad**2 / spread) / math.sqrt(math.tau * spread)
+        odds += math.log(ALONG_WALLS * fits * QUARTER_RAD + 1.0 - ALONG_WALLS)
+    return odds
 
 
 def along_wall(off_rad: float, spread: float) -> float:
@@ -159,12 +180,6 @@ def along_wall(off_rad: float, spread: float) -> float:
 def quarter(angle_rad: Angle) -> Angle:
     """The nearest that is as good, within an eighth of a turn."""
     return (angle_rad + QUARTER_RAD / 2.0) % QUARTER_RAD - QUARTER_RAD / 2.0
-
-
-def _odds(off_rad: Floats, variances: Floats) -> Floats:
-    """Log odds of legs so far off an axis."""
-    fits = np.exp(-0.5 * quarter(off_rad) ** 2 / variances) / np.sqrt(math.tau * variances)
-    return np.asarray(np.log(ALONG_WALLS * fits * QUARTER_RAD + 1.0 - ALONG_WALLS))
 
 
 def _direction(vector_m: tuple[float, float]) -> float:
