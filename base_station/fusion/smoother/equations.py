@@ -1,14 +1,23 @@
-"""Weighted linear equations between few unknowns each, and their least-squares solution."""
+"""Weighted linear equations between few unknowns each, and their least-squares solution.
+
+The unknowns are those of some chains, each coupled within itself from knot to knot only, and behind
+them a few that all chains share: an arrow.  Chains are eliminated one by one, which leaves a small
+problem of what is shared (Golub and Van Loan, Matrix Computations, sections 4.3 and 4.5).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.linalg import cho_factor, cho_solve, cho_solve_banded, cholesky_banded
+from scipy.sparse import coo_matrix, csr_matrix
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+LEAST_PART = 1e-13  # of each unknown's information is added: numbers have so many digits
 
 
 class Equations:
@@ -44,35 +53,72 @@ class Equations:
         places = (np.concatenate(self._rows), np.concatenate(self._columns))
         return csr_matrix((entries, places), shape=(self._count, self._unknowns))
 
-    def normal(self) -> NormalEquations:
+    def normal(self, chains: Mapping[str, slice], states: int) -> NormalEquations:
+        """``chains``: the columns of each, with so many ``states`` a knot, from the first on."""
         matrix = self.matrix()
-        return NormalEquations((matrix.T @ matrix).tocsc(), matrix.T @ np.concatenate(self._right))
+        right = matrix.T @ np.concatenate(self._right)
+        return NormalEquations((matrix.T @ matrix).tocsr(), right, chains, states)
 
 
 class NormalEquations:
-    """Positive definite; factorised when first asked."""
+    """Positive definite."""
 
-    def __init__(self, information: csr_matrix, right: Floats) -> None:
-        self.information = information
-        self._right = right
-        self._factor: SuperLU | None = None
+    def __init__(
+        self, information: csr_matrix, right: Floats, chains: Mapping[str, slice], states: int
+    ) -> None:
+        self._chains, self._right = chains, right
+        self._first = first = max(own.stop for own in chains.values())
+        self.blocks = {name: information[own, own].tocoo() for name, own in chains.items()}
+        self._factors = {
+            name: cholesky_banded(_banded(block, 2 * states), lower=True, check_finite=False)
+            for name, block in self.blocks.items()
+        }
+        self.leans: dict[str, Floats] = {}  # of each chain's unknowns on the shared ones
+        self._beside: dict[str, Floats] = {}
+        whole = information[first:, first:].toarray()
+        for name, own in chains.items():
+            beside = self._beside[name] = information[own, first:].toarray()
+            self.leans[name] = self._of_chain(name, beside)
+            whole -= beside.T @ self.leans[name]
+        self._whole = cho_factor(0.5 * (whole + whole.T))
+
+    @property
+    def shared_covariance(self) -> Floats:
+        """Of the shared unknowns."""
+        spread: Floats = cho_solve(self._whole, np.eye(len(self._right) - self._first))
+        return 0.5 * (spread + spread.T)
 
     def solve(self) -> Floats:
-        x: Floats = self._factorised().solve(self._right)
-        return x
+        return self._solve(self._right[:, None])[:, 0]
 
     def spread_of(self, rows: csr_matrix) -> Floats:
         """Covariance of ``rows @ x``, (m, m)."""
         columns = rows.T.toarray()
-        spread: Floats = columns.T @ self._factorised().solve(columns)
+        spread: Floats = columns.T @ self._solve(columns)
         return 0.5 * (spread + spread.T)
 
-    def _factorised(self) -> SuperLU:
-        if self._factor is None:
-            self._factor = splu(
-                self.information,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        return self._factor
+    def _solve(self, right: Floats) -> Floats:
+        x = np.zeros_like(right)
+        shared = right[self._first :].copy()
+        for name, own in self._chains.items():
+            if right[own].any():
+                x[own] = self._of_chain(name, right[own])
+                shared -= self._beside[name].T @ x[own]
+        x[self._first :] = shared = cho_solve(self._whole, shared)
+        for name, own in self._chains.items():
+            x[own] -= self.leans[name] @ shared
+        return x
+
+    def _of_chain(self, name: str, right: Floats) -> Floats:
+        solved: Floats = cho_solve_banded((self._factors[name], True), right, check_finite=False)
+        return solved
+
+
+def _banded(block: coo_matrix, width: int) -> Floats:
+    """Lower form of LAPACK: (width, n)."""
+    lower = block.row >= block.col
+    rows, columns = block.row[lower], block.col[lower]
+    band = np.zeros((width, block.shape[0]))
+    band[rows - columns, columns] = block.data[lower]
+    band[0] *= 1.0 + LEAST_PART
+    return band

@@ -116,7 +116,7 @@ class Graph:
         for landmark, place_m in zip(self.landmarks, shared.landmarks_m, strict=True):
             self.visited.add(equations, landmark, column, place_m)
             column += 2
-        return equations.normal()
+        return equations.normal(self._columns, STATES)
 
     def _align(self) -> None:
         """See of which stretches the evidence tells the heading."""
@@ -168,14 +168,13 @@ class Graph:
         """Covariances of all knots (k, 7, 7) by unit; ``on_plan``: of where they lie on the plan,
         which may lie aside itself.
         """
-        plus = self.shared.plan if on_plan else None
-        information = self._normal.information
-        shared = shared_spreads(information, self._columns, self.shared.axis, STATES, plus)
+        plus = self.shared.plan - self.shared.axis if on_plan else None
+        normal = self._normal
+        shared = shared_spreads(normal.leans, normal.shared_covariance, STATES, plus)
         own = self.own_spreads()
         return {one: own[one] + shared[one] for one in own}
 
     def own_spreads(self) -> dict[str, Floats]:
         """The same without what all units err by together."""
-        information = self._normal.information
-        blocks = {one: information[own, own].tocsc() for one, own in self._columns.items()}
+        blocks = self._normal.blocks
         return {one: chain_covariances(block, STATES) for one, block in blocks.items()}

@@ -12,8 +12,7 @@ import numpy as np
 from numba import njit
 from numba.core.types import float64, void
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, csr_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_matrix
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +20,7 @@ _BLOCKS = float64[:, :, ::1]
 UNKNOWN_VAR = 1e8  # said of a knot where the numbers are too far apart to tell
 
 
-def chain_covariances(information: csc_matrix, states: int) -> Floats:
+def chain_covariances(information: coo_matrix, states: int) -> Floats:
     """(k, states, states), of a chain's part of an information matrix."""
     count = information.shape[0] // states
     diagonal, beside = _blocks(information, count, states)
@@ -34,28 +33,21 @@ def chain_covariances(information: csc_matrix, states: int) -> Floats:
 
 
 def shared_spreads(
-    information: csr_matrix,
-    chains: Mapping[str, slice],
-    first: int,
-    states: int,
-    plus: int | None = None,
+    leans: Mapping[str, Floats], covariance: Floats, states: int, plus: int | None = None
 ) -> dict[str, Floats]:
-    """What unknowns that all chains share, from column ``first`` on, add to the covariances of
-    each chain's knots: (k, states, states).  ``plus``: the first of two shared unknowns that are
-    added to the first two of every knot.
+    """What unknowns (m) that all chains share add to the covariances of each chain's knots: (k,
+    states, states).  ``leans`` (k states, m): of each chain's unknowns on the shared ones, whose
+    ``covariance`` is (m, m).  ``plus``: the first of two of those that are added to the first two
+    of every knot.
     """
-    leans: dict[str, Floats] = {}  # of the chain's unknowns on the shared ones
-    whole = information[first:, first:].toarray()
-    for name, own in chains.items():
-        beside = information[own, first:].toarray()
-        leans[name] = splu(information[own, own].tocsc()).solve(beside)
-        whole -= beside.T @ leans[name]
-    root = np.linalg.cholesky(np.linalg.inv(0.5 * (whole + whole.T)))
+    root = np.linalg.cholesky(covariance)
     spreads = {}
-    for name, lean in leans.items():
+    for name, hanging in leans.items():
+        lean = hanging
         if plus is not None:
-            lean[0::states, plus - first] -= 1.0
-            lean[1::states, plus + 1 - first] -= 1.0
+            lean = hanging.copy()
+            lean[0::states, plus] -= 1.0
+            lean[1::states, plus + 1] -= 1.0
         parts = (lean @ root).reshape(-1, states, len(root))
         spreads[name] = parts @ parts.transpose(0, 2, 1)
     return spreads
@@ -86,9 +78,8 @@ def _substitute(diagonal: Floats, beside: Floats, covariances: Floats) -> None:
         covariances[knot] += gains[knot] @ covariances[knot + 1] @ gains[knot].T
 
 
-def _blocks(information: csc_matrix, count: int, states: int) -> tuple[Floats, Floats]:
+def _blocks(entries: coo_matrix, count: int, states: int) -> tuple[Floats, Floats]:
     """Blocks on the diagonal (k, s, s), and those right of them (k - 1, s, s)."""
-    entries = information.tocoo()
     row, i = np.divmod(entries.row, states)
     column, j = np.divmod(entries.col, states)
     diagonal = np.zeros((count, states, states))
