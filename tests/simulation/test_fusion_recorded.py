@@ -17,7 +17,6 @@ from base_station.bench.fusion.recorded import (
     turned,
 )
 from base_station.bench.fusion.walks import RATE_HZ, Receiver, Scores, Walk, run
-from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker, write_csv
@@ -30,12 +29,6 @@ TRIALS = ("31", "37", "40", "44")  # of ``footprints``: walks with a footprint a
 @pytest.fixture(scope="module")
 def tracked(walks: Path) -> list[Tracked]:
     return [_track(walks / "footprints" / trial) for trial in TRIALS]
-
-
-@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
-def kind(request: pytest.FixtureRequest) -> FuserKind:
-    found: FuserKind = request.param
-    return found
 
 
 def test_the_stated_region_holds_the_measured_footprints(

@@ -18,18 +18,11 @@ from base_station.bench.incident.run import (
     fuse_all,
 )
 from base_station.bench.incident.scores import CHI2_95_2DOF
-from base_station.fusion import FUSERS
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Fuser, FuserKind
 
 SEEDS = range(12)
 INCIDENTS = range(8001, 8007)
-
-
-@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
-def kind(request: pytest.FixtureRequest) -> FuserKind:
-    found: FuserKind = request.param
-    return found
 
 
 def test_what_all_learn_of_a_building_holds_each_of_them(kind: FuserKind) -> None:

@@ -11,7 +11,6 @@ import pytest
 from base_station.bench.incident.run import Floats, Person, Run, Timing, draw_incident, fuse
 from base_station.bench.incident.scores import CHI2_95_2DOF
 from base_station.bench.incident.sensors import position_of
-from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind, Start
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
@@ -22,12 +21,6 @@ PEOPLE = 3
 @pytest.fixture(scope="module")
 def people() -> list[Person]:
     return draw_incident(np.random.default_rng(11))[:PEOPLE]
-
-
-@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
-def kind(request: pytest.FixtureRequest) -> FuserKind:
-    found: FuserKind = request.param
-    return found
 
 
 def errors_m(person: Person, run: Run) -> Floats:

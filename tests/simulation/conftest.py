@@ -1,0 +1,14 @@
+"""What simulated people are put before."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.fusion import FUSERS
+from base_station.fusion.port import FuserKind
+
+
+@pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)
+def kind(request: pytest.FixtureRequest) -> FuserKind:
+    found: FuserKind = request.param
+    return found
