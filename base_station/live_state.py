@@ -215,6 +215,7 @@ class StationState(msgspec.Struct):
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    far_fixes: int = 0  # in a row, too far from there to be of this site
     sky: Sky = msgspec.field(default_factory=Sky)
     barometers: Barometers = msgspec.field(default_factory=Barometers)
     start_set: bool = False  # somebody said where a unit began

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
+from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Estimate, FixVerdict, PlaceFix
 from base_station.live_state import StationState, UnitState
 from base_station.positioning.clocks import in_clock_of_path, station_ns
@@ -13,6 +14,7 @@ from shared.geo import anchor_through
 from shared.messages import GpsFix
 
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
+FAR_FIXES = 10  # in a row that nobody's contradicts: it was the first one that was wrong
 STAYS_M = 5.0  # walked by what stays where it is: nobody carries it about
 
 
@@ -25,7 +27,8 @@ def place_fix(
     """The fix in the incident frame, or why it is not used.
 
     Where neither a plan nor a person gives the frame a meaning, the first good fix does, so that
-    nobody moves by it: ``estimate`` tells where the unit is then.
+    nobody moves by it: ``estimate`` tells where the unit is then.  If all later ones are of
+    elsewhere it was wrong, and the frame lies there; nobody moves by that either.
     """
     verdict = screen(fix)
     if not verdict.accepted:
@@ -39,13 +42,20 @@ def place_fix(
         _anchor_by(state, fix, estimate())
     if state.anchor is None:
         return FixVerdict(False, "the site has no anchor")
-    return in_incident_frame(in_clock_of_path(unit, fix), state.anchor)
+    place = in_incident_frame(in_clock_of_path(unit, fix), state.anchor)
+    if isinstance(place, PlaceFix):
+        state.far_fixes = 0
+    elif state.anchor_by_gps and may_anchor(fix):
+        state.far_fixes += 1
+        if state.far_fixes >= FAR_FIXES:
+            _anchor_by(state, fix, estimate())
+    return place
 
 
 def _anchor_by(state: StationState, fix: GpsFix, here: Estimate | None) -> None:
     here_m = (0.0, 0.0, 0.0) if here is None else (here.north_m, here.east_m, here.down_m)
     state.anchor = anchor_through(fix.lat_deg, fix.lon_deg, fix.height_m, here_m)
-    state.anchor_by_gps = True
+    state.anchor_by_gps, state.far_fixes, state.sky = True, 0, Sky()
 
 
 def without_sky(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFix:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import msgspec
 import pytest
@@ -137,6 +138,34 @@ def test_the_first_good_fix_anchors_a_site_that_nobody_placed_and_moves_nobody(
     assert anchor.to_incident_m(52.0, 4.0, 50.0)[:2] == pytest.approx((2.0, 1.0), abs=1e-6)
     after = script.fused[-1]
     assert (after.north_m, after.east_m) == pytest.approx((before.north_m, before.east_m), abs=0.01)
+
+
+def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script) -> None:
+    """A receiver that wakes up on the other side of the Earth has placed the site there."""
+    script.position(U, 0.0, 0.0)
+    script.gps(U, -52.0, 4.0)
+    shown_m = []
+    for second in range(60):
+        script.now_s += 1.0
+        north_m = 1.2 * second
+        script.position(U, north_m, 0.0, distance_m=north_m)
+        script.gps(U, 52.0 + north_m / 111_267.0, 4.0)
+        shown_m.append((script.fused[-1].north_m, script.fused[-1].east_m))
+    assert max(math.dist(*pair) for pair in pairwise(shown_m)) < 5.0
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    off_m = anchor.to_incident_m(52.0 + north_m / 111_267.0, 4.0, 50.0)[:2]
+    assert off_m == pytest.approx(shown_m[-1], abs=3.0)
+    assert not_used(script)["too far from the site"] == 10
+
+
+def test_a_site_that_somebody_placed_stays_where_it_is(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    for _ in range(30):
+        script.wait(1, lambda: script.position(U, 0.0, 0.0))
+        script.gps(U, -52.0, 4.0)
+    assert script.pipeline.state.anchor == Anchor(52.0, 4.0, 10.0, 0.0)
+    assert not_used(script) == {"too far from the site": 30}
 
 
 def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) -> None:
