@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from base_station.api.answer import to_ms_or_none
+from base_station.answer import to_ms_or_none
 from base_station.api.wire import (
     ClockView,
     DutyView,

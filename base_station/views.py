@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from base_station.accountability import warning_s
-from base_station.api.answer import to_ms, to_ms_or_none
+from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.wire import (
     AlarmView,
     AnchorView,

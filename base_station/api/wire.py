@@ -13,7 +13,7 @@ from typing import Literal
 
 import msgspec
 
-from base_station.api.answer import Answer
+from base_station.answer import Answer
 
 Link = Literal["live", "stale", "lost", "never"]
 

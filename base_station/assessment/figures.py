@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from base_station.api.answer import Answer
+from base_station.answer import Answer
 from base_station.db.records import TrackSample
 
 Floats = NDArray[np.float64]

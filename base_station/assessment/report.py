@@ -10,7 +10,7 @@ from itertools import pairwise
 import msgspec
 import numpy as np
 
-from base_station.api.answer import Answer
+from base_station.answer import Answer
 from base_station.assessment.figures import (
     Figures,
     errors_against,

@@ -13,7 +13,7 @@ from concurrent.futures import Future
 
 import msgspec
 
-from base_station.api.answer import to_ms, to_ms_or_none
+from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.wire import (
     HealthView,
     IncidentView,

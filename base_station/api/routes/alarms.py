@@ -7,7 +7,7 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, Depends
 
-from base_station.api.answer import Answer, to_ms
+from base_station.answer import Answer, to_ms
 from base_station.api.forms import Form, Id, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer

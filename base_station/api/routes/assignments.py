@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from base_station.api.answer import to_ms, to_ms_or_none
+from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.forms import Form, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer

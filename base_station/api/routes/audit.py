@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel
 
-from base_station.api.answer import to_ms
+from base_station.answer import to_ms
 from base_station.api.forms import LAST_MS, UntilMs
 from base_station.api.security import Administrator
 from base_station.api.services import Station

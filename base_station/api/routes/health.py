@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 from fastapi import APIRouter
 
-from base_station.api.answer import Answer, to_ms
+from base_station.answer import Answer, to_ms
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Station

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.answer import to_ms
+from base_station.answer import to_ms
 from base_station.api.forms import LAST_MS, Form, Id, PersonIdText, UnitIdText
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.answer import to_ms, to_ms_or_none
+from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.forms import Form, Id, Name
 from base_station.api.problems import Problem
 from base_station.api.routes.users import RoleWord

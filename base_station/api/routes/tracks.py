@@ -7,7 +7,7 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, Depends, Query, Response
 
-from base_station.api.answer import Answer, to_ms
+from base_station.answer import Answer, to_ms
 from base_station.api.forms import Id, UnitId, window
 from base_station.api.routes.incidents import incident_or_404, window_of
 from base_station.api.security import Viewer

@@ -9,7 +9,7 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, Query, Response
 
-from base_station.api.answer import Answer, to_ms
+from base_station.answer import Answer, to_ms
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404

@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.answer import to_ms_or_none
+from base_station.answer import to_ms_or_none
 from base_station.api.forms import Form, Metres, UnitId, UnitIdOrNone, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path
 from pydantic import BaseModel, StringConstraints
 
-from base_station.api.answer import to_ms
+from base_station.answer import to_ms
 from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import Administrator, Throttle, Viewer
