@@ -210,6 +210,16 @@ def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
     assert 0.02 < math.sqrt(variance) < 0.06
 
 
+def test_who_hardly_knows_a_heading_does_not_hear_of_walls_a_quarter_turn_off() -> None:
+    axis = AxisFilter()
+    turn_rad, variance = 0.9, 0.6**2
+    for number in range(8):
+        leg = Leg(number % 2 * math.pi / 2.0, 5.0)
+        turn_rad, variance = axis.look(leg, turn_rad, variance)
+    turn_rad, variance = axis.hear(Axis(0.0, 0.02**2), turn_rad, variance)
+    assert abs(turn_rad) < 2.0 * math.sqrt(variance)
+
+
 def legs_until_an_axis(known: Axis | None) -> tuple[int, float, float]:
     """How many it took of a heading that gets worse and drifts, and what it then is."""
     axis, turn_rad, variance = AxisFilter(), 0.0, 0.05**2

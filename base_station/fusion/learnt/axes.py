@@ -13,6 +13,8 @@ import math
 import msgspec
 
 from base_station.fusion.learnt.legs import (
+    OFF,
+    QUARTER_RAD,
     SHOWN,
     Axis,
     Drift,
@@ -31,6 +33,7 @@ KEPT = 0.3  # of the belief in a direction, with which it is held on to
 LOST_RAD = math.radians(20.0)  # so far may a heading have gone astray that is not
 SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
 TOLD = 1.0  # log odds from which legs show an axis that others know
+EITHER_RAD = QUARTER_RAD / 2.0 / OFF  # less known than this it may be the next wall as well
 LEAST = 1e-9  # variance by which heading and axis differ
 STEADY = Drift()
 
@@ -138,7 +141,7 @@ class AxisFilter(msgspec.Struct):
         off_rad = quarter(other.direction_rad - axis.direction_rad)
         grown = axis.variance - other.variance
         same = off_rad**2 < 9.0 * (axis.variance + other.variance + SHARED_STD_RAD**2)
-        if grown <= 0.0 or not same:
+        if grown <= 0.0 or not same or axis.variance > EITHER_RAD**2:
             return turn_rad, variance
         gain = grown / (grown + SHARED_STD_RAD**2)
         hangs_on = self.crossed / axis.variance
