@@ -107,6 +107,8 @@ class Follower:
 
     def _follow(self, leader: Leader) -> None:
         """Until it is no longer to be followed, or does not answer."""
+        if not self._log.wait_reached(self.delivered, _AGAIN_S):
+            return  # what waits to be stepped would be asked for again
         history = self._ask(leader, "history", History)
         if history is None or not self._is_wanted(leader):
             return

@@ -288,7 +288,7 @@ class Pair:
             )
         elif self.followed() is None:
             found.append("No active station is heard: this one takes over in some seconds")
-        elif self._around.log.is_cut_short:
+        elif self._around.log.is_cut_short or self._around.log.problem:
             found.append(
                 "The disk of this standby does not take the log: free or mend it; what is missing "
                 "is fetched then"

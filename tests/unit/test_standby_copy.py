@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -106,17 +107,19 @@ class Pairing:
 
     def __init__(self, folder: Path) -> None:
         clock = SteadyClock(SystemClock())
-        router = MemoryRouter()
+        self.router = router = MemoryRouter()
         self.recorders = [Recorder(folder / name, clock) for name in "ab"]
         self.active, self.standby = (SharedLog(one, clock) for one in self.recorders)
         self.feed = StandbyFeed(LiveFeed(clock), clock)
         self.cuts: list[Place] = []
-        self.shipping = Shipping(
-            "a", router.attach_station(), self.active, disk(self.recorders[0]), lambda: True
-        )
+        self.shipping = self.ship()
         self.follower = Follower(
             "b", router.attach_station(), self.standby, self.feed, self.cuts.append
         )
+
+    def ship(self) -> Shipping:
+        bus = self.router.attach_station()
+        return Shipping("a", bus, self.active, disk(self.recorders[0]), lambda: True)
 
     def step(self) -> None:
         """What a drive does."""
@@ -207,6 +210,29 @@ def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> N
     pairing.recorders[1].flush()
     assert [r for r in disk(pairing.recorders[1]).records() if r[1] == TICKED] == events(60)
     assert pairing.cuts == []
+
+
+def test_what_waits_to_be_stepped_is_not_fetched_again_when_the_link_comes_back(
+    pairing: Pairing,
+) -> None:
+    """The active station does not answer for a moment while this one catches up."""
+    written(pairing.recorders[0], pairing.active, events(30))
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    until(lambda: pairing.feed.waiting == 30)
+    pairing.shipping.close()
+    time.sleep(1.0)  # it asks, and begins anew
+    pairing.shipping = pairing.ship()
+    written(pairing.recorders[0], pairing.active, events(30, start=30))
+    time.sleep(1.0)
+
+    def caught_up() -> bool:
+        pairing.step()
+        return pairing.standby.place == pairing.active.place
+
+    until(caught_up)
+    pairing.recorders[1].flush()
+    assert [r for r in disk(pairing.recorders[1]).records() if r[1] == TICKED] == events(60)
 
 
 def test_a_standby_is_in_step_when_it_has_stepped_a_long_log_and_not_before(
