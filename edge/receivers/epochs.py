@@ -18,7 +18,7 @@ from edge.receivers.accuracy import (
     from_dop,
     from_hdop,
 )
-from edge.receivers.port import Report
+from edge.receivers.port import MOST_SATELLITES, Report
 from edge.receivers.sentences import Sentence
 from edge.samples import GpsSample
 from shared.clock import NS_PER_S
@@ -130,7 +130,7 @@ def _fix(t_ns: int, said: dict[str, Sentence], gsa: Sentence) -> GpsSample:
         horizontal_std_m=first_known(axes_m, ellipse_m, from_hdop(hdop, uere_m)),
         vertical_std_m=first_known(gst.number("stdAlt"), vdop_std_m),
         fix_type=fix_type,
-        satellites=0 if math.isnan(satellites) else int(satellites),
+        satellites=0 if math.isnan(satellites) else int(min(satellites, MOST_SATELLITES)),
         speed_mps=rmc.number("spd") * _KNOT_MPS,
         course_rad=math.radians(rmc.number("cog") % 360.0),
     )

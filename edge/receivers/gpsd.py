@@ -77,7 +77,8 @@ class Gpsd:
                 self._present = {one.path for one in devices}
             case Device():
                 self._note(report)
-            case Error(message=message):
+            case Error(message=message) if not self._has_refused:
+                self._has_refused = True
                 logger.warning("%s says: %s", self, message)
             case Sky():
                 self._note_sky(report, began_ns)
@@ -102,7 +103,7 @@ class Gpsd:
         return "gpsd hears nothing of its receiver; is the receiver on, and the cable in?"
 
     def _forget(self) -> None:
-        self._is_gpsd = False
+        self._is_gpsd = self._has_refused = False
         self._present = set()
         self._heard: dict[str, _Heard] = {}
         self._chosen: str | None = self._device or None

@@ -25,6 +25,7 @@ from edge.receivers.accuracy import (
     from_dop,
     from_hdop,
 )
+from edge.receivers.port import MOST_SATELLITES
 from edge.samples import GpsSample
 from shared.clock import NS_PER_S
 from shared.errors import WireError
@@ -170,7 +171,7 @@ def fix_of(tpv: Tpv, sky: Sky, gst: Gst, satellites: int, t_ns: int) -> GpsSampl
             from_dop(sky.vdop, uere_m),
         ),
         fix_type=fix_type,
-        satellites=max(0, satellites),
+        satellites=min(max(0, satellites), MOST_SATELLITES),
         speed_mps=tpv.speed,
         course_rad=math.radians(tpv.track % 360.0),
     )

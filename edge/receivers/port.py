@@ -10,6 +10,8 @@ from edge.samples import GpsSample
 from edge.sources.line import Line
 from edge.sources.line_place import LinePlace
 
+MOST_SATELLITES = 255  # more than there are in the sky: what says more is damaged
+
 
 @dataclass(frozen=True, slots=True)
 class Report:

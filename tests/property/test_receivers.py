@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 from hypothesis import given
@@ -21,6 +22,27 @@ from tests.gps_receiver import Told, burst, gpsd_report, sentence
 WHOLE = [line for said in (burst, gpsd_report) for line in said(Told(std_m=1.0)).split(b"\n")]
 FIELDS = st.text("0123456789.,-+eENSWAVMnaif ", max_size=60)
 KINDS = st.sampled_from(["GNGGA", "GPRMC", "GNGST", "GNGSA", "GNGNS", "PUBX", "GPGSV"])
+HUGE = st.sampled_from([0, -1, 1e-300, -1e300, 1e308, 10**19, -(10**19), 10**400, None, "1", True])
+NAMES = ["mode", "status", "lat", "lon", "altHAE", "altMSL", "geoidSep", "eph", "epx", "epy", "epv"]
+NAMES += [
+    "speed",
+    "track",
+    "time",
+    "hdop",
+    "vdop",
+    "uSat",
+    "alt",
+    "satellites",
+    "device",
+    "devices",
+]
+REPORTS = st.builds(
+    lambda cls, members: json.dumps(
+        {"class": cls, "mode": 3, "lat": 1, "lon": 2, **members}
+    ).encode(),
+    st.sampled_from(["TPV", "SKY", "GST", "DEVICE", "DEVICES", "ERROR"]),
+    st.dictionaries(st.sampled_from(NAMES), HUGE | st.floats(-400.0, 400.0), max_size=6),
+)
 SENTENCES = st.builds(lambda kind, fields: sentence(f"{kind},{fields}").strip(), KINDS, FIELDS)
 
 
@@ -34,7 +56,7 @@ def damaged(draw: st.DrawFn) -> bytes:
     return bytes(line)
 
 
-LINES = st.lists(damaged() | SENTENCES | st.binary(max_size=80), max_size=12)
+LINES = st.lists(damaged() | SENTENCES | REPORTS | st.binary(max_size=80), max_size=12)
 
 
 def can_be(fix: GpsSample) -> bool:

@@ -87,6 +87,8 @@ def test_satellites_are_those_in_use() -> None:
     assert fix(json_line("SKY", device=DEVICE, satellites=listed) + tpv()).satellites == 4
     assert fix(SKY + tpv()).satellites == 11
     assert fix(SKY + json_line("SKY", device=DEVICE, hdop=0.7) + tpv()).satellites == 11
+    assert fix(json_line("SKY", device=DEVICE, uSat=10**12) + tpv()).satellites == 255
+    assert fix(json_line("SKY", device=DEVICE, uSat=-4) + tpv()).satellites == 0
 
 
 @pytest.mark.parametrize("said", [{"mode": 0}, {"mode": 1}, {"status": 5}, {"status": 8}])

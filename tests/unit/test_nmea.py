@@ -142,6 +142,12 @@ def test_without_gga_there_is_gns() -> None:
     assert fix(told).horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
 
 
+@pytest.mark.parametrize(("said", "satellites"), [("", 0), ("00", 0), ("31", 31), ("9" * 20, 255)])
+def test_satellites_are_as_many_as_there_can_be(said: str, satellites: int) -> None:
+    told = sentence(f"GNGGA,092725.00,5742.0,N,01158.2,E,1,{said},0.9,7.3,M,35.2,M,,")
+    assert fix(told).satellites == satellites
+
+
 def test_a_fix_of_an_old_receiver_has_neither_gsa_nor_modes() -> None:
     old = fix(
         sentence("GPRMC,092725,A,5742.0000,N,01158.2000,E,3.0,077.5,211126,003.1,W"),
