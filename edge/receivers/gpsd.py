@@ -103,7 +103,8 @@ class Gpsd:
         return "gpsd hears nothing of its receiver; is the receiver on, and the cable in?"
 
     def _forget(self) -> None:
-        self._is_gpsd = self._has_refused = False
+        self._is_gpsd = False
+        self._has_refused = False
         self._present = set()
         self._heard: dict[str, _Heard] = {}
         self._chosen: str | None = self._device or None
