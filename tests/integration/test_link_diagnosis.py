@@ -93,10 +93,10 @@ def test_the_certificate_does_not_stand_for_the_address(anna: Enrolment, now: da
 
 @pytest.mark.usefixtures("router")
 def test_the_stations_clock_says_expired(pki: PkiFolder, now: datetime) -> None:
-    then = now - timedelta(days=366)
-    old = PkiFolder(pki.path.parent, lambda: then).enroll("bert", valid=timedelta(days=300))
+    then = now - timedelta(hours=20)  # since the authority's beginning, which is backdated
+    old = PkiFolder(pki.path.parent, lambda: then).enroll("bert", valid=timedelta(hours=12))
     assert "expired on" in why_no_link(old.connect, old.identity, now)
-    behind = now - timedelta(days=100)  # this unit's clock
+    behind = now - timedelta(hours=10)  # this unit's clock
     assert "the station says" in why_no_link(old.connect, old.identity, behind)
 
 
