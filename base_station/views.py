@@ -178,10 +178,13 @@ def snapshot(
     facts: StationFacts,
     photo_urls: PhotoUrls,
     replay: ReplayView | None = None,
+    *,
+    trails: bool = True,
 ) -> Snapshot:
-    """Everything that a console shows."""
+    """Everything that a console shows; ``trails`` may be left out."""
     still_open = [alarm for alarm in state.alarms.values() if alarm.is_open]
     shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
+    drawn = [unit for unit in state.units.values() if trails and unit.trail]
     return Snapshot(
         seq=seq,
         now_ms=to_ms(state.t_ns),
@@ -189,9 +192,7 @@ def snapshot(
         units=unit_views(state, state.units.values(), photo_urls),
         alarms=tuple(map(alarm_view, shown)),
         commands=tuple(map(command_view, state.commands.values())),
-        trails={
-            unit.unit_id: trail_view(unit.trail) for unit in state.units.values() if unit.trail
-        },
+        trails={unit.unit_id: trail_view(unit.trail) for unit in drawn},
         pins=pin_views(state),
         beacons=beacon_views(state),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,

@@ -99,14 +99,14 @@ class DeskDrive:
         done.set_result(ActionDone(f"action-{header.seq}", self._clock.utc_ns(), refused))
         return done
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
         with self._lock:
-            deliver(self.picture())
+            deliver(self.picture(trails=trails))
 
-    def picture(self) -> Snapshot:
+    def picture(self, *, trails: bool = True) -> Snapshot:
         with self._lock:
-            state = self._pipeline.state
-            return snapshot(state, self._seq, StationFacts(), self._roster.photo_url)
+            state, photo_url = self._pipeline.state, self._roster.photo_url
+            return snapshot(state, self._seq, StationFacts(), photo_url, trails=trails)
 
 
 def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:

@@ -90,10 +90,10 @@ class Hub:
     # ---- from any thread but the source's
 
     def snapshot(self) -> Future[Snapshot]:
-        """The picture as it is now; never done where the source has stopped."""
+        """The picture as it is now, without trails; never done where the source has stopped."""
         future: Future[Snapshot] = Future()
         if self._source is not None:
-            self._source.request_snapshot(future.set_result)
+            self._source.request_snapshot(future.set_result, trails=False)
         return future
 
     # ---- in the source's thread

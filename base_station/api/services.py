@@ -65,7 +65,7 @@ class Services:
         return done
 
     def picture(self) -> Snapshot:
-        """What the consoles show now."""
+        """What the consoles show now, but for trails."""
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:

@@ -53,7 +53,12 @@ class LastKnown:
         self._said_ns = 0
         self._stored: Snapshot | None = None  # nothing is stored while the log is read
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+    def request_snapshot(
+        self,
+        deliver: Callable[[Snapshot], None],
+        *,
+        trails: bool = True,  # noqa: ARG002  # they are stored with the rest
+    ) -> None:
         deliver(self.snapshot())
 
     def tell(self, share: float) -> None:

@@ -117,10 +117,10 @@ class Picture:
         self._pins_changed = False
         self._sink.reset(self._snapshot(replay))
 
-    def snapshot(self, replay: ReplayView | None = None) -> Snapshot:
+    def snapshot(self, replay: ReplayView | None = None, *, trails: bool = True) -> Snapshot:
         """For one console, after what was noted so far was told to all."""
         self.flush(replay=replay)
-        return self._snapshot(replay)
+        return self._snapshot(replay, trails=trails)
 
     def _filled_trails(self) -> dict[str, tuple[TrailPoint, ...]]:
         """Once a second will do: a gap is filled over seconds."""
@@ -129,8 +129,10 @@ class Picture:
         self._filled.clear()
         return trails
 
-    def _snapshot(self, replay: ReplayView | None) -> Snapshot:
-        return snapshot(self._pipeline.state, self._seq, self.facts, self._photo_urls, replay)
+    def _snapshot(self, replay: ReplayView | None, *, trails: bool = True) -> Snapshot:
+        return snapshot(
+            self._pipeline.state, self._seq, self.facts, self._photo_urls, replay, trails=trails
+        )
 
     def _frame_now(self) -> tuple[object, ...]:
         """What deltas do not carry; replaced whole by the pipeline when it changes."""

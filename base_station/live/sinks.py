@@ -38,9 +38,10 @@ class LiveSink(Protocol):
 class LiveSource(Protocol):
     """What a client of the console listens to: the live drive, or one replay."""
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
+    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
         """From any thread.  ``deliver`` is called once in the source's thread, in order with the
-        calls of its ``LiveSink``; after the source has stopped it is never called.
+        calls of its ``LiveSink``; after the source has stopped it is never called.  Without
+        ``trails``, which are nearly all of its work, for whoever draws none.
         """
         ...
 

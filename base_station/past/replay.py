@@ -49,7 +49,7 @@ class ReplaySession:
         self._clock = clock
         self._playback = Playback(archive)
         self._picture = Picture(self._playback.pipeline, sink, photo_urls)
-        self._asked: deque[Callable[[Snapshot], None]] = deque()
+        self._asked: deque[tuple[Callable[[Snapshot], None], bool]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = _checked_speed(speed)
         self._playing = True
@@ -101,8 +101,8 @@ class ReplaySession:
                 seeking=self._seeking,
             )
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
-        self._asked.append(deliver)
+    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
+        self._asked.append((deliver, trails))
         self._news.set()
 
     @property
@@ -164,7 +164,8 @@ class ReplaySession:
 
     def _answer(self) -> None:
         while self._asked:
-            self._asked.popleft()(self._picture.snapshot(self.view()))
+            deliver, trails = self._asked.popleft()
+            deliver(self._picture.snapshot(self.view(), trails=trails))
 
     def _move(self, elapsed_ns: int) -> None:
         """Let as much of the past go by as the clock and the speed say."""

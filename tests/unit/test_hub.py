@@ -11,7 +11,7 @@ import msgspec
 import pytest
 
 from base_station.api.hub import QUEUE, Client, Hub
-from base_station.api.wire import Delta, HealthView, Snapshot
+from base_station.api.wire import Delta, HealthView, Snapshot, TrailPoint
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
@@ -22,22 +22,26 @@ class Source:
     def __init__(self, hub: Hub) -> None:
         self._hub = hub
         self.seq = 0
-        self.asked: list[Callable[[Snapshot], None]] = []
+        self.asked: list[tuple[Callable[[Snapshot], None], bool]] = []
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None:
-        self.asked.append(deliver)
+    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
+        self.asked.append((deliver, trails))
 
     def say(self, times: int = 1) -> None:
         for _ in range(times):
             self.seq += 1
             self._hub.delta(Delta(self.seq, self.seq))
 
-    def snapshot(self) -> Snapshot:
-        return Snapshot(self.seq, self.seq, None, (), (), (), {}, (), (), None, None, HEALTH, None)
+    def snapshot(self, *, trails: bool = True) -> Snapshot:
+        drawn: dict[str, tuple[TrailPoint, ...]] = {}
+        if trails:
+            drawn["FF-01"] = (TrailPoint(0, 1.0, 2.0, None),)
+        seq = self.seq
+        return Snapshot(seq, seq, None, (), (), (), drawn, (), (), None, None, HEALTH, None)
 
     def answer(self) -> None:
-        for deliver in self.asked:
-            deliver(self.snapshot())
+        for deliver, trails in self.asked:
+            deliver(self.snapshot(trails=trails))
         self.asked.clear()
 
 
@@ -167,9 +171,16 @@ async def test_without_clients_nothing_is_encoded(hub: Hub, source: Source) -> N
         await asyncio.wait_for(client.next_message(), 0.01)
 
 
-async def test_a_program_may_ask_for_the_picture(hub: Hub, source: Source) -> None:
+async def test_a_program_may_ask_for_the_picture_without_trails(hub: Hub, source: Source) -> None:
     asked = hub.snapshot()
     assert not asked.done()
     source.say(4)
     source.answer()
     assert asked.result(0).seq == 4
+    assert not asked.result(0).trails
+
+
+async def test_a_console_gets_the_trails(hub: Hub, source: Source) -> None:
+    client = hub.join()
+    source.answer()
+    assert "FF-01" in (await next_one(client))["trails"]

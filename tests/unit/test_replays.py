@@ -30,7 +30,9 @@ class Player:
     def view(self) -> ReplayView:
         return ReplayView("i-1", 0, 1, 0, 1.0, playing=True)
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None]) -> None: ...
+    def request_snapshot(
+        self, deliver: Callable[[Snapshot], None], *, trails: bool = True
+    ) -> None: ...
 
     def close(self) -> None:
         self.closed = True
