@@ -36,6 +36,18 @@ class _Heard:
     gst_ns: int = 0
 
 
+@dataclass(slots=True)
+class _Session:
+    """What gpsd has said since the line is open."""
+
+    chosen: str | None  # the device whose fixes are taken
+    chosen_ns: int = 0  # when it last had a fix
+    is_gpsd: bool = False
+    has_refused: bool = False
+    present: set[str] = field(default_factory=set)  # devices
+    heard: dict[str, _Heard] = field(default_factory=dict)
+
+
 class Gpsd:
     """``text`` is ``//HOST[:PORT][/DEVICE]``, with ``?latency=0.2``.  Raises ConfigError."""
 
@@ -51,8 +63,7 @@ class Gpsd:
         self.place = LinePlace(host, port, "", 0)
         self.longest = _LONGEST
         self.hint = "is this the port of gpsd (2947)?"
-        self._present: set[str]
-        self._forget()
+        self._session = _Session(self._device or None)
 
     def __str__(self) -> str:
         return f"GPS receiver{f' {self._device}' if self._device else ''} of gpsd at " + (
@@ -66,19 +77,19 @@ class Gpsd:
         except BaseException:
             line.close()
             raise
-        self._forget()
+        self._session = _Session(self._device or None)
         return line
 
     def hear(self, line: bytes, began_ns: int) -> tuple[Report, ...]:
         report = report_of(line)
-        self._is_gpsd |= report is not None
+        self._session.is_gpsd |= report is not None
         match report:
             case Devices(devices=devices):
-                self._present = {one.path for one in devices}
+                self._session.present = {one.path for one in devices}
             case Device():
                 self._note(report)
-            case Error(message=message) if not self._has_refused:
-                self._has_refused = True
+            case Error(message=message) if not self._session.has_refused:
+                self._session.has_refused = True
                 logger.warning("%s says: %s", self, message)
             case Sky():
                 self._note_sky(report, began_ns)
@@ -93,29 +104,21 @@ class Gpsd:
         return ()
 
     def why_nothing(self) -> str:
-        if not self._is_gpsd:
+        if not self._session.is_gpsd:
             return ""
-        if not self._present:
+        if not self._session.present:
             return "gpsd has no receiver; is it plugged in, and named in /etc/default/gpsd?"
-        if self._device and self._device not in self._present:
-            there = ", ".join(sorted(self._present))
+        if self._device and self._device not in self._session.present:
+            there = ", ".join(sorted(self._session.present))
             return f"gpsd has no receiver {self._device}, it has {there}; name one of these"
         return "gpsd hears nothing of its receiver; is the receiver on, and the cable in?"
 
-    def _forget(self) -> None:
-        self._is_gpsd = False
-        self._has_refused = False
-        self._present = set()
-        self._heard: dict[str, _Heard] = {}
-        self._chosen: str | None = self._device or None
-        self._chosen_ns = 0  # when it last had a fix
-
     def _note(self, device: Device) -> None:
         if device.activated == 0:
-            self._present.discard(device.path)
+            self._session.present.discard(device.path)
             logger.warning("%s: gpsd has lost %s", self, device.path)
         else:
-            self._present.add(device.path)
+            self._session.present.add(device.path)
 
     def _note_sky(self, sky: Sky, began_ns: int) -> None:
         """It comes in parts: satellites alone, dilutions alone."""
@@ -126,24 +129,26 @@ class Gpsd:
             heard.sky, heard.sky_ns = sky, began_ns
 
     def _of(self, device: str) -> _Heard:
-        if device not in self._heard and len(self._heard) >= _MOST_DEVICES:
-            self._heard.clear()
-        return self._heard.setdefault(device, _Heard())
+        if device not in self._session.heard and len(self._session.heard) >= _MOST_DEVICES:
+            self._session.heard.clear()
+        return self._session.heard.setdefault(device, _Heard())
 
     def _is_ours(self, tpv: Tpv, began_ns: int) -> bool:
         """Two receivers are not mixed: the first is stayed with while it has fixes."""
-        if len(self._present) < _MOST_DEVICES:
-            self._present.add(tpv.device)
-        has_fix = tpv.mode >= 2
+        session, has_fix = self._session, tpv.mode >= 2
+        if len(session.present) < _MOST_DEVICES:
+            session.present.add(tpv.device)
         if self._device:
             return tpv.device == self._device
-        waited = began_ns - self._chosen_ns > _ELSEWHERE_NS
-        if self._chosen is None or (has_fix and waited and tpv.device != self._chosen):
+        is_free = session.chosen is None or (
+            has_fix and began_ns - session.chosen_ns > _ELSEWHERE_NS
+        )
+        if is_free and tpv.device != session.chosen:
             logger.info("%s: taken from %s", self, tpv.device)
-            self._chosen = tpv.device
-        if tpv.device != self._chosen:
+            session.chosen = tpv.device
+        if tpv.device != session.chosen:
             return False
-        self._chosen_ns = began_ns if has_fix else self._chosen_ns
+        session.chosen_ns = began_ns if has_fix else session.chosen_ns
         return True
 
     def _report(self, tpv: Tpv, began_ns: int) -> Report:
