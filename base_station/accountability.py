@@ -85,8 +85,7 @@ def vouch(state: StationState, unit: UnitState, by: str, t_ns: int) -> None:
     if duty is None or t_ns <= duty.checked_in_ns:
         return
     duty.checked_in_ns, duty.checked_in_by = t_ns, by
-    if duty.asked_ns is not None and duty.asked_ns <= t_ns:
-        duty.asked_ns = None
+    duty.asks_ns = [asked_ns for asked_ns in duty.asks_ns if asked_ns > t_ns]
     _note_due(state, duty)
 
 
@@ -97,7 +96,7 @@ def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
     for unit_id in command.deliveries:
         unit = state.units[unit_id]
         if unit.duty is not None:
-            unit.duty.asked_ns = unit.duty.asked_ns or state.t_ns
+            unit.duty.asks_ns.append(state.t_ns)
             _note_due(state, unit.duty)
             yield unit
 

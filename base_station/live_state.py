@@ -62,11 +62,16 @@ class Duty(msgspec.Struct):
 
     checked_in_ns: int  # when a person last vouched for the wearer
     checked_in_by: str
-    asked_ns: int | None = None  # a roll call was asked for, and is not answered
+    asks_ns: list[int] = msgspec.field(default_factory=list)  # calls not answered, oldest first
     work_since_ns: int | None = None
     rest_since_ns: int | None = None
     due_ns: int = 0  # of the next check-in
     rest_due_ns: int | None = None
+
+    @property
+    def asked_ns(self) -> int | None:
+        """Since when a roll call waits for the answer."""
+        return self.asks_ns[0] if self.asks_ns else None
 
 
 class Fault(msgspec.Struct, frozen=True):

@@ -57,6 +57,12 @@ def left_s(script: Script, unit_id: str = "FF-01") -> float:
     return (duty(script, unit_id).due_ns - script.t_ns) / NS_PER_S
 
 
+def rest_left_s(script: Script) -> float:
+    due_ns = duty(script).rest_due_ns
+    assert due_ns is not None
+    return (due_ns - script.t_ns) / NS_PER_S
+
+
 def test_a_check_in_of_one_is_nobody_else_s(script: Script) -> None:
     """Nobody of these has a crew: that does not make them one."""
     for number in (1, 2, 3):
@@ -188,6 +194,36 @@ def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
     assert left_s(script) == pytest.approx(INTERVAL_S)
 
 
+def test_who_answered_before_the_evacuation_is_still_to_be_heard_from(script: Script) -> None:
+    """The press was made before the order, and its message came after."""
+    script.status("FF-01")
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(5)
+    pressed_s = script.now_s
+    script.wait(5)
+    order(script, CommandKind.EVACUATE, "c2")
+    ordered_ns = script.t_ns
+    answer(script, pressed_s)
+    assert duty(script).checked_in_by == "Person 1"
+    assert duty(script).asked_ns == ordered_ns
+
+
+def test_to_ask_again_gives_nobody_more_time(script: Script) -> None:
+    script.act(SetAccountability(1200.0, 2400.0))
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(100)
+    order(script, CommandKind.PAR_REQUEST, "c2")
+    assert left_s(script) == 80.0
+
+
+def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(1)
+    script.act(SetAccountability(600.0, 900.0))
+    assert left_s(script, "FF-01") == left_s(script, "FF-03") == 599.0
+    assert rest_left_s(script) == 899.0
+
+
 def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
     script.act(SetAccountability(1200.0, 2400.0))
     script.wait(10)
@@ -238,6 +274,27 @@ def test_work_begins_inside_and_rest_is_due_after_it(script: Script) -> None:
     due = [one for one in script.alarms if one.rule == "rest-due"]
     assert due[-1].state is AlarmState.RESOLVED
     assert duty(script).rest_since_ns == script.t_ns
+
+
+def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(1)
+    assert rest_left_s(script) == 119.0
+    unit(script).inside_since_ns = None  # out for a moment, and in again
+    script.wait(1)
+    unit(script).inside_since_ns = script.t_ns
+    script.wait(1)
+    assert rest_left_s(script) == 117.0
+    script.act(SetRest("FF-01", True))
+    script.wait(1)
+    assert duty(script).work_since_ns is None, "who rests where it is warm does not work"
+
+
+def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(OpenIncident("i1", "Mill Lane"))
+    assert unit(script).duty is None
 
 
 def test_nobody_rests_twice(script: Script) -> None:
