@@ -110,6 +110,8 @@ class GpsInertialFuser:
             last = None
         if last is not None:
             duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
+            if duration_s < 0.0 and position.header.seq < last.header.seq:
+                return "older than the last position"
             if duration_s < 0.0:
                 self._go_back_to(t_ns)
             north_m, east_m = position.north_m - last.north_m, position.east_m - last.east_m

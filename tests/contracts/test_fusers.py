@@ -13,6 +13,7 @@ from base_station.bench.fusion.walks import Receiver, Walk
 from base_station.fusion import FUSERS
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
+from shared.clock import NS_PER_S
 from shared.geo import rotate
 from shared.quality import Quality
 
@@ -138,6 +139,23 @@ def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
     assert before is not None
     assert after is not None
     assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 1.0
+
+
+def test_what_is_said_last_is_followed_though_the_clock_was_ahead_before(
+    kind: FuserKind, walk: Walk
+) -> None:
+    fuser = kind.new()
+    go(fuser, walk, receiver(), 0, 100)
+    ahead = walk.position(100)
+    header = msgspec.structs.replace(
+        ahead.header, t_mono_ns=ahead.header.t_mono_ns + 86_400 * NS_PER_S
+    )
+    assert not fuser.advance(msgspec.structs.replace(ahead, header=header))
+    assert not fuser.advance(walk.position(101))
+    go(fuser, walk, receiver(), 102, 200)
+    estimate = fuser.estimate()
+    assert estimate is not None
+    assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[199]) < 10.0
 
 
 def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
