@@ -9,12 +9,22 @@ import msgspec
 import pytest
 
 from base_station.api.wire import ClockView
+from base_station.events import Refused
 from base_station.live_state import UnitState
 from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
 from base_station.views import StationFacts, health_view, snapshot
 from shared.messages import EventKind, Heartbeat
-from shared.messages.station import Assign, OpenIncident, RegisterUnit, SetPlan, Unassign
+from shared.messages.station import (
+    Assign,
+    OpenIncident,
+    RegisterUnit,
+    SetAnchor,
+    SetPlan,
+    SetStart,
+    Unassign,
+)
+from shared.quality import Quality
 from tests.station_script import Script
 
 U = "FF-01"
@@ -97,6 +107,43 @@ def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
     assert touched, "the console hears of it although nothing came"
 
 
+def test_the_status_tells_of_a_press_and_of_its_end_where_their_messages_were_lost(
+    script: Script,
+) -> None:
+    def maydays() -> tuple[int | None, int | None]:
+        return unit(script).mayday_ns, unit(script).mayday_cancelled_ns
+
+    script.status(U)
+    assert maydays() == (None, None)
+    script.wait(5)
+    script.status(U, mayday=True)
+    pressed_ns = script.t_ns
+    script.wait(5)
+    script.status(U, mayday=True)
+    assert maydays() == (pressed_ns, None), "said again, not pressed again"
+    script.status(U)
+    cancelled_ns = script.t_ns
+    script.wait(5)
+    script.status(U)
+    assert maydays() == (pressed_ns, cancelled_ns)
+    script.wait(5)
+    script.status(U, mayday=True)
+    assert maydays() == (script.t_ns, cancelled_ns)
+
+
+def test_a_path_is_doubted_since_the_first_position_that_was_not_good(script: Script) -> None:
+    script.position(U, 0.0, 0.0)
+    script.wait(5)
+    script.position(U, 1.0, 0.0, quality=Quality.DEGRADED)
+    doubted_ns = script.t_ns
+    script.wait(5)
+    script.position(U, 2.0, 0.0, quality=Quality.LOST)
+    assert unit(script).degraded_since_ns == doubted_ns
+    script.wait(5)
+    script.position(U, 3.0, 0.0)
+    assert unit(script).degraded_since_ns is None
+
+
 def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
     script.register("FF-02")
     script.act(Assign(U, "p1", "Ada", "red", "leader"))
@@ -109,6 +156,27 @@ def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
 def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> None:
     (refused,) = script.act(Assign("nobody", "p1", "Ada", "", ""))
     assert "register" in refused.reason  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        SetStart(U, 0.0, 0.0, 0.0, 0.0, -1.0, 0.1),
+        SetStart(U, 0.0, 0.0, 0.0, 0.0, 1.0, -0.1),
+        SetStart(U, math.nan, 0.0, 0.0, 0.0, 1.0, 0.1),
+        SetStart(U, 0.0, 0.0, 0.0, 0.0, math.inf, 0.1),
+        SetAnchor(90.1, 4.0, 0.0, 0.0),
+        SetAnchor(52.0, -180.1, 0.0, 0.0),
+        SetAnchor(52.0, math.nan, 0.0, 0.0),
+    ],
+)
+def test_a_place_that_cannot_be_is_refused_in_words(
+    script: Script, action: SetStart | SetAnchor
+) -> None:
+    outputs = script.act(action)
+    assert [type(output) for output in outputs] == [Refused]
+    assert script.pipeline.state.anchor is None
+    assert not script.pipeline.state.start_set
 
 
 def test_a_trail_is_thinned_and_bounded(script: Script) -> None:

@@ -1,0 +1,119 @@
+"""From which figure on a rule finds something, and when it is over: the figures people are told."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.alarms.battery import Battery
+from base_station.alarms.heat import Heat
+from base_station.alarms.link_lost import LinkLost
+from base_station.alarms.no_motion import NoMotion
+from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.alarms.position_lost import PositionLost
+from base_station.alarms.tracker_degraded import TrackerDegraded
+from base_station.alarms.tracker_gone import TrackerGone
+from base_station.bench.rig import said
+from base_station.live_state import UnitState
+from shared.channels import NO_TRACKER
+from shared.clock import NS_PER_S
+from shared.messages import Header, Temperature
+from shared.quality import Quality
+
+NOW_NS = 1_700_000_000 * NS_PER_S
+HEADER = Header("FF-01", 7, 1, 1000 * NS_PER_S, NOW_NS, 0.01)
+
+
+def ns(seconds: float) -> int:
+    return round(seconds * NS_PER_S)
+
+
+def judged(rule: AlarmRule, unit: UnitState, level: str = "") -> str | None:
+    """The level that it finds; "over" where it is calm, None where nothing can be said."""
+    verdict = rule.judge(unit, NOW_NS, level)
+    if verdict is None:
+        return None
+    return verdict.level if isinstance(verdict, Finding) else "over"
+
+
+@pytest.mark.parametrize(
+    ("battery", "standing", "found"),
+    [
+        (None, "", None),
+        (0.10, "", "over"),
+        (0.099, "", "low"),
+        (0.149, "low", "low"),
+        (0.151, "low", "over"),
+    ],
+)
+def test_the_battery(battery: float | None, standing: str, found: str | None) -> None:
+    unit = UnitState("FF-01", status=said.status(HEADER, battery=battery))
+    assert judged(Battery(), unit, standing) == found
+
+
+@pytest.mark.parametrize(
+    ("ambient_degc", "dose", "standing", "found"),
+    [
+        (99.9, 0.0, "", "over"),
+        (100.0, 0.0, "", "caution"),
+        (159.9, 0.0, "", "caution"),
+        (160.0, 0.0, "", "warning"),
+        (259.9, 0.0, "", "warning"),
+        (260.0, 0.0, "", "critical"),
+        (250.0, 0.0, "critical", "critical"),
+        (249.9, 0.0, "critical", "warning"),
+        (150.0, 0.0, "caution", "caution"),
+        (90.0, 0.0, "caution", "caution"),
+        (89.9, 0.0, "caution", "over"),
+        (20.0, 0.99, "", "over"),
+        (20.0, 1.0, "", "warning"),
+        (120.0, 1.0, "", "warning"),
+        (260.0, 1.0, "", "critical"),
+    ],
+)
+def test_heat(ambient_degc: float, dose: float, standing: str, found: str) -> None:
+    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc), heat_dose=dose)
+    assert judged(Heat(), unit, standing) == found
+
+
+@pytest.mark.parametrize(
+    ("motionless_s", "found"),
+    [(19.9, "over"), (20.0, "pre-alert"), (29.9, "pre-alert"), (30.0, "alarm")],
+)
+def test_no_motion(motionless_s: float, found: str) -> None:
+    unit = UnitState(
+        "FF-01", status=said.status(HEADER, motionless_s=motionless_s), status_ns=NOW_NS
+    )
+    assert judged(NoMotion(), unit) == found
+    verdict = NoMotion().judge(unit, NOW_NS, "")
+    if isinstance(verdict, Finding):
+        assert verdict.onset_ns == NOW_NS - ns(motionless_s)
+        assert verdict.latched is (found == "alarm")
+
+
+@pytest.mark.parametrize(
+    ("silent_s", "found"), [(9.9, "over"), (10.0, None), (29.9, None), (30.0, "lost")]
+)
+def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) -> None:
+    unit = UnitState("FF-01", heard_ns=NOW_NS - ns(silent_s))
+    assert judged(LinkLost(), unit) == found
+    agent = UnitState("FF-01@tracker", heard_ns=NOW_NS - ns(silent_s))
+    tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=agent)
+    tracked.description = said.description(HEADER, tracker=NO_TRACKER)
+    assert judged(TrackerGone(), tracked) == ("gone" if found == "lost" else found)
+
+
+@pytest.mark.parametrize(("lasted_s", "found"), [(14.9, None), (15.0, "lost")])
+def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> None:
+    unit = UnitState(
+        "FF-01",
+        position=said.position(HEADER, quality=Quality.LOST),
+        position_ns=NOW_NS,
+        degraded_since_ns=NOW_NS - ns(lasted_s),
+        fused=said.fused(HEADER, "FF-01"),
+        unplaced_since_ns=NOW_NS - ns(lasted_s),
+    )
+    assert judged(TrackerDegraded(), unit) == found
+    assert judged(PositionLost(), unit) == found
+    unit.degraded_since_ns = unit.unplaced_since_ns = None
+    assert isinstance(TrackerDegraded().judge(unit, NOW_NS, ""), Clear)
+    assert isinstance(PositionLost().judge(unit, NOW_NS, ""), Clear)
