@@ -34,7 +34,7 @@ TRIALS = 2.4  # of log odds that some axis fits by chance: a quarter turn by a l
 WANDER_VAR_PER_S = 0.004**2  # of an own heading beside its drift, while moving
 CELLS = 44  # of a quarter turn
 STEP_RAD = QUARTER_RAD / CELLS
-RATES = np.linspace(-2.0, 2.0, 7)  # of drift, in standard deviations from what is believed
+RATES = np.linspace(-2.0, 2.0, 5)  # of drift, in standard deviations from what is believed
 ASTRAY = 0.02  # of what is believed of a direction: that it is quite another
 OFF = 2.5  # standard deviations from a direction: not that one
 
