@@ -203,10 +203,10 @@ def _heed_plateaus(
     """
     mask = len(ring) - 1
     for j in range(3):
-        before_radps = _rate_limit(gate, limits, j)
+        before_radps = gate[0].clip_radps[j]
         seek_plateau(ring, k, gate, j, abs(gyro_radps[j]))
         limit_radps = _rate_limit(gate, limits, j)
-        if limit_radps < before_radps:
+        if gate[0].clip_radps[j] < before_radps:
             for i in range(k - 1, max(-1, k - mask // 8), -1):
                 if gate[0].arrival_s - ring[i & mask].arrival_s > MARK_BACK_S:
                     break

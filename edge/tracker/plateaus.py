@@ -32,6 +32,9 @@ PASSED = 1.045  # times that: then it was no full scale
 def seek_plateau(ring: Ring, k: int, gate: NDArray[Any], axis: int, rate_radps: float) -> None:
     """Take the size of a rate, of sample ``k``; ``clip_radps`` is what plateaus have shown."""
     g = gate[0]
+    slow = rate_radps < LEAST_RADPS and g.flat_radps[axis] < LEAST_RADPS
+    if slow and g.plateau_samples[axis] == 0:
+        return  # as nearly always
     if rate_radps > g.highest_radps[axis]:
         g.highest_radps[axis] = rate_radps
         if rate_radps > PASSED * g.clip_radps[axis]:
