@@ -128,7 +128,13 @@ def test_the_status_tells_of_a_press_and_of_its_end_where_their_messages_were_lo
     assert maydays() == (pressed_ns, cancelled_ns)
     script.wait(5)
     script.status(U, mayday=True)
-    assert maydays() == (script.t_ns, cancelled_ns)
+    again_ns = script.t_ns
+    script.wait(5)
+    script.status(U, mayday=True)
+    assert maydays() == (again_ns, cancelled_ns)
+    script.wait(5)
+    script.status(U)
+    assert maydays() == (again_ns, script.t_ns)
 
 
 def test_a_path_is_doubted_since_the_first_position_that_was_not_good(script: Script) -> None:
