@@ -45,10 +45,11 @@ def test_the_agent_outlives_its_sensor_and_says_why(port: int, tmp_path: Path) -
     with closing(ZenohBus(StationEndpoint((f"tcp/127.0.0.1:{port}",)))) as station:
         station.subscribe(f"{ROOT}/u1/**", take)
         with Agent(tmp_path / "agent.txt", *flags, *where) as agent:
-            until(lambda: "the connection is refused" in faults(), "the reason")
+            until(lambda: heard, "the agent without its sensor")
             with closing(TcpDevice(at_its_pace(), port=sensor_port)):
                 until(lambda: any(isinstance(one, Position) for one in list(heard)), "a position")
-                until(lambda: "it has ended the connection" in faults(), "that it is gone")
+            until(lambda: "it has ended the connection" in faults(), "that it is gone")
+            until(lambda: "the connection is refused" in faults(), "that it does not come back")
             assert agent.process.poll() is None
             assert agent.stop() == 0
     positions = [one for one in heard if isinstance(one, Position)]
