@@ -107,7 +107,11 @@ class Outbox:
             self._storage_fault = str(error)
         else:
             if self._storage_fault is not None:
-                logger.warning("the journal can be written again")
+                logger.warning(
+                    "the journal can be written again; "
+                    "%d messages were sent and not kept since the start",
+                    self.never_saved,
+                )
             self._storage_fault = None
             self._unsaved.clear()
 

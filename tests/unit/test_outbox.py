@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sized
 from functools import partial
 
 import pytest
@@ -43,6 +44,25 @@ def test_everything_is_sent_in_order_and_was_on_disk_before(spool, stamper):
     assert sent[-1][0::2] == ("muster/v1/FF-01/alert/event", Qos.ALERT)
 
 
+def test_what_is_on_disk_is_not_written_again(spool, stamper, monkeypatch):
+    written: list[int] = []
+    sent: list[bytes] = []
+    append = spool.append
+
+    def count(messages):
+        written.extend(message.seq for message in messages)
+        append(messages)
+
+    monkeypatch.setattr(spool, "append", count)
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    for number in (1, 2, 3):
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        until(partial(holds, sent, number))
+    outbox.close()
+    assert written == [1, 2, 3]
+    assert outbox.never_saved == 0
+
+
 def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monkeypatch):
     sent = []
     outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
@@ -64,6 +84,29 @@ def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monk
     assert not outbox.storage_fault
 
 
+def test_what_a_full_disk_cost_is_counted_and_said(spool, stamper, monkeypatch, caplog):
+    def refuse(messages):
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
+    sent = []
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    append = spool.append
+    monkeypatch.setattr(spool, "append", refuse)
+    for number in range(1, 6):
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        until(partial(holds, sent, number))
+    monkeypatch.setattr(spool, "append", append)
+    outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+    outbox.close()
+    assert [entry.payload for entry in spool.read(spool.boot_id, 1, 9)] == sent[3:]
+    assert outbox.never_saved == 3
+    said = [record.getMessage() for record in caplog.records]
+    assert said[1:] == [
+        "the journal can be written again; 3 messages were sent and not kept since the start"
+    ]
+
+
 def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):
     monkeypatch.setattr("edge.outbox._GROUP_S", 60.0)
     sent = []
@@ -74,5 +117,5 @@ def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):
     outbox.close()
 
 
-def holds(sent: list[str], count: int) -> bool:
+def holds(sent: Sized, count: int) -> bool:
     return len(sent) == count
