@@ -8,7 +8,7 @@ from base_station.alarms.battery import Battery
 from base_station.alarms.heat import Heat
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.no_motion import NoMotion
-from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, AlarmRule, Clear, Finding
 from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.tracker_degraded import TrackerDegraded
 from base_station.alarms.tracker_gone import TrackerGone
@@ -17,7 +17,7 @@ from base_station.live_state import UnitState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import Header, Temperature
-from shared.quality import Quality
+from shared.quality import Quality, Reason
 
 NOW_NS = 1_700_000_000 * NS_PER_S
 HEADER = Header("FF-01", 7, 1, 1000 * NS_PER_S, NOW_NS, 0.01)
@@ -76,6 +76,16 @@ def test_heat(ambient_degc: float, dose: float, standing: str, found: str) -> No
 
 
 @pytest.mark.parametrize(
+    ("ambient_degc", "priority"), [(100.0, INFORMATION), (160.0, SOON), (260.0, IMMEDIATE)]
+)
+def test_how_soon_somebody_should_look_at_heat(ambient_degc: float, priority: int) -> None:
+    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc))
+    verdict = Heat().judge(unit, NOW_NS, "")
+    assert isinstance(verdict, Finding)
+    assert verdict.priority == priority
+
+
+@pytest.mark.parametrize(
     ("motionless_s", "found"),
     [(19.9, "over"), (20.0, "pre-alert"), (29.9, "pre-alert"), (30.0, "alarm")],
 )
@@ -88,6 +98,7 @@ def test_no_motion(motionless_s: float, found: str) -> None:
     if isinstance(verdict, Finding):
         assert verdict.onset_ns == NOW_NS - ns(motionless_s)
         assert verdict.latched is (found == "alarm")
+        assert verdict.priority == (IMMEDIATE if found == "alarm" else SOON)
 
 
 @pytest.mark.parametrize(
@@ -117,3 +128,22 @@ def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> Non
     unit.degraded_since_ns = unit.unplaced_since_ns = None
     assert isinstance(TrackerDegraded().judge(unit, NOW_NS, ""), Clear)
     assert isinstance(PositionLost().judge(unit, NOW_NS, ""), Clear)
+
+
+@pytest.mark.parametrize(
+    ("quality", "reasons", "level", "text"),
+    [
+        (Quality.LOST, Reason.SAMPLE_GAP, "lost", "is lost (sample gap)"),
+        (Quality.DEGRADED, Reason.NONE, "degraded", "is unsure (it gives no reason)"),
+    ],
+)
+def test_a_tracker_that_doubts_itself_says_why(
+    quality: Quality, reasons: Reason, level: str, text: str
+) -> None:
+    position = said.position(HEADER, quality=quality, reasons=reasons)
+    unit = UnitState("FF-01", position=position, position_ns=NOW_NS)
+    unit.degraded_since_ns = NOW_NS - ns(15.0)
+    verdict = TrackerDegraded().judge(unit, NOW_NS, "")
+    assert isinstance(verdict, Finding)
+    assert verdict.level == level
+    assert verdict.text.endswith(text)
