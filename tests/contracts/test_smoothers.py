@@ -161,9 +161,10 @@ def test_walls_that_held_somebody_are_heeded_and_a_pin_overrules_them(smoother: 
     wrong = replace(plain, path=replace(plain.path, shown_m=truth + np.array([0.0, 3.0]), **sure))
     pinned = replace(wrong, places=(pin_at(walk, 200.0),))
     alone = replace(plain, places=pinned.places)
+    told = {"plain": plain, "right": right, "pinned": pinned, "alone": alone}
     errors = {
         name: errors_of(walk, smoother.solve({"a": evidence}).paths["a"])[-60:].mean()
-        for name, evidence in {"plain": plain, "right": right, "pinned": pinned, "alone": alone}.items()
+        for name, evidence in told.items()
     }
     assert errors["right"] < min(0.6, errors["plain"])
     assert errors["pinned"] == pytest.approx(errors["alone"], abs=0.1)
