@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Timer
 
@@ -36,7 +37,7 @@ from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Beside, Source
 from edge.sources.sighting_reader import SightingReader
-from edge.spool import open_spool
+from edge.spool import Spool, open_spool
 from edge.station_clock import StationClock
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
@@ -162,10 +163,7 @@ def compose_agent(
     raw = RawStream(unit_id, spool.boot_id)
     stamper = Stamper(unit_id, spool.boot_id, clock, clock.utc_std_s)
     worn = tracked_unit(unit_id) or unit_id
-    calibration = _calibration(config, worn, source.description, datetime.now(UTC))
-    if calibration is not None:
-        folder.calibrations.mkdir(exist_ok=True)
-        write_calibration(calibration, folder.calibrations / f"{identity(calibration)}.toml")
+    calibration = _calibration(config, worn, source.description, folder.calibrations)
     description = raw.description(
         clock.monotonic_ns(),
         _as_set(source.description, config),
@@ -173,18 +171,7 @@ def compose_agent(
         tracker=config.tracker,
         calibration="" if calibration is None else identity(calibration),
     )
-    sensor = sensor_of(description)
-    if calibration is not None:
-        sensor = calibration.described(sensor)
-    tracks = config.tracker != NO_TRACKER
-    pipeline = TrackerPipeline(
-        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
-        make_tracker(config.tracker, sensor) if tracks else NoTracker(),
-        stamper,
-        config.position_rate_hz,
-        mayday=mayday_before(spool),
-        raw_uplink=None if tracks else RawUplink(stamper),
-    )
+    pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
     black_box = BlackBox(
         folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
     )
@@ -216,6 +203,26 @@ def compose_agent(
             commands=commands,
             manager=ServiceManager(os.environ),
         )
+    )
+
+
+def _pipeline(
+    config: EdgeConfig,
+    sensor: SensorDescription,
+    calibration: Calibration | None,
+    stamper: Stamper,
+    spool: Spool,
+) -> TrackerPipeline:
+    if calibration is not None:
+        sensor = calibration.described(sensor)
+    tracks = config.tracker != NO_TRACKER
+    return TrackerPipeline(
+        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
+        make_tracker(config.tracker, sensor) if tracks else NoTracker(),
+        stamper,
+        config.position_rate_hz,
+        mayday=mayday_before(spool),
+        raw_uplink=None if tracks else RawUplink(stamper),
     )
 
 
@@ -254,9 +261,11 @@ def _as_set(sensor: SensorDescription, config: EdgeConfig) -> SensorDescription:
 
 
 def _calibration(
-    config: EdgeConfig, unit_id: str, sensor: SensorDescription, now: datetime
+    config: EdgeConfig, unit_id: str, sensor: SensorDescription, used: Path
 ) -> Calibration | None:
-    """The calibration that was set, if it is of this unit and this sensor."""
+    """The calibration that was set, if it is of this unit and this sensor; a copy is kept with
+    those that were ``used``.
+    """
     if config.calibration is None:
         return None
     calibration = read_calibration(config.calibration)
@@ -269,10 +278,12 @@ def _calibration(
                 f"{config.calibration} is for {what} {made_for!r}, and this is {this!r}; give "
                 "its own calibration, or none"
             )
-    if calibration.is_old(now):
+    if calibration.is_old(datetime.now(UTC)):
         logger.warning("the calibration is old (%s); make a new one", calibration.made.date())
     for fault in calibration.faults():
         logger.warning("the calibration is poor: %s; make a new one", fault)
+    used.mkdir(exist_ok=True)
+    write_calibration(calibration, used / f"{identity(calibration)}.toml")
     return calibration
 
 
