@@ -82,6 +82,8 @@ def _gather(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> No
 def _start(barometer: Aid, pressure_pa: float, t_s: float) -> None:
     barometer.started = True
     barometer.reference_pa = pressure_pa
+    barometer.said_pa = pressure_pa
+    barometer.changed_s = -math.inf  # not believed until it has shown that it does not hang
     barometer.looked_s = t_s
     barometer.row[0], barometer.row[OFFSET] = 1.0, 1.0
     barometer.covariance[OFFSET, OFFSET] = 1e6

@@ -102,7 +102,7 @@ class EskfConfig(NamedTuple):
     ride_going_m: float = 0.15  # in one look
     ride_calm_s: float = 2.0  # without a push or a rise, before a stride ends it
     ride_look_s: float = 0.25
-    air_stuck_s: float = 5.0  # the same to the last bit for so long is a sensor that hangs
+    air_stuck_s: float = 2.0  # the same to the last bit for so long is a sensor that hangs
     ride_longest_s: float = 40.0  # after the last push or rise
 
     # Process noise.
