@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
+from edge.sources.line_place import LinePlace
 from edge.sources.recording import RecordingSource
 from edge.sources.ximu3 import Ximu3Source
-from edge.sources.ximu3_place import Place
 from edge.track_command import run_tracker
 from shared.clock import ManualClock
 from tests.ximu3_device import played
@@ -49,7 +49,7 @@ def test_the_path_is_that_of_the_recording(
 ) -> None:
     recording = RecordingSource(walks / "xio" / "short_walk")
     line = PlayedLine(recording.imu, binary)
-    monkeypatch.setattr(Place, "open", lambda _: line)
+    monkeypatch.setattr(LinePlace, "open", lambda _: line)
     live = run_tracker(line.source, "eskf", quiet=True)
     meant = run_tracker(recording, "eskf", quiet=True)
     distinct = len(np.unique(recording.imu.t_ns))
