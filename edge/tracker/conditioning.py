@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
 from edge.tracker.kernel_cache import SOURCES
-from edge.tracker.plateaus import seek_plateau
+from edge.tracker.plateaus import LEAST_RADPS, seek_plateau
 from edge.tracker.port import Reason
 from edge.tracker.state import Ring
 from shared.errors import ConfigError
@@ -50,6 +50,7 @@ GATE = np.dtype(
         ("plateau_samples", np.int64, 3),  # the same of a plateau that is yet to be judged
         ("plateau_stop", np.int64, 3),  # one past its last sample
         ("plateau_radps", np.float64, 3),  # top of the last one that was right
+        ("watching", np.bool_),  # a rate was high, or a plateau is yet to be judged
         ("started", np.bool_),
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
@@ -152,7 +153,8 @@ def admit(
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
         for j in range(3):
-            clipped = abs(gate[0].gyro_radps[j]) >= _rate_limit(gate, limits, j)
+            rate_radps = abs(gate[0].gyro_radps[j])
+            clipped = rate_radps >= limits.gyro_clip_radps or rate_radps >= gate[0].clip_radps[j]
             ring[slot].clipped[j] = clipped
             if clipped and flags & BAD_SAMPLES == 0:
                 flags |= GYRO_SATURATED
@@ -201,24 +203,22 @@ def _heed_plateaus(
     It shows when a plateau is over, so what has clipped is marked afterwards, as far back as no
     filter has come yet however the samples are batched.
     """
+    fastest_radps = max(abs(gyro_radps[0]), abs(gyro_radps[1]), abs(gyro_radps[2]))
+    if fastest_radps < LEAST_RADPS and not gate[0].watching:
+        return  # as half of the time
+    gate[0].watching = False
     mask = len(ring) - 1
     for j in range(3):
         before_radps = gate[0].clip_radps[j]
         seek_plateau(ring, k, gate, j, abs(gyro_radps[j]))
-        limit_radps = _rate_limit(gate, limits, j)
         if gate[0].clip_radps[j] < before_radps:
+            limit_radps = min(limits.gyro_clip_radps, gate[0].clip_radps[j])
             for i in range(k - 1, max(-1, k - mask // 8), -1):
                 if gate[0].arrival_s - ring[i & mask].arrival_s > MARK_BACK_S:
                     break
                 if abs(ring[i & mask].gyro_radps[j]) >= limit_radps:
                     ring[i & mask].clipped[j] = 1
                     ring[i & mask].flags |= GYRO_SATURATED
-
-
-@njit()
-def _rate_limit(gate: NDArray[Any], limits: Limits, axis: int) -> float:
-    """Return the rate from which an axis has clipped, as told or as plateaus show."""
-    return float(min(limits.gyro_clip_radps, gate[0].clip_radps[axis]))
 
 
 @njit()

@@ -34,7 +34,8 @@ def seek_plateau(ring: Ring, k: int, gate: NDArray[Any], axis: int, rate_radps: 
     g = gate[0]
     slow = rate_radps < LEAST_RADPS and g.flat_radps[axis] < LEAST_RADPS
     if slow and g.plateau_samples[axis] == 0:
-        return  # as nearly always
+        return
+    g.watching = True
     if rate_radps > g.highest_radps[axis]:
         g.highest_radps[axis] = rate_radps
         if rate_radps > PASSED * g.clip_radps[axis]:
