@@ -7,9 +7,9 @@ import math
 import socket
 import time
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
-from threading import Thread
+
+from tests.ximu3_device import TcpDevice
 
 NAN = math.nan
 DAY_S = 86_400
@@ -166,11 +166,8 @@ def gpsd_devices(*paths: str) -> bytes:
     return json_line("DEVICES", devices=devices)
 
 
-class GpsdServer:
-    """A gpsd: greets, waits to be asked to watch, and says one of ``sessions`` to each client.
-
-    After a session it ends the connection, or ``hangs`` until the client has enough of it.
-    """
+class GpsdServer(TcpDevice):
+    """A gpsd: greets, waits to be asked to watch, and then is a ``TcpDevice``."""
 
     def __init__(
         self,
@@ -179,40 +176,20 @@ class GpsdServer:
         port: int = 0,
         hangs: bool = False,
     ) -> None:
-        self._sessions, self._devices, self._hangs = sessions, devices, hangs
-        self._server = socket.create_server(("127.0.0.1", port))
-        self.port: int = self._server.getsockname()[1]
+        self._devices = devices
         self.asked: list[bytes] = []
-        self._thread = Thread(target=self._run, daemon=True)
-        self._thread.start()
+        super().__init__(*sessions, port=port, hangs=hangs)
 
     @property
     def source(self) -> str:
         return f"//127.0.0.1:{self.port}"
 
-    def close(self) -> None:
-        with suppress(OSError):
-            self._server.shutdown(socket.SHUT_RDWR)
-        self._server.close()
-        self._thread.join(5.0)
-
-    def _run(self) -> None:
-        with suppress(OSError):
-            for session in self._sessions:
-                connection, _ = self._server.accept()
-                with connection, suppress(ConnectionError):
-                    connection.settimeout(30.0)
-                    connection.sendall(
-                        json_line("VERSION", release="3.25", proto_major=3, proto_minor=15)
-                    )
-                    self.asked.append(connection.recv(200))
-                    connection.sendall(
-                        gpsd_devices(*self._devices) + json_line("WATCH", enable=True, json=True)
-                    )
-                    for part in session:
-                        connection.sendall(part)
-                    if self._hangs:
-                        connection.recv(1)
+    def greet(self, connection: socket.socket) -> None:
+        connection.sendall(json_line("VERSION", release="3.25", proto_major=3, proto_minor=15))
+        self.asked.append(connection.recv(200))
+        connection.sendall(
+            gpsd_devices(*self._devices) + json_line("WATCH", enable=True, json=True)
+        )
 
 
 class Hasty:

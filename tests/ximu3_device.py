@@ -79,11 +79,15 @@ class TcpDevice:
             for session in self._sessions:
                 connection, _ = self._server.accept()
                 with connection, suppress(ConnectionError):
+                    connection.settimeout(30.0)
+                    self.greet(connection)
                     for part in session:
                         connection.sendall(part)
                     if self._hangs:
-                        connection.settimeout(30.0)
                         connection.recv(1)
+
+    def greet(self, connection: socket.socket) -> None:
+        """What comes before each session: nothing."""
 
 
 class PtyDevice:
