@@ -28,7 +28,7 @@ from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.saving import Saving
 from base_station.live.self_watch import SelfWatch
-from base_station.live.sinks import ActionDone
+from base_station.live.sinks import ActionDone, Trails
 from base_station.live.surroundings import Record, Surroundings
 from base_station.pipeline import StationPipeline
 from shared.channels import OPERATOR, TICK
@@ -76,7 +76,7 @@ class StationDrive:
         )
         self._saving = Saving(surroundings.log, surroundings.checkpoints, self._watch)
         self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
-        self._asked: deque[tuple[Callable[[Snapshot], None], bool]] = deque()
+        self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="station-drive")
         now_ns = surroundings.clock.monotonic_ns()
@@ -109,8 +109,8 @@ class StationDrive:
         self._due.checkpoint_ns = 0
         self._around.feed.wake()
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
-        self._asked.append((deliver, trails))
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        self._asked.append(deliver)
         self._around.feed.wake()
 
     # ---- before the thread runs
@@ -181,8 +181,7 @@ class StationDrive:
             spent_ns = time.thread_time_ns() - before_ns
             due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
         while self._asked:
-            deliver, trails = self._asked.popleft()
-            deliver(self._picture.snapshot(trails=trails))
+            self._asked.popleft()(*self._picture.whole())
         return bool(records)
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:

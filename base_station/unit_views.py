@@ -12,7 +12,6 @@ from base_station.api.wire import (
     PersonView,
     PositionView,
     StatusView,
-    TrailPoint,
     TrustView,
     UnitView,
 )
@@ -21,7 +20,6 @@ from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
 from base_station.site.plan import Ring
 from base_station.site.roaming import RADII_95, roamed_m
-from base_station.trail import TrailStep
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Activity, FusedPosition, Heartbeat, Status
 from shared.quality import Quality
@@ -159,12 +157,3 @@ def _ellipse(fused: FusedPosition) -> tuple[float, float, float]:
     heading_rad = 0.5 * math.atan2(2.0 * product, north_var - east_var)
     major_m = RADII_95 * math.sqrt(middle + half)
     return major_m, RADII_95 * math.sqrt(max(middle - half, 0.0)), heading_rad
-
-
-def trail_view(trail: Iterable[TrailStep]) -> tuple[TrailPoint, ...]:
-    return tuple(
-        TrailPoint(
-            step.t_ns // NS_PER_MS, round(step.north_m, 2), round(step.east_m, 2), step.floor
-        )
-        for step in trail
-    )

@@ -25,7 +25,7 @@ from base_station.db.models import Alarm as StoredAlarm
 from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
 from base_station.pins.pin import WAITING, Pin
-from base_station.unit_views import trail_view, unit_views
+from base_station.unit_views import unit_views
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 
@@ -178,13 +178,10 @@ def snapshot(
     facts: StationFacts,
     photo_urls: PhotoUrls,
     replay: ReplayView | None = None,
-    *,
-    trails: bool = True,
 ) -> Snapshot:
-    """Everything that a console shows; ``trails`` may be left out."""
+    """Everything that a console shows but trails."""
     still_open = [alarm for alarm in state.alarms.values() if alarm.is_open]
     shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
-    drawn = [unit for unit in state.units.values() if trails and unit.trail]
     return Snapshot(
         seq=seq,
         now_ms=to_ms(state.t_ns),
@@ -192,7 +189,6 @@ def snapshot(
         units=unit_views(state, state.units.values(), photo_urls),
         alarms=tuple(map(alarm_view, shown)),
         commands=tuple(map(command_view, state.commands.values())),
-        trails={unit.unit_id: trail_view(unit.trail) for unit in drawn},
         pins=pin_views(state),
         beacons=beacon_views(state),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,

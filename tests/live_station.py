@@ -14,7 +14,7 @@ from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
 from base_station.fusion import FUSERS
 from base_station.journals.backfill import Report
-from base_station.live.sinks import ActionDone, Projection
+from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.live.surroundings import Surroundings
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
@@ -48,7 +48,7 @@ class Screen:
     def delta(self, delta: Delta) -> None:
         self.deltas.append(delta)
 
-    def reset(self, snapshot: Snapshot) -> None:
+    def reset(self, snapshot: Snapshot, _trails: Trails) -> None:
         self.resets.append(snapshot)
 
 
@@ -131,7 +131,7 @@ class LiveStation:
         found: list[Snapshot] = []
         came = threading.Event()
 
-        def take(snapshot: Snapshot) -> None:
+        def take(snapshot: Snapshot, _: Trails) -> None:
             found.append(snapshot)
             came.set()
 

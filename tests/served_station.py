@@ -51,3 +51,11 @@ def snapshot(browser: Browser, path: str = "/live") -> dict[str, Any]:
         message: dict[str, Any] = json.loads(socket_.recv(10.0))
         assert message["type"] == "snapshot"
         return message
+
+
+def trail(browser: Browser, path: str = "/live") -> dict[str, Any]:
+    """The first of the trails that follow a snapshot."""
+    with watch(browser, path) as socket_:
+        while (message := json.loads(socket_.recv(10.0)))["type"] != "trail":
+            pass
+        return dict(message)

@@ -31,7 +31,7 @@ from base_station.events import Output, Received, Refused
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.fusion import FUSERS
-from base_station.live.sinks import ActionDone, Projection
+from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recordings.desk import RecordingDesk
@@ -99,14 +99,14 @@ class DeskDrive:
         done.set_result(ActionDone(f"action-{header.seq}", self._clock.utc_ns(), refused))
         return done
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         with self._lock:
-            deliver(self.picture(trails=trails))
+            deliver(self.picture(), {})
 
-    def picture(self, *, trails: bool = True) -> Snapshot:
+    def picture(self) -> Snapshot:
         with self._lock:
             state, photo_url = self._pipeline.state, self._roster.photo_url
-            return snapshot(state, self._seq, StationFacts(), photo_url, trails=trails)
+            return snapshot(state, self._seq, StationFacts(), photo_url)
 
 
 def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:

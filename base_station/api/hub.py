@@ -1,20 +1,22 @@
 """Spreads a live picture to the consoles that watch it.
 
 A delta is encoded once and the same bytes go to everyone.  A client that cannot keep up loses
-its queue, not the station its memory: once it takes something again it gets a snapshot.
+its queue, not the station its memory: once it takes something again it gets a snapshot.  Trails,
+nearly all of a picture, go out when nothing else does: over a slow link too a console shows at
+once where everybody is, and stays up to date.
 """
 
 from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 
 import msgspec
 
-from base_station.api.wire import Delta, HealthView, Snapshot
-from base_station.live.sinks import LiveSource
+from base_station.api.wire import Delta, HealthView, Snapshot, Trail
+from base_station.live.sinks import LiveSource, Trails
 
 QUEUE = 64  # messages a client may be behind, some three seconds
 
@@ -25,6 +27,7 @@ class Client:
     def __init__(self, hub: Hub) -> None:
         self._hub = hub
         self._queue: deque[bytes] = deque()
+        self._trails: dict[str, bytes] = {}  # by unit: behind the snapshot, and not yet sent
         self._filled = asyncio.Event()
         self._behind = False  # lost its queue and needs a snapshot
         self._waiting = False  # a snapshot is under way
@@ -32,37 +35,47 @@ class Client:
 
     async def next_message(self) -> bytes:
         """The next message in order, waiting for it."""
-        while not self._queue:
+        while not (self._queue or self._trails):
             self._filled.clear()
             if self._behind:
                 self.ask_for_snapshot()
             await self._filled.wait()
-        return self._queue.popleft()
+        return self._queue.popleft() if self._queue else self._trails.pop(next(iter(self._trails)))
 
     def ask_for_snapshot(self) -> None:
         """What is queued is dropped; the next message will be a snapshot."""
-        self._queue.clear()
+        self._drop()
         self._behind = False
         if not self._waiting:
             self._waiting = True
             self._hub.request_snapshot()
 
-    def take_delta(self, message: bytes) -> None:
+    def take_delta(self, message: bytes, redrawn: Iterable[str]) -> None:
+        """``redrawn``: the units whose whole trail it has."""
         if self._waiting or self._behind:
             return
         if len(self._queue) >= QUEUE:
-            self._queue.clear()
+            self._drop()
             self._behind = True
             self.lapses += 1
             return
+        for unit_id in redrawn:
+            self._trails.pop(unit_id, None)
         self._put(message)
 
-    def take_snapshot(self, message: bytes, wanted_only: bool) -> None:
+    def take_snapshot(
+        self, message: bytes, trails: Mapping[str, bytes], *, wanted_only: bool
+    ) -> None:
         if wanted_only and not self._waiting:
             return
         self._waiting = self._behind = False
-        self._queue.clear()
+        self._drop()
+        self._trails.update(trails)
         self._put(message)
+
+    def _drop(self) -> None:
+        self._queue.clear()
+        self._trails.clear()
 
     def _put(self, message: bytes) -> None:
         self._queue.append(message)
@@ -93,7 +106,7 @@ class Hub:
         """The picture as it is now, without trails; never done where the source has stopped."""
         future: Future[Snapshot] = Future()
         if self._source is not None:
-            self._source.request_snapshot(future.set_result, trails=False)
+            self._source.request_snapshot(lambda snapshot, _: future.set_result(snapshot))
         return future
 
     # ---- in the source's thread
@@ -102,16 +115,17 @@ class Hub:
         if delta.health is not None:
             self.health = delta.health
         if self._watched:
-            self._in_loop(self._spread_delta, self._encoder.encode(delta))
+            self._in_loop(self._spread_delta, self._encoder.encode(delta), tuple(delta.trails))
 
-    def reset(self, snapshot: Snapshot) -> None:
+    def reset(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
         if self._watched:
-            self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), False)
+            message = self._encoder.encode(snapshot)
+            self._in_loop(self._spread_snapshot, message, trails, False)
 
-    def _deliver(self, snapshot: Snapshot) -> None:
+    def _deliver(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
-        self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), True)
+        self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), trails, True)
 
     def _in_loop(self, function: Callable[..., None], *arguments: object) -> None:
         if self._loop is None:
@@ -144,12 +158,16 @@ class Hub:
             self._requested = True
             self._source.request_snapshot(self._deliver)
 
-    def _spread_delta(self, message: bytes) -> None:
+    def _spread_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
         for client in self._clients:
-            client.take_delta(message)
+            client.take_delta(message, redrawn)
 
-    def _spread_snapshot(self, message: bytes, wanted_only: bool) -> None:
+    def _spread_snapshot(self, message: bytes, trails: Trails, wanted_only: bool) -> None:
         if wanted_only:
             self._requested = False
+        encoded = {
+            unit_id: msgspec.json.encode(Trail(unit_id, points))
+            for unit_id, points in trails.items()
+        }
         for client in self._clients:
-            client.take_snapshot(message, wanted_only)
+            client.take_snapshot(message, encoded, wanted_only=wanted_only)

@@ -1,7 +1,8 @@
 """What the console hears over the WebSocket ``/api/v1/live``: a snapshot, then deltas.
 
-Every message carries ``seq``; a delta whose ``seq`` is not the last one plus one means that
-the console missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).
+Both carry ``seq``; a delta whose ``seq`` is not the last one plus one means that the console
+missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).  The trails that
+were behind the units at the snapshot come one by one, whenever no delta has to go out.
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
 Positions are metres north, east and down in the incident frame.  The console's
 ``src/wire.ts`` mirrors these types.
@@ -9,6 +10,7 @@ Positions are metres north, east and down in the incident frame.  The console's
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
 import msgspec
@@ -265,7 +267,6 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     units: tuple[UnitView, ...]
     alarms: tuple[AlarmView, ...]  # all that are not resolved, and the last resolved ones
     commands: tuple[CommandView, ...]  # all that are open, and the last closed ones; oldest first
-    trails: dict[str, tuple[TrailPoint, ...]]  # by unit
     pins: tuple[PinView, ...]  # in the order of setting
     beacons: tuple[BeaconView, ...]
     plan: msgspec.Raw | None  # GeoJSON as stored: see docs/messages
@@ -274,13 +275,20 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     replay: ReplayView | None
 
 
+class Trail(msgspec.Struct, frozen=True, tag="trail"):
+    """Where a unit was before the last snapshot; deltas since then have gone on from there."""
+
+    unit_id: str
+    points: msgspec.Raw  # ``TrailPoint``s
+
+
 class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     seq: int
     now_ms: int
     units: tuple[UnitView, ...] = ()
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
-    trails: dict[str, tuple[TrailPoint, ...]] = {}  # whole, of units whose past changed
+    trails: Mapping[str, msgspec.Raw] = {}  # ``TrailPoint``s; whole, of units whose past changed
     pins: tuple[PinView, ...] | None = None  # all of them, where any changed
     beacons: tuple[BeaconView, ...] | None = None
     health: HealthView | None = None

@@ -28,7 +28,7 @@ from base_station.api.wire import (
 from base_station.db import models
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
-from base_station.live.sinks import ActionDone, LiveSink
+from base_station.live.sinks import ActionDone, LiveSink, Trails
 from base_station.site.roaming import RADII_95
 from base_station.views import alarm_view, anchor_view
 from shared.clock import NS_PER_S, Clock
@@ -51,15 +51,10 @@ class LastKnown:
         self._sink = sink
         self._share = 0.0
         self._said_ns = 0
-        self._stored: Snapshot | None = None  # nothing is stored while the log is read
+        self._stored: tuple[Snapshot, Trails] | None = None  # nothing new while the log is read
 
-    def request_snapshot(
-        self,
-        deliver: Callable[[Snapshot], None],
-        *,
-        trails: bool = True,  # noqa: ARG002  # they are stored with the rest
-    ) -> None:
-        deliver(self.snapshot())
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        deliver(*self.whole())
 
     def tell(self, share: float) -> None:
         """So much of the log is read."""
@@ -67,7 +62,7 @@ class LastKnown:
         now_ns = self._clock.monotonic_ns()
         if now_ns - self._said_ns >= _SAID_AGAIN_NS:
             self._said_ns = now_ns
-            self._sink.reset(self.snapshot())
+            self._sink.reset(*self.whole())
 
     # ---- a standing
 
@@ -87,15 +82,16 @@ class LastKnown:
 
     # ---- the picture
 
-    def snapshot(self) -> Snapshot:
-        stored = self._stored = self._stored or self._read()
-        return msgspec.structs.replace(
+    def whole(self) -> tuple[Snapshot, Trails]:
+        stored, trails = self._stored = self._stored or self._read()
+        shown = msgspec.structs.replace(
             stored,
             now_ms=to_ms(self._clock.utc_ns()),
             health=msgspec.structs.replace(stored.health, reading=self._share),
         )
+        return shown, trails
 
-    def _read(self) -> Snapshot:
+    def _read(self) -> tuple[Snapshot, Trails]:
         now_ns = self._clock.utc_ns()
         incident = next((one for one in self._records.incidents() if one.closed_ns is None), None)
         since_ns = now_ns - _RECENT_NS if incident is None else incident.opened_ns
@@ -111,7 +107,7 @@ class LastKnown:
             for unit_id in self._roster.registered_units()
         }
         plan, anchor = self._records.plan(), self._records.anchor()
-        return Snapshot(
+        shown = Snapshot(
             seq=0,
             now_ms=to_ms(now_ns),
             incident=None if incident is None else _incident(incident),
@@ -121,7 +117,6 @@ class LastKnown:
             ),
             alarms=tuple(map(alarm_view, open_alarms)),
             commands=(),
-            trails={unit_id: tuple(map(_point, trail)) for unit_id, trail in trails.items()},
             pins=(),
             beacons=(),
             plan=None if plan is None else msgspec.Raw(plan),
@@ -129,6 +124,7 @@ class LastKnown:
             health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False),
             replay=None,
         )
+        return shown, {unit_id: _points(trail) for unit_id, trail in trails.items()}
 
     def _unit(
         self,
@@ -190,8 +186,9 @@ def _position(sample: TrackSample) -> PositionView:
     )
 
 
-def _point(sample: TrackSample) -> TrailPoint:
-    return TrailPoint(to_ms(sample.t_ns), sample.north_m, sample.east_m, sample.floor)
+def _points(trail: list[TrackSample]) -> msgspec.Raw:
+    points = [TrailPoint(to_ms(one.t_ns), one.north_m, one.east_m, one.floor) for one in trail]
+    return msgspec.Raw(msgspec.json.encode(points))
 
 
 def _incident(incident: models.Incident) -> IncidentView:

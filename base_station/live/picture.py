@@ -4,13 +4,16 @@ last delta, and when only a whole new snapshot will do.  Live and replay both dr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from base_station.api.wire import Delta, ReplayView, Snapshot, TrailPoint
+import msgspec
+
+from base_station.api.wire import Delta, ReplayView, Snapshot
 from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
-from base_station.live.sinks import LiveSink, PhotoUrls
+from base_station.live.drawn_trails import DrawnTrails
+from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.pipeline import StationPipeline
-from base_station.unit_views import trail_view, unit_views
+from base_station.unit_views import unit_views
 from base_station.views import (
     StationFacts,
     alarm_view,
@@ -22,6 +25,8 @@ from base_station.views import (
 )
 from shared.clock import NS_PER_MS
 from shared.messages import AlarmChange, FusedPosition
+
+FILLED_A_TURN = 8  # trails whose past was filled in are told whole: so many with one delta
 
 
 class Picture:
@@ -37,11 +42,13 @@ class Picture:
     def show(self, pipeline: StationPipeline) -> None:
         """Go on with another pipeline; the next ``flush`` or ``reset`` tells it."""
         self._pipeline = pipeline
+        self._trails = DrawnTrails()
         self._units: dict[str, None] = {}  # an ordered set
         self._later: dict[str, None] = {}  # told with the station's health, or when touched
         self._alarms: list[AlarmChange] = []
         self._commands: dict[str, None] = {}
-        self._filled: dict[str, None] = {}
+        self._filled: dict[str, None] = {}  # since trails were last told
+        self._untold: dict[str, None] = {}  # filled trails that are to be told now
         self._pins_changed = False
         self._frame = self._frame_now()
 
@@ -69,11 +76,15 @@ class Picture:
             return
         if health or replay:
             self._units.update(self._later)
+        if health or self._pins_changed:
+            self._untold.update(self._filled)
+            self._filled.clear()
         if not (self._has_news or health or replay):
             return
+        state = self._pipeline.state
         for unit_id in self._units:
             self._later.pop(unit_id, None)
-        state = self._pipeline.state
+            self._trails.keep_up(state.units[unit_id])
         self._seq += 1
         delta = Delta(
             seq=self._seq,
@@ -85,7 +96,7 @@ class Picture:
                 for command_id in self._commands
                 if command_id in state.commands
             ),
-            trails=self._filled_trails() if health or self._pins_changed else {},
+            trails=self._filled_trails(),
             pins=pin_views(state) if self._pins_changed else None,
             beacons=beacon_views(state) if self._pins_changed else None,
             health=health_view(state, self.facts) if health else None,
@@ -104,7 +115,7 @@ class Picture:
 
     @property
     def _has_news(self) -> bool:
-        return bool(self._units) or self.is_urgent
+        return bool(self._units or self._untold) or self.is_urgent
 
     def reset(self, replay: ReplayView | None = None) -> None:
         """Everybody begins again."""
@@ -114,25 +125,27 @@ class Picture:
         self._alarms.clear()
         self._commands.clear()
         self._filled.clear()
+        self._untold.clear()
         self._pins_changed = False
-        self._sink.reset(self._snapshot(replay))
+        self._sink.reset(*self._whole(replay))
 
-    def snapshot(self, replay: ReplayView | None = None, *, trails: bool = True) -> Snapshot:
+    def whole(self, replay: ReplayView | None = None) -> tuple[Snapshot, Trails]:
         """For one console, after what was noted so far was told to all."""
         self.flush(replay=replay)
-        return self._snapshot(replay, trails=trails)
+        return self._whole(replay)
 
-    def _filled_trails(self) -> dict[str, tuple[TrailPoint, ...]]:
-        """Once a second will do: a gap is filled over seconds."""
+    def _filled_trails(self) -> Mapping[str, msgspec.Raw]:
+        """Some at a time, and those of a second together: a gap is filled over seconds."""
         units = self._pipeline.state.units
-        trails = {unit_id: trail_view(units[unit_id].trail) for unit_id in self._filled}
-        self._filled.clear()
-        return trails
+        now = list(self._untold)[:FILLED_A_TURN]
+        for unit_id in now:
+            del self._untold[unit_id]
+        return {unit_id: self._trails.of(units[unit_id]) for unit_id in now}
 
-    def _snapshot(self, replay: ReplayView | None, *, trails: bool = True) -> Snapshot:
-        return snapshot(
-            self._pipeline.state, self._seq, self.facts, self._photo_urls, replay, trails=trails
-        )
+    def _whole(self, replay: ReplayView | None) -> tuple[Snapshot, Trails]:
+        state = self._pipeline.state
+        shown = snapshot(state, self._seq, self.facts, self._photo_urls, replay)
+        return shown, self._trails.all(state.units.values())
 
     def _frame_now(self) -> tuple[object, ...]:
         """What deltas do not carry; replaced whole by the pipeline when it changes."""

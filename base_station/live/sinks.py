@@ -7,7 +7,7 @@ once: a queue and a thread or loop of its own do the slow part.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Protocol
 
@@ -19,6 +19,7 @@ from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDesc
 from shared.messages.station import Action
 
 PhotoUrls = Callable[[str], str | None]  # person id -> where the console finds the photo
+Trails = Mapping[str, msgspec.Raw]  # by unit: its points, encoded
 
 
 class LiveSink(Protocol):
@@ -30,7 +31,7 @@ class LiveSink(Protocol):
         """At most 20 a second, for every client that is up to date."""
         ...
 
-    def reset(self, snapshot: Snapshot) -> None:
+    def reset(self, snapshot: Snapshot, trails: Trails) -> None:
         """Plan, anchor or incident changed, or a replay jumped: every client begins again."""
         ...
 
@@ -38,10 +39,9 @@ class LiveSink(Protocol):
 class LiveSource(Protocol):
     """What a client of the console listens to: the live drive, or one replay."""
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         """From any thread.  ``deliver`` is called once in the source's thread, in order with the
-        calls of its ``LiveSink``; after the source has stopped it is never called.  Without
-        ``trails``, which are nearly all of its work, for whoever draws none.
+        calls of its ``LiveSink``; after the source has stopped it is never called.
         """
         ...
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from base_station.api.wire import ReplayView, Snapshot
 from base_station.live.picture import Picture
-from base_station.live.sinks import LiveSink, PhotoUrls
+from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.past.playback import Archive, Playback
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import UserError
@@ -49,7 +49,7 @@ class ReplaySession:
         self._clock = clock
         self._playback = Playback(archive)
         self._picture = Picture(self._playback.pipeline, sink, photo_urls)
-        self._asked: deque[tuple[Callable[[Snapshot], None], bool]] = deque()
+        self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = _checked_speed(speed)
         self._playing = True
@@ -101,8 +101,8 @@ class ReplaySession:
                 seeking=self._seeking,
             )
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
-        self._asked.append((deliver, trails))
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        self._asked.append(deliver)
         self._news.set()
 
     @property
@@ -164,8 +164,7 @@ class ReplaySession:
 
     def _answer(self) -> None:
         while self._asked:
-            deliver, trails = self._asked.popleft()
-            deliver(self._picture.snapshot(self.view(), trails=trails))
+            self._asked.popleft()(*self._picture.whole(self.view()))
 
     def _move(self, elapsed_ns: int) -> None:
         """Let as much of the past go by as the clock and the speed say."""

@@ -15,6 +15,7 @@ from playwright.sync_api import Page, Route, WebSocketRoute
 
 from base_station.api.routes.live import NOT_LOGGED_IN
 from base_station.api.wire import Delta, Snapshot
+from tests.e2e import scenes
 from tests.e2e.console_files import DIST
 
 ADDRESS = "http://station.test"
@@ -70,7 +71,8 @@ class PlayedStation:
         self._show(socket)
 
     def _show(self, socket: WebSocketRoute) -> None:
-        socket.send(msgspec.json.encode(self._picture).decode())
+        for message in (self._picture, *map(scenes.trail, self._picture.units)):
+            socket.send(msgspec.json.encode(message).decode())
 
     def _answer(self, route: Route) -> None:
         url, method = urlsplit(route.request.url), route.request.method

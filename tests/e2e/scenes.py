@@ -95,11 +95,11 @@ def unit(index: int) -> wire.UnitView:
     )
 
 
-def trail(index: int) -> tuple[wire.TrailPoint, ...]:
+def trail(shown: wire.UnitView) -> wire.Trail:
     """From the engine to where somebody is now."""
-    end = position(index)
+    end = position(int(shown.unit_id[3:]) - 1)
     steps = 60
-    return tuple(
+    points = tuple(
         wire.TrailPoint(
             NOW_MS - 1000 * (steps - step),
             -25 + (end.north_m + 25) * step / steps,
@@ -108,6 +108,7 @@ def trail(index: int) -> tuple[wire.TrailPoint, ...]:
         )
         for step in range(steps)
     )
+    return wire.Trail(shown.unit_id, msgspec.Raw(msgspec.json.encode(points)))
 
 
 def picture(units: list[wire.UnitView], *alarms: wire.AlarmView) -> wire.Snapshot:
@@ -118,7 +119,6 @@ def picture(units: list[wire.UnitView], *alarms: wire.AlarmView) -> wire.Snapsho
         units=tuple(units),
         alarms=alarms,
         commands=(),
-        trails={one.unit_id: trail(int(one.unit_id[3:]) - 1) for one in units},
         pins=(),
         beacons=(),
         plan=msgspec.Raw(PLAN.read_bytes()),

@@ -39,7 +39,7 @@ def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str
     folder: Path = tmp_path_factory.mktemp("station")
     desk = DeskStation(folder, ManualClock())
     _, token = desk.services.accounts.add_token("administrator", "t", Role.ADMINISTRATOR, None)
-    desk.hub.reset(desk.drive.picture())  # health is known once the drive has spoken
+    desk.hub.reset(desk.drive.picture(), {})  # health is known once the drive has spoken
     listening = bind("127.0.0.1", 0)
     port = listening.getsockname()[1]
     server = ConsoleServer(desk.app, listening)

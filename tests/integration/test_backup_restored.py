@@ -6,9 +6,8 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.served_station import MakePosition, greet, prepare, snapshot, walk
+from tests.served_station import MakePosition, greet, prepare, snapshot, trail, walk
 from tests.station_command import Browser, Command, Unit
-from tests.waiting import until
 
 
 def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(
@@ -24,7 +23,7 @@ def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(
         incident_id = prepare(browser)
         greet(browser, unit, make_position)
         walk(unit, make_position, 0, 10)
-        until(lambda: len(snapshot(browser)["trails"]) == 1, "the walk is shown")
+        assert trail(browser)["points"]
         with Command(
             tmp_path / "said.txt", "backup", str(target), "--data", str(data)
         ) as backing_up:

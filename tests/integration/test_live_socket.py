@@ -156,7 +156,7 @@ async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
                 pass
             assert message["seq"] == last + 1
             last = message["seq"]
-            station.hub.reset(station.drive.picture())
+            station.hub.reset(station.drive.picture(), {})
 
 
 async def test_the_server_stops_with_consoles_connected(station: DeskStation) -> None:

@@ -113,7 +113,7 @@ def look(address: str) -> None:
             f"{address.replace('http', 'ws')}/api/v1/live",
             additional_headers={"cookie": cookie, "origin": address},
         ) as socket:
-            picture = json.loads(socket.recv())
+            picture, trail = json.loads(socket.recv()), json.loads(socket.recv())
     assert picture["health"]["reading"] == 0.5
     assert picture["incident"]["name"] == "Mill Lane"
     (shown,) = picture["units"]
@@ -122,7 +122,7 @@ def look(address: str) -> None:
     assert (shown["position"]["north_m"], shown["position"]["east_m"]) == (3.0, 4.0)
     assert shown["alarms"] == ["x1"]
     assert [one["text"] for one in picture["alarms"]] == ["MAYDAY"]
-    assert picture["trails"]["FF-01"][0][1:3] == [3.0, 4.0]
+    assert (trail["unit_id"], trail["points"][0][1:3]) == ("FF-01", [3.0, 4.0])
 
 
 def never() -> NoReturn:

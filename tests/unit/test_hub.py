@@ -11,7 +11,8 @@ import msgspec
 import pytest
 
 from base_station.api.hub import QUEUE, Client, Hub
-from base_station.api.wire import Delta, HealthView, Snapshot, TrailPoint
+from base_station.api.wire import Delta, HealthView, Snapshot
+from base_station.live.sinks import Trails
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
@@ -22,26 +23,24 @@ class Source:
     def __init__(self, hub: Hub) -> None:
         self._hub = hub
         self.seq = 0
-        self.asked: list[tuple[Callable[[Snapshot], None], bool]] = []
+        self.asked: list[Callable[[Snapshot, Trails], None]] = []
+        self.trails: dict[str, msgspec.Raw] = {}
 
-    def request_snapshot(self, deliver: Callable[[Snapshot], None], *, trails: bool = True) -> None:
-        self.asked.append((deliver, trails))
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        self.asked.append(deliver)
 
     def say(self, times: int = 1) -> None:
         for _ in range(times):
             self.seq += 1
             self._hub.delta(Delta(self.seq, self.seq))
 
-    def snapshot(self, *, trails: bool = True) -> Snapshot:
-        drawn: dict[str, tuple[TrailPoint, ...]] = {}
-        if trails:
-            drawn["FF-01"] = (TrailPoint(0, 1.0, 2.0, None),)
+    def snapshot(self) -> Snapshot:
         seq = self.seq
-        return Snapshot(seq, seq, None, (), (), (), drawn, (), (), None, None, HEALTH, None)
+        return Snapshot(seq, seq, None, (), (), (), (), (), None, None, HEALTH, None)
 
     def answer(self) -> None:
-        for deliver, trails in self.asked:
-            deliver(self.snapshot(trails=trails))
+        for deliver in self.asked:
+            deliver(self.snapshot(), self.trails)
         self.asked.clear()
 
 
@@ -144,7 +143,7 @@ async def test_a_reset_reaches_all(hub: Hub, source: Source) -> None:
     client = hub.join()
     source.answer()
     source.say(2)
-    hub.reset(source.snapshot())
+    hub.reset(source.snapshot(), {})
     source.say()
     await settle()
     assert [(await next_one(client))["type"] for _ in range(2)] == ["snapshot", "delta"]
@@ -171,16 +170,61 @@ async def test_without_clients_nothing_is_encoded(hub: Hub, source: Source) -> N
         await asyncio.wait_for(client.next_message(), 0.01)
 
 
-async def test_a_program_may_ask_for_the_picture_without_trails(hub: Hub, source: Source) -> None:
+async def test_a_program_may_ask_for_the_picture(hub: Hub, source: Source) -> None:
     asked = hub.snapshot()
     assert not asked.done()
     source.say(4)
     source.answer()
     assert asked.result(0).seq == 4
-    assert not asked.result(0).trails
 
 
-async def test_a_console_gets_the_trails(hub: Hub, source: Source) -> None:
+@pytest.fixture
+async def walked(hub: Hub, source: Source) -> Client:
+    """Has asked for a picture with three trails, and has it in part."""
+    source.trails = {f"FF-{i}": msgspec.Raw(b"[[%d,1.0,2.0,null]]" % i) for i in range(3)}
     client = hub.join()
     source.answer()
-    assert "FF-01" in (await next_one(client))["trails"]
+    await settle()
+    assert (await next_one(client))["type"] == "snapshot"
+    first = {"type": "trail", "unit_id": "FF-0", "points": [[0, 1.0, 2.0, None]]}
+    assert await next_one(client) == first
+    return client
+
+
+async def test_trails_wait_for_whatever_is_new(source: Source, walked: Client) -> None:
+    source.say(2)
+    await settle()
+    assert [(await next_one(walked)).get("seq") for _ in range(2)] == [1, 2]
+    assert [(await next_one(walked))["unit_id"] for _ in range(2)] == ["FF-1", "FF-2"]
+
+
+async def test_a_trail_that_was_told_anew_does_not_come_again(
+    hub: Hub, source: Source, walked: Client
+) -> None:
+    source.seq += 1
+    hub.delta(Delta(source.seq, 0, trails={"FF-1": msgspec.Raw(b"[]")}))
+    await settle()
+    assert (await next_one(walked))["trails"] == {"FF-1": []}
+    assert (await next_one(walked))["unit_id"] == "FF-2"
+
+
+async def test_trails_of_a_picture_are_gone_with_it(
+    hub: Hub, source: Source, walked: Client
+) -> None:
+    hub.reset(source.snapshot(), {})
+    source.say()
+    await settle()
+    assert [(await next_one(walked))["type"] for _ in range(2)] == ["snapshot", "delta"]
+    with pytest.raises(TimeoutError):
+        await asyncio.wait_for(walked.next_message(), 0.01)
+
+
+async def test_many_trails_push_nobody_out(hub: Hub, source: Source) -> None:
+    source.trails = {f"FF-{i}": msgspec.Raw(b"[]") for i in range(3 * QUEUE)}
+    client = hub.join()
+    source.answer()
+    source.say(QUEUE // 2)
+    await settle()
+    seen = [(await next_one(client))["type"] for _ in range(1 + QUEUE // 2 + 3 * QUEUE)]
+    assert seen == ["snapshot", *["delta"] * (QUEUE // 2), *["trail"] * (3 * QUEUE)]
+    assert client.lapses == 0

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from base_station.api.wire import Snapshot
+from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
@@ -66,7 +67,7 @@ def picture(session: ReplaySession) -> Snapshot:
     found: list[Snapshot] = []
     came = threading.Event()
 
-    def take(snapshot: Snapshot) -> None:
+    def take(snapshot: Snapshot, _: Trails) -> None:
         found.append(snapshot)
         came.set()
 

@@ -11,6 +11,7 @@ from base_station.api.hub import Hub
 from base_station.api.replays import MOST_REPLAYS, UNWATCHED_S, Replays
 from base_station.api.wire import ReplayView, Snapshot
 from base_station.db.models import Incident
+from base_station.live.sinks import Trails
 from shared.errors import UserError
 
 
@@ -30,9 +31,7 @@ class Player:
     def view(self) -> ReplayView:
         return ReplayView("i-1", 0, 1, 0, 1.0, playing=True)
 
-    def request_snapshot(
-        self, deliver: Callable[[Snapshot], None], *, trails: bool = True
-    ) -> None: ...
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None: ...
 
     def close(self) -> None:
         self.closed = True

@@ -32,10 +32,10 @@ class _HealthSeen(msgspec.Struct):
 
 
 class _MessageSeen(msgspec.Struct):
-    """The parts of a snapshot or delta that the figures need."""
+    """The parts of a message that the figures need."""
 
     type: str
-    seq: int
+    seq: int = 0  # of a snapshot or delta
     units: tuple[_UnitSeen, ...] = ()
     health: _HealthSeen | None = None
 
@@ -116,6 +116,8 @@ class Console:
             return
 
     def _note(self, message: _MessageSeen, seen_ns: int) -> None:
+        if message.type == "trail":
+            return
         if message.type == "snapshot":
             self.snapshots += 1
             self.units_shown = self.units_shown or len(message.units)

@@ -29,7 +29,8 @@ from shared.mcap_log import read_log, segment_paths
 _RATE_HZ = 7.0  # messages a second of each unit
 _PATIENCE_S = 1200.0
 _LOOK_EVERY_S = 0.2
-_SHOWN = ("units", "trails", "alarms", "commands", "incident", "plan", "anchor", "pins", "beacons")
+_TRAILS_WITHIN_S = 10.0
+_SHOWN = ("units", "alarms", "commands", "incident", "plan", "anchor", "pins", "beacons")
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +152,12 @@ def _shown(station: Station) -> dict[str, Any]:
         compression=None,
     ) as socket:
         snapshot = msgspec.json.decode(socket.recv(), type=dict[str, Any])
-    return {name: snapshot.get(name) for name in _SHOWN}
+        trails: dict[str, Any] = {}
+        while len(trails) < len(snapshot["units"]):  # everybody walks
+            message = msgspec.json.decode(socket.recv(_TRAILS_WITHIN_S), type=dict[str, Any])
+            if message["type"] == "trail":
+                trails[message["unit_id"]] = message["points"]
+    return {name: snapshot.get(name) for name in _SHOWN} | {"trails": trails}
 
 
 def _apart(one: Path, other: Path) -> int:

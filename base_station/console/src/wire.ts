@@ -251,13 +251,19 @@ export interface Snapshot {
   units: UnitView[];
   alarms: AlarmView[];
   commands: CommandView[]; // all that are open, and the last closed ones; oldest first
-  trails: Record<string, TrailPoint[]>;
   pins: PinView[]; // in the order of setting
   beacons: BeaconView[];
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
   replay: ReplayView | null;
+}
+
+/** Where a unit was before the last snapshot; deltas since then have gone on from there. */
+export interface Trail {
+  type: "trail";
+  unit_id: string;
+  points: TrailPoint[];
 }
 
 /** What changed since the message before; what is absent is as it was. */
@@ -276,4 +282,4 @@ export interface Delta {
   replay?: ReplayView;
 }
 
-export type Message = Snapshot | Delta;
+export type Message = Snapshot | Trail | Delta;

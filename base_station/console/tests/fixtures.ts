@@ -135,7 +135,6 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     units: [],
     alarms: [],
     commands: [],
-    trails: {},
     pins: [],
     beacons: [],
     plan: null,

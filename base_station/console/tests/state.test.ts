@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { apply, TRAIL_POINTS, type State } from "../src/live/state";
-import type { TrailPoint } from "../src/wire";
+import type { Trail, TrailPoint } from "../src/wire";
 import { alarm, command, delta, position, snapshot, unit } from "./fixtures";
 
 function after(...messages: Parameters<typeof apply>[1][]): State {
@@ -85,6 +85,7 @@ describe("apply", () => {
 describe("trails", () => {
   const walk = (seq: number, t_ms: number, north_m: number) =>
     delta(seq, { units: [unit("a", { position: position({ t_ms, north_m }) })] });
+  const past = (unit_id: string, points: TrailPoint[]): Trail => ({ type: "trail", unit_id, points });
   const trail = (state: State) => state.trails.get("a")?.map((point) => point[0]);
 
   it("grow with the walk, a point a second at most", () => {
@@ -112,9 +113,34 @@ describe("trails", () => {
     expect(trail(state)).toEqual([1000, 3000, 5000]);
   });
 
+  it("go on from what was before the snapshot, whatever was drawn meanwhile", () => {
+    const before: TrailPoint[] = [
+      [3000, 0, 0, 0],
+      [5000, 2, 0, 0],
+    ];
+    const state = after(
+      snapshot(),
+      walk(11, 5500, 2.4),
+      walk(12, 7000, 4),
+      past("a", before),
+      walk(13, 9000, 6),
+    );
+    expect(trail(state)).toEqual([3000, 5000, 7000, 9000]);
+  });
+
+  it("of a unit that says nothing are shown all the same", () => {
+    const state = after(snapshot(), past("a", [[1000, 0, 0, 0]]));
+    expect(trail(state)).toEqual([1000]);
+    expect(state.seq).toBe(10);
+  });
+
+  it("from before another snapshot are gone with it", () => {
+    expect(after(snapshot(), past("a", [[1000, 0, 0, 0]]), snapshot()).trails.size).toBe(0);
+  });
+
   it("keep a bounded number of points", () => {
     const long = Array.from({ length: TRAIL_POINTS }, (_, i): TrailPoint => [i * 1000, i, 0, 0]);
-    const state = after(snapshot({ trails: { a: long } }), walk(11, 1e7, 1e4));
+    const state = after(snapshot(), past("a", long), walk(11, 1e7, 1e4));
     expect(state.trails.get("a")).toHaveLength(TRAIL_POINTS);
     expect(trail(state)?.at(-1)).toBe(1e7);
   });

@@ -42,15 +42,18 @@ export class Session {
     if (message.type === "snapshot") this.asked = false;
     this.state = state;
     if (state === null) return;
-    const { replay } = state;
-    const speed = replay === null ? 1 : replay.playing && !replay.seeking ? replay.speed : 0;
-    this.clock.set(state.now_ms, performance.now(), speed);
+    if (message.type !== "trail") this.setClock(state);
     batch(() => {
       if (this.picture.link.peek().kind !== "up") this.picture.link.value = { kind: "up" };
       this.picture.show(state);
       // Everything that shows an age renders with the clock, so deltas do not drive it.
       if (message.type === "snapshot") this.tick();
     });
+  }
+
+  private setClock({ replay, now_ms }: State): void {
+    const speed = replay === null ? 1 : replay.playing && !replay.seeking ? replay.speed : 0;
+    this.clock.set(now_ms, performance.now(), speed);
   }
 
   private lose(): void {

@@ -12,6 +12,7 @@ import type {
   Plan,
   ReplayView,
   Snapshot,
+  Trail,
   TrailPoint,
   UnitView,
 } from "../wire";
@@ -48,7 +49,9 @@ const CLOSED_KEPT = 10;
 /** The state after a message.  A delta that does not follow leaves the state as it was. */
 export function apply(state: State | null, message: Message): Applied {
   if (message.type === "snapshot") return { state: fromSnapshot(message), missed: false };
-  if (state === null || message.seq !== state.seq + 1) return { state, missed: true };
+  if (state === null) return { state, missed: true };
+  if (message.type === "trail") return { state: withPast(state, message), missed: false };
+  if (message.seq !== state.seq + 1) return { state, missed: true };
   return { state: withDelta(state, message), missed: false };
 }
 
@@ -60,7 +63,7 @@ function fromSnapshot(message: Snapshot): State {
     units: new Map(message.units.map((unit) => [unit.unit_id, unit])),
     alarms: new Map(message.alarms.map((alarm) => [alarm.alarm_id, alarm])),
     commands: new Map(message.commands.map((command) => [command.command_id, command])),
-    trails: new Map(Object.entries(message.trails)),
+    trails: new Map(),
     pins: message.pins,
     beacons: message.beacons,
     plan: message.plan,
@@ -85,6 +88,15 @@ function withDelta(state: State, delta: Delta): State {
     alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
     commands: delta.commands ? withCommands(state.commands, delta.commands) : state.commands,
   };
+}
+
+/** What was drawn since the snapshot goes on from where the unit was before. */
+function withPast(state: State, { unit_id, points }: Trail): State {
+  const trail = [...points];
+  for (const point of state.trails.get(unit_id) ?? []) {
+    if (isStep(trail.at(-1), point)) trail.push(point);
+  }
+  return { ...state, trails: new Map(state.trails).set(unit_id, trail.slice(-TRAIL_POINTS)) };
 }
 
 function withUnits(units: State["units"], changed: readonly UnitView[]): State["units"] {
