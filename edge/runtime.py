@@ -163,8 +163,14 @@ class Agent:
         parts = self._parts
         self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
         parts.manager.working()
-        header, clock = parts.stamper.header(), parts.clock.estimate()
-        heartbeat = Heartbeat(header, parts.spool.first_seq, parts.spool.last_seq)
+        clock, spool = parts.clock.estimate(), parts.spool
+        heartbeat = Heartbeat(
+            parts.stamper.header(),
+            spool.first_seq,
+            spool.last_seq,
+            never_saved=parts.outbox.never_saved,
+            given_up=spool.rows_freed,
+        )
         if clock is not None:
             heartbeat = msgspec.structs.replace(
                 heartbeat,

@@ -41,7 +41,6 @@ class OtherCopy:
         self._marks: deque[tuple[int, Place]] = deque()  # of this log, not there yet; with times
         self._waiting: deque[_Waiting] = deque()
         self._reported = (BEGINNING, BEGINNING)  # places at the last two reports
-        self.unconfirmed = 0  # actions that were confirmed to people by this station alone
 
     def note(self, place: Place) -> None:
         """The standby says what it has."""
@@ -62,7 +61,6 @@ class OtherCopy:
             alone = [one for one in self._waiting if now_ns >= one.until_ns]
             for one in alone:
                 self._waiting.remove(one)
-            self.unconfirmed += len(alone)
         _tell([*ready, *alone])
 
     @property

@@ -55,6 +55,8 @@ class Heartbeat(msgspec.Struct, frozen=True):
     clock_ahead_s: float = 0.0  # the unit's own UTC less the station's
     clock_std_s: float = 0.0  # of that estimate; 0: the station never answered
     clock_drift: float = 0.0  # of the station's clock against the unit's monotonic one
+    never_saved: int = 0  # messages since the start that were sent and could not be kept
+    given_up: int = 0  # and that were kept, and gave room before the station had them
 
     def to_wire(self) -> event_pb2.Heartbeat:
         return event_pb2.Heartbeat(
@@ -64,6 +66,8 @@ class Heartbeat(msgspec.Struct, frozen=True):
             clock_ahead_us=round(self.clock_ahead_s * 1e6),
             clock_std_us=unsigned_known(self.clock_std_s, 1e6),
             clock_drift_ppb=signed32(self.clock_drift, 1e9),
+            never_saved=self.never_saved,
+            given_up=self.given_up,
         )
 
     @staticmethod
@@ -75,4 +79,6 @@ class Heartbeat(msgspec.Struct, frozen=True):
             clock_ahead_s=wire.clock_ahead_us * 1e-6,
             clock_std_s=wire.clock_std_us * 1e-6,
             clock_drift=wire.clock_drift_ppb * 1e-9,
+            never_saved=wire.never_saved,
+            given_up=wire.given_up,
         )

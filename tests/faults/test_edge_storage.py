@@ -44,6 +44,9 @@ class Station:
     def count(self, kind: type[Message]) -> int:
         return sum(isinstance(message, kind) for message in list(self.messages))
 
+    def heartbeats(self) -> list[Heartbeat]:
+        return [message for message in list(self.messages) if isinstance(message, Heartbeat)]
+
     def faults(self) -> list[str]:
         return [
             message.detail
@@ -102,6 +105,14 @@ def test_a_full_disk_under_the_journal(running):
     kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
     assert running.parts.outbox.never_saved == 0
+
+
+def test_what_a_full_disk_cost_is_said_with_the_heartbeat(running, monkeypatch):
+    monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
+    set_room(running, 1)
+    until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
+    set_room(running, 1_000_000)
+    assert running.station.heartbeats()[-1].given_up == 0
 
 
 def test_a_full_disk_under_the_black_box(running, monkeypatch):

@@ -12,6 +12,7 @@ import pytest
 from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.rig.said import position
 from base_station.bench.rig.waiting import wait_until
+from base_station.bench.standby.command import kill_both
 from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
 from edge.spool import Journaled, Spool
@@ -119,6 +120,15 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     end_and_compare(two, two.first)
     times_ns = [t_ns for t_ns, _, _ in two.first.logged().events]
     assert times_ns[-1] - times_ns[0] < DAY_S / 24 * NS_PER_S
+
+
+def test_both_are_killed_at_any_instant_and_both_logs_are_whole(
+    tmp_path: Path, closing: ExitStack
+) -> None:
+    report = kill_both("both", tmp_path, units=2, closing=closing, rounds=1)
+    assert report.said > 100
+    assert report.lost == report.duplicates == (0, 0)
+    assert report.same_logs
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
@@ -18,7 +19,7 @@ from rich.table import Table
 from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.long_log import measure_long_log, table_of
-from base_station.bench.standby.one_of_two import Place
+from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import BusError, StoreError
@@ -26,6 +27,7 @@ from shared.errors import BusError, StoreError
 _TAKE_OVER_S = 5.0  # to reach
 _BEFORE_S = 5.0  # of both being well
 _BETWEEN_S = 5.0  # of one being away
+_ROUNDS = 5  # of killing both
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,7 @@ class StandbyReport:
     fault: str
     take_over_s: float  # from the fault until the other says that it leads
     back_s: float  # from the first one's return until it has everything
+    back_cpu_s: float  # of that one's processor time, children included: starting costs most of it
     said: int  # messages that the units have put into their journals
     lost: tuple[int, int]  # of these, not in the log of the first and of the second
     duplicates: tuple[int, int]
@@ -54,7 +57,12 @@ def bench_standby(
     """
     terminal = Terminal()
     reports = []
-    faults = (("kill -9", _kill), ("stopped in order", _stop), ("cable cut", _cut))
+    faults = (
+        ("kill -9", _kill),
+        ("stopped in order", _stop),
+        ("kill -9 of both", kill_both),
+        ("cable cut", _cut),
+    )
     with Progress(transient=True) as progress:
         for name, fault in progress.track(faults, description="two stations"):
             with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
@@ -95,7 +103,7 @@ def _running(
     two = TwoStations(folder, places, closing)
     two.start()
     for number in range(units):
-        two.start_unit(f"unit-{number}", (two.first, two.second)[number % 2])
+        two.start_unit(f"unit-{number}", two.both[number % 2])
     two.wait_heard(two.first)
     time.sleep(_BEFORE_S)
     return two
@@ -109,43 +117,82 @@ def _suffer(
     wait_until("the second leads", two.second.leads)
     take_over_s = time.monotonic() - began_s
     time.sleep(_BETWEEN_S)
-    began_s = time.monotonic()
+    began_s, before_cpu_s = time.monotonic(), two.first.cpu_s()
     mend()
     wait_until("the first follows", two.first.follows)
-    back_s = time.monotonic() - began_s
+    back_s, back_cpu_s = time.monotonic() - began_s, two.first.cpu_s() - before_cpu_s
+    return _compared(name, two, take_over_s, back_s, back_cpu_s)
+
+
+def kill_both(
+    name: str, folder: Path, units: int, closing: ExitStack, rounds: int = _ROUNDS
+) -> StandbyReport:
+    """Both, at random instants, started again in any order; times of the worst round."""
+    two = _running(folder, (Place(), Place()), units, closing)
+    chance = random.Random(name)  # noqa: S311  # no secret
+    worst_s = [0.0, 0.0, 0.0]
+    for _ in range(rounds):
+        time.sleep(_BEFORE_S * chance.random())
+        _in_any_order(two, chance, Station.kill)
+        began_s = time.monotonic()
+        _in_any_order(two, chance, Station.start)
+        wait_until("one leads", lambda: two.first.leads() or two.second.leads())
+        lead_s = time.monotonic() - began_s
+        wait_until("the other follows", two.leader)
+        back_s = time.monotonic() - began_s
+        costs_s = (lead_s, back_s, max(one.cpu_s() for one in two.both))
+        worst_s = [max(pair) for pair in zip(worst_s, costs_s, strict=True)]
+    return _compared(name, two, *worst_s)
+
+
+def _in_any_order(two: TwoStations, chance: random.Random, do: Callable[[Station], None]) -> None:
+    for one in chance.sample(two.both, 2):
+        do(one)
+        time.sleep(chance.random())
+
+
+def _compared(
+    name: str, two: TwoStations, take_over_s: float, back_s: float, back_cpu_s: float
+) -> StandbyReport:
+    """Both are ended: the one that follows first, so that its log is the beginning of the other."""
     said = two.said()
     with suppress(StoreError):  # what has not come by then is lost
         wait_until("both have everything", lambda: two.both_have(said))
     two.stop_units()
-    two.first.stop()
-    two.second.stop()
-    one, other = two.first.logged(), two.second.logged()
+    follows, leads = two.both[::-1] if two.first.leads() else two.both
+    follows.stop()
+    leads.stop()
+    one, other = (station.logged() for station in two.both)
+    short, long = follows.logged(), leads.logged()
     return StandbyReport(
         fault=name,
         take_over_s=take_over_s,
         back_s=back_s,
+        back_cpu_s=back_cpu_s,
         said=len(said),
         lost=(len(said - one.messages.keys()), len(said - other.messages.keys())),
         duplicates=(one.duplicates, other.duplicates),
-        same_logs=one.events == other.events[: len(one.events)],
+        same_logs=short.events == long.events[: len(short.events)],
     )
 
 
 def _table(reports: list[StandbyReport]) -> Table:
     table = Table(
         title="Two stations",
-        caption=f"take-over: from the fault, to reach {_TAKE_OVER_S:.0f} s; back: from the first "
-        "one's return until it has everything. Lost and twice, in the log of the first and of the "
-        "second: to reach 0.",
+        caption=f"take-over: from the fault until the other leads, to reach {_TAKE_OVER_S:.0f} s; "
+        "back: from the first one's return until it has everything, and what that costs it of a "
+        "processor; of both: from the return of both, the worst round. Lost and twice, in the log "
+        "of the first and of the second: to reach 0.",
     )
     table.add_column("fault")
-    for title in ("take-over", "back", "said", "lost", "twice", "same logs"):
+    for title in ("take-over", "back", "CPU", "said", "lost", "twice", "same logs"):
         table.add_column(title, justify="right")
     for one in reports:
         table.add_row(
             one.fault,
             f"{one.take_over_s:.1f} s",
             f"{one.back_s:.1f} s",
+            f"{one.back_cpu_s:.1f} s",
             f"{one.said:,}",
             f"{one.lost[0]} / {one.lost[1]}",
             f"{one.duplicates[0]} / {one.duplicates[1]}",

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
+from base_station.bench.rig import processes
 from base_station.bench.rig.console import Api
 from base_station.bench.rig.lossy_link import Namespace
 from base_station.standby.places import is_event
@@ -103,6 +104,12 @@ class Station:
         if self.process is not None:
             self.process.kill()
             self.process.wait()
+
+    def cpu_s(self) -> float:
+        """Of the program as it runs, children included; 0 while it does not."""
+        if self.process is None or self.process.poll() is not None:
+            return 0.0
+        return processes.cpu_s(self.process.pid)
 
     def stop(self) -> int:
         assert self.process is not None

@@ -38,9 +38,20 @@ class TwoStations:
 
     def start(self) -> None:
         """Both, and wait until the second has what the first has."""
-        for one in (self.first, self.second):
+        for one in self.both:
             one.start()
         wait_until("the first leads and the second follows", self._both_ready)
+
+    @property
+    def both(self) -> tuple[Station, Station]:
+        return self.first, self.second
+
+    def leader(self) -> Station | None:
+        """The one that leads and that the other follows; None: it is not so far."""
+        for one, other in (self.both, self.both[::-1]):
+            if one.leads() and other.follows():
+                return one
+        return None
 
     def start_unit(self, unit_id: str, near: Station) -> None:
         """A unit that prefers the router of one station; it sends raw samples, several a second."""
@@ -75,7 +86,7 @@ class TwoStations:
 
     def both_have(self, said: set[MessageId]) -> bool:
         """Whether these messages are in both logs."""
-        return all(said <= one.logged().messages.keys() for one in (self.first, self.second))
+        return all(said <= one.logged().messages.keys() for one in self.both)
 
     def said(self) -> set[MessageId]:
         """What the units have ever said, by their journals."""
@@ -93,7 +104,7 @@ class TwoStations:
 
     def _login(self) -> tuple[str, str]:
         """The same at both."""
-        for station in (self.first, self.second):
+        for station in self.both:
             note = station.data / "first-login.txt"
             if note.exists():
                 return first_login(note)
