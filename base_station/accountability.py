@@ -26,7 +26,7 @@ from shared.errors import UserError
 from shared.messages import CommandKind
 from shared.messages.station import CheckIn, OpenIncident, SetAccountability
 
-ANSWER_S = 3 * 60.0  # for a roll call that somebody asks for, or an evacuation (ours)
+ANSWER_NS = 180 * NS_PER_S  # for a roll call that somebody asks for, or an evacuation (ours)
 SHORTEST_S, LONGEST_S = 30.0, 12 * 3600.0
 CALLS = frozenset({CommandKind.PAR_REQUEST, CommandKind.EVACUATE})  # who was told is to answer
 
@@ -147,7 +147,7 @@ def _note_due(state: StationState, duty: Duty) -> None:
     incident = _open_incident(state)
     duty.due_ns = duty.checked_in_ns + round(incident.par_interval_s * NS_PER_S)
     if duty.asked_ns is not None:
-        duty.due_ns = min(duty.due_ns, duty.asked_ns + round(ANSWER_S * NS_PER_S))
+        duty.due_ns = min(duty.due_ns, duty.asked_ns + ANSWER_NS)
     duty.rest_due_ns = None
     if duty.work_since_ns is not None:
         duty.rest_due_ns = duty.work_since_ns + round(incident.work_limit_s * NS_PER_S)

@@ -190,10 +190,9 @@ def _move_level(
 
 
 def _happened_again(alarm: Alarm, finding: Finding) -> bool:
-    """Somebody has acknowledged the mayday, the fall; and now there is another one."""
+    """Somebody has acknowledged the mayday, the fall, the silence; and now there is another one."""
     return (
         alarm.state is AlarmState.ACKNOWLEDGED
-        and finding.latched
         and finding.priority == IMMEDIATE
         and finding.onset_ns > alarm.changed_ns
     )

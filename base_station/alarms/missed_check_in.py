@@ -1,13 +1,14 @@
 """Nobody has heard from a person for longer than the incident's roll call (PAR) allows.
 
 Only a person's word ends it: the wearer's button or somebody at the console.  Raised once; the
-next check-in arms it again.
+next check-in arms it again, and so does a call that is not answered in its turn.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from base_station.accountability import ANSWER_NS
 from base_station.alarms.port import IMMEDIATE, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
@@ -31,10 +32,11 @@ class MissedCheckIn:
             return Clear(duty.checked_in_ns, f"heard from, says {duty.checked_in_by}")
         silent_min = (duty.due_ns - duty.checked_in_ns) / NS_PER_S / 60.0
         asked = "asked and " if duty.asked_ns is not None else ""
+        answers_due_ns = [asked_ns + ANSWER_NS for asked_ns in duty.asks_ns]
         return Finding(
             "overdue",
             IMMEDIATE,
             f"{unit.name}: PAR overdue, {asked}not heard from for {silent_min:.0f} min",
             seen_ns=duty.checked_in_ns,
-            onset_ns=duty.due_ns,
+            onset_ns=max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns),
         )

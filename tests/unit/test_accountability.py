@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from base_station.checkpoint import read_checkpoint
@@ -17,6 +19,7 @@ from shared.messages import (
     EventKind,
 )
 from shared.messages.station import (
+    AcknowledgeAlarm,
     Assign,
     CheckIn,
     CloseIncident,
@@ -141,6 +144,23 @@ def test_one_that_a_person_resolved_is_not_raised_again_before_a_check_in(script
     script.wait(600)
     mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
     assert [one.state for one in mine] == [AlarmState.RAISED, AlarmState.RESOLVED]
+
+
+@pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
+def test_who_does_not_answer_the_evacuation_is_overdue_anew(
+    script: Script, dealt_with: Callable[[str], AcknowledgeAlarm | ResolveAlarm]
+) -> None:
+    """Somebody had dealt with the alarm of before, and nobody has heard from the wearer since."""
+    script.wait(61)
+    before = next(one for one in overdue(script) if one.unit_id == "FF-01")
+    script.act(dealt_with(before.alarm_id))
+    script.wait(60)
+    order(script, CommandKind.EVACUATE)
+    script.wait(179)
+    assert [one for one in overdue(script) if one.unit_id == "FF-01"][-1].by.startswith("chief")
+    script.wait(2)
+    again = [one for one in overdue(script) if one.unit_id == "FF-01"][2:]
+    assert [one.state for one in again] == [AlarmState.RAISED]
 
 
 def test_a_crew_and_everyone_are_ticked_off_at_once(script: Script) -> None:
