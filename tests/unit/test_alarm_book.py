@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from base_station.alarms import ALARMS
-from base_station.alarms.port import Verdict
+from base_station.alarms.port import SOON, Verdict
 from base_station.events import Refused
 from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
@@ -142,6 +142,28 @@ def test_heat_rises_at_once_and_falls_with_hysteresis(script: Script) -> None:
     assert script.alarms[-1].by == "cooled down"
 
 
+def test_heat_that_eases_is_of_a_lower_level_once_it_stays_so(script: Script) -> None:
+    script.wait(1, lambda: script.temperature(U, 270.0))
+    script.wait(8, lambda: script.temperature(U, 170.0))
+    script.wait(1, lambda: script.temperature(U, 270.0))
+    script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
+    script.wait(10, lambda: script.temperature(U, 170.0))
+    assert changes(script, "heat") == [("RAISED", "critical"), ("ACKNOWLEDGED", "critical")]
+    script.wait(1, lambda: script.temperature(U, 170.0))
+    assert changes(script, "heat")[2:] == [("ACKNOWLEDGED", "warning")]
+    assert script.alarms[-1].priority == SOON
+    assert "170 °C" in script.alarms[-1].text
+
+
+def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Script) -> None:
+    script.wait(1, lambda: script.temperature(U, 120.0))
+    script.act(ResolveAlarm(script.alarms[0].alarm_id, "is on his way out"))
+    script.wait(60, lambda: script.temperature(U, 120.0))
+    assert changes(script, "heat")[-1] == ("RESOLVED", "caution")
+    script.wait(1, lambda: script.temperature(U, 170.0))
+    assert changes(script, "heat")[-1] == ("RAISED", "warning")
+
+
 def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
     for step in range(60):
         script.wait(1, lambda s=step: script.temperature(U, 99.0 + 3.0 * (s % 2)))  # type: ignore[misc]
@@ -238,6 +260,16 @@ def test_a_problem_of_the_station_is_an_alarm(script: Script) -> None:
         ("", "RESOLVED", "The disk is full"),
     ]
     assert script.pipeline.state.problems == {}
+
+
+def test_a_problem_that_a_person_resolved_is_none_until_it_is_reported_again(
+    script: Script,
+) -> None:
+    for _ in range(2):
+        script.act(ReportProblem("log", "The disk is full"), by="station")
+        script.act(ResolveAlarm(script.alarms[-1].alarm_id, "it has room again"))
+        assert script.pipeline.state.problems == {}
+    assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED"] * 2
 
 
 @dataclass(frozen=True)
