@@ -55,6 +55,12 @@ FromMs = Annotated[int, Query(ge=0, le=LAST_MS)]
 UntilMs = Annotated[int, Query(ge=0, le=LAST_MS)]
 
 
+Limit = Annotated[int, Query(ge=1, le=1000)]
+"""How many entries of a list to give, the newest: what belongs to the millisecond of the last one
+comes along.  The page before them has ``until_ms`` at that millisecond.
+"""
+
+
 def window(from_ms: FromMs = 0, until_ms: UntilMs = LAST_MS) -> Window:
     """Dependency: a window of time from the query."""
     return Window(from_ms * NS_PER_MS, until_ms * NS_PER_MS)

@@ -22,6 +22,7 @@ from base_station.db.models import (
     TrackPoint,
     Unit,
 )
+from base_station.db.pages import newest
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
@@ -35,6 +36,12 @@ class Window(msgspec.Struct, frozen=True):
 
     from_ns: int
     until_ns: int
+
+    def within(self, other: Window) -> Window:
+        return Window(max(self.from_ns, other.from_ns), min(self.until_ns, other.until_ns))
+
+
+EVER = Window(0, FOREVER_NS)
 
 
 class TrackSample(msgspec.Struct, frozen=True):
@@ -68,6 +75,12 @@ def _points_of(
     )
 
 
+def _in(
+    window: Window, t_ns: InstrumentedAttribute[int]
+) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    return t_ns >= window.from_ns, t_ns < window.until_ns
+
+
 class Records:
     """Thread-safe; every method is one transaction."""
 
@@ -77,10 +90,11 @@ class Records:
 
     # ---- incidents
 
-    def incidents(self) -> Sequence[Incident]:
-        """Newest first."""
+    def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[Incident]:
+        """Those opened in the window, newest first (``pages.newest``)."""
+        wanted = select(Incident).where(*_in(opened, Incident.opened_ns))
         with self._store.read() as session:
-            return session.scalars(select(Incident).order_by(Incident.opened_ns.desc())).all()
+            return newest(session, wanted, Incident.opened_ns, Incident.incident_id, limit)
 
     def incident(self, incident_id: str) -> Incident | None:
         with self._store.read() as session:
@@ -118,14 +132,11 @@ class Records:
         window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
         return {unit_id: self.track(unit_id, window) for unit_id in self.track_units(window)}
 
-    def alarms(self, window: Window) -> Sequence[Alarm]:
-        """Those raised in the window, oldest first."""
+    def alarms(self, raised: Window, limit: int | None = None) -> Sequence[Alarm]:
+        """Those raised in the window, newest first (``pages.newest``)."""
+        wanted = select(Alarm).where(*_in(raised, Alarm.raised_ns))
         with self._store.read() as session:
-            return session.scalars(
-                select(Alarm)
-                .where(Alarm.raised_ns >= window.from_ns, Alarm.raised_ns < window.until_ns)
-                .order_by(Alarm.raised_ns, Alarm.alarm_id)
-            ).all()
+            return newest(session, wanted, Alarm.raised_ns, Alarm.alarm_id, limit)
 
     def alarm(self, alarm_id: str) -> Alarm | None:
         with self._store.read() as session:
@@ -188,12 +199,8 @@ class Records:
                 )
             )
 
-    def audit_entries(self, before_ns: int, limit: int) -> Sequence[AuditEntry]:
-        """Newest first."""
+    def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
+        """What was done in the window, newest first (``pages.newest``)."""
+        wanted = select(AuditEntry).where(*_in(done, AuditEntry.t_ns))
         with self._store.read() as session:
-            return session.scalars(
-                select(AuditEntry)
-                .where(AuditEntry.t_ns < before_ns)
-                .order_by(AuditEntry.t_ns.desc())
-                .limit(limit)
-            ).all()
+            return newest(session, wanted, AuditEntry.t_ns, AuditEntry.number, limit)

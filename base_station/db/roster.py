@@ -5,10 +5,11 @@ from __future__ import annotations
 import secrets
 from collections.abc import Sequence
 
-from sqlalchemy import func, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
 from base_station.db.models import Assignment, Person, Unit
+from base_station.db.pages import newest
 from base_station.db.store import Store
 from shared.clock import Clock
 from shared.errors import UserError
@@ -127,19 +128,24 @@ class Roster:
     def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
         """Those that held at some time of the window, oldest first."""
         with self._store.read() as session:
-            return session.scalars(
-                select(Assignment)
-                .where(
-                    Assignment.from_ns < until_ns,
-                    (Assignment.until_ns.is_(None)) | (Assignment.until_ns > from_ns),
-                )
-                .order_by(Assignment.from_ns)
-            ).all()
+            held = select(Assignment).where(*_held(from_ns, until_ns))
+            return session.scalars(held.order_by(Assignment.from_ns)).all()
+
+    def newest_assignments(self, from_ns: int, until_ns: int, limit: int) -> Sequence[Assignment]:
+        """Those that held at some time of the window, newest first (``pages.newest``)."""
+        with self._store.read() as session:
+            wanted = select(Assignment).where(*_held(from_ns, until_ns))
+            return newest(session, wanted, Assignment.from_ns, Assignment.action_id, limit)
 
     def _load_photo_hashes(self) -> dict[str, str]:
         with self._store.read() as session:
             rows = session.execute(select(Person.person_id, Person.photo_hash))
             return {row[0]: row[1] for row in rows if row[1] is not None}
+
+
+def _held(from_ns: int, until_ns: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    over = Assignment.until_ns.is_not(None) & (Assignment.until_ns <= from_ns)
+    return Assignment.from_ns < until_ns, ~over
 
 
 def _worn_by(session: Session, person_id: str) -> Sequence[str]:

@@ -18,7 +18,7 @@ from base_station.api.routes import ROUTERS
 from base_station.api.security import Scope
 from base_station.api.wire import StandbyView
 from base_station.db.accounts import Role
-from base_station.db.records import Window
+from base_station.db.records import EVER, Window
 from base_station.recordings.desk import RecordingDesk
 from shared.clock import ManualClock
 from shared.messages import EventKind, Header, UnitEvent
@@ -180,7 +180,7 @@ class Story:
 
     def _authors(self) -> list[str]:
         self._station.services.settle()
-        entries = self._station.services.records.audit_entries(2**62, 10_000)
+        entries = self._station.services.records.audit_entries(EVER)
         return [entry.by for entry in sorted(entries, key=lambda one: one.number)]
 
 

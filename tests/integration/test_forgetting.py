@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from base_station.app import folder as station_app
-from base_station.db.records import FOREVER_NS, Records, Window
+from base_station.db.records import EVER, FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import event_of
@@ -107,11 +107,10 @@ def test_the_audit_keeps_who_did_what(story: Story) -> None:
     forget(story, "p-77")
     with Store(story.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
-        audit = records.audit_entries(FOREVER_NS, 1000)
+        audit = records.audit_entries(EVER)
         said = [(entry.by, entry.action) for entry in audit]
-        everything = Window(0, FOREVER_NS)
-        assert records.track("FF-02", everything)
-        (mayday,) = [one for one in records.alarms(everything) if one.rule == "mayday"]
+        assert records.track("FF-02", EVER)
+        (mayday,) = [one for one in records.alarms(EVER) if one.rule == "mayday"]
         roster = Roster(store, SystemClock())
         assert roster.person("p-77") is None
         assert roster.photo("p-77") is None

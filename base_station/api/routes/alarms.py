@@ -8,7 +8,7 @@ import msgspec
 from fastapi import APIRouter, Depends
 
 from base_station.answer import Answer, to_ms
-from base_station.api.forms import Form, Id, Note, window
+from base_station.api.forms import Form, Id, Limit, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
@@ -41,10 +41,10 @@ class Resolution(Form):
 
 @router.get("/alarms")
 def list_alarms(
-    station: Station, _: Viewer, when: Annotated[Window, Depends(window)]
+    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AlarmView]:
-    """Those raised in the window, oldest first."""
-    return [alarm_view(alarm) for alarm in station.records.alarms(when)]
+    """Those raised in the window, newest first."""
+    return [alarm_view(alarm) for alarm in station.records.alarms(when, limit)]
 
 
 @router.get("/alarms/{alarm_id}")

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.answer import to_ms, to_ms_or_none
-from base_station.api.forms import Form, PersonIdText, UnitId, UnitIdText, window
+from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Station
@@ -35,8 +35,9 @@ class NewAssignment(Form):
 
 @router.get("/assignments")
 def list_assignments(
-    station: Station, _: Viewer, when: Annotated[Window, Depends(window)]
+    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[Assignment]:
+    """Those that held at some time of the window, newest first."""
     return [
         Assignment(
             unit_id=one.unit_id,
@@ -47,7 +48,7 @@ def list_assignments(
             from_ms=to_ms(one.from_ns),
             until_ms=to_ms_or_none(one.until_ns),
         )
-        for one in station.roster.assignments(when.from_ns, when.until_ns)
+        for one in station.roster.newest_assignments(when.from_ns, when.until_ns, limit)
     ]
 
 

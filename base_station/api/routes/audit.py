@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.answer import to_ms
-from base_station.api.forms import LAST_MS, UntilMs
+from base_station.api.forms import Limit, window
 from base_station.api.security import Administrator
 from base_station.api.services import Station
-from shared.clock import NS_PER_MS
+from base_station.db.records import Window
 
 router = APIRouter(tags=["audit"])
 
@@ -28,10 +28,10 @@ class AuditEntry(BaseModel):
 def list_audit(
     station: Station,
     _: Administrator,
-    until_ms: UntilMs = LAST_MS,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+    when: Annotated[Window, Depends(window)],
+    limit: Limit = 100,
 ) -> list[AuditEntry]:
-    """Newest first."""
+    """What was done in the window, newest first."""
     return [
         AuditEntry(
             entry_id=entry.entry_id,
@@ -40,5 +40,5 @@ def list_audit(
             action=entry.action,
             detail=entry.detail,
         )
-        for entry in station.records.audit_entries(until_ms * NS_PER_MS, limit)
+        for entry in station.records.audit_entries(when, limit)
     ]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import secrets
 from datetime import UTC, datetime
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.answer import to_ms, to_ms_or_none
-from base_station.api.forms import Form, Id, Name
+from base_station.api.forms import Form, Id, Limit, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
 from base_station.api.security import Commander, Viewer
@@ -51,9 +52,11 @@ def window_of(incident: models.Incident) -> Window:
 
 
 @router.get("/incidents")
-def list_incidents(station: Station, _: Viewer) -> list[Incident]:
-    """Newest first."""
-    return [_incident(incident) for incident in station.records.incidents()]
+def list_incidents(
+    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
+) -> list[Incident]:
+    """Those opened in the window, newest first."""
+    return [_incident(incident) for incident in station.records.incidents(when, limit)]
 
 
 @router.post("/incidents", status_code=201)
@@ -83,10 +86,16 @@ def close_incident(incident_id: Id, station: Station, who: Commander) -> None:
 
 
 @router.get("/incidents/{incident_id}/alarms")
-def incident_alarms(incident_id: Id, station: Station, _: Viewer) -> list[AlarmView]:
-    """What was raised while the incident was open, oldest first."""
-    window = window_of(incident_or_404(station, incident_id))
-    return [alarm_view(alarm) for alarm in station.records.alarms(window)]
+def incident_alarms(
+    incident_id: Id,
+    station: Station,
+    _: Viewer,
+    when: Annotated[Window, Depends(window)],
+    limit: Limit = 100,
+) -> list[AlarmView]:
+    """What was raised in the window while the incident was open, newest first."""
+    open_then = when.within(window_of(incident_or_404(station, incident_id)))
+    return [alarm_view(alarm) for alarm in station.records.alarms(open_then, limit)]
 
 
 def _incident(incident: models.Incident) -> Incident:

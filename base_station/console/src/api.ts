@@ -1,7 +1,7 @@
 /** The station's REST API, as far as the console uses it. */
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
-import type { BaseMap } from "./plan/baseMap";
+import { BASE, call, id, page, wholeList } from "./call";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 /** Each may do what those before it may. */
@@ -112,42 +112,18 @@ export interface RunningReplay {
   incident_id: string;
 }
 
+/** Degrees. */
+export type LatLon = readonly [number, number];
+
+/** The picture of the ground about the site; what lies between the corners goes in proportion. */
+export interface BaseMap {
+  image_url: string;
+  upper_left: LatLon;
+  upper_right: LatLon;
+  lower_left: LatLon;
+}
+
 export type ReplayChange = { playing?: boolean; speed?: number; at_ms?: number };
-
-/** The station refused or could not be reached; the text is for a person. */
-export class ApiError extends Error {
-  constructor(
-    message: string,
-    readonly status: number,
-  ) {
-    super(message);
-  }
-}
-
-const BASE = "/api/v1";
-
-async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
-  const init: RequestInit = { method, credentials: "same-origin" };
-  if (body instanceof Blob) init.body = body;
-  else if (body !== undefined) {
-    init.body = JSON.stringify(body);
-    init.headers = { "content-type": "application/json" };
-  }
-  const response = await fetch(BASE + path, init).catch(() => {
-    throw new ApiError("The station cannot be reached.", 0);
-  });
-  if (!response.ok) throw new ApiError(await reason(response), response.status);
-  return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
-}
-
-/** The sentence of a problem document (RFC 9457). */
-async function reason(response: Response): Promise<string> {
-  const body: unknown = await response.json().catch(() => null);
-  const detail = (body as { detail?: unknown } | null)?.detail;
-  return typeof detail === "string" ? detail : `The station answered ${response.status}.`;
-}
-
-const id = encodeURIComponent;
 
 export const login = (username: string, password: string) =>
   call<Me>("POST", "/login", { username, password });
@@ -200,7 +176,8 @@ export const assign = (unitId: string, personId: string) =>
   call<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);
 
-export const incidents = () => call<Incident[]>("GET", "/incidents");
+export const incidents = (untilMs?: number) =>
+  call<Incident[]>("GET", `/incidents${page(untilMs)}`);
 export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
 export const openIncident = (name: string, times: Partial<Times>) =>
@@ -210,7 +187,7 @@ export const setTimes = (incidentId: string, times: Times) =>
 export const closeIncident = (incidentId: string) =>
   call<void>("POST", `/incidents/${id(incidentId)}/close`);
 export const incidentAlarms = (incidentId: string) =>
-  call<PastAlarm[]>("GET", `/incidents/${id(incidentId)}/alarms`);
+  wholeList<PastAlarm>(`/incidents/${id(incidentId)}/alarms`, (alarm) => alarm.raised_ms);
 
 export interface ExportFormat {
   name: string;
@@ -255,11 +232,7 @@ export const changeUser = (username: string, change: { password?: string; role?:
 export const removeUser = (username: string) => call<void>("DELETE", `/users/${id(username)}`);
 export const endSessions = (username: string) =>
   call<void>("DELETE", `/users/${id(username)}/sessions`);
-export const audit = (beforeMs: number | undefined, limit: number) =>
-  call<AuditEntry[]>(
-    "GET",
-    `/audit?limit=${limit}${beforeMs === undefined ? "" : `&until_ms=${beforeMs}`}`,
-  );
+export const audit = (untilMs?: number) => call<AuditEntry[]>("GET", `/audit${page(untilMs)}`);
 
 /** Where somebody was; `t_ms` left out: now, or with a start where each path begins. */
 export interface NewPin {

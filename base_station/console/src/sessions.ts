@@ -1,6 +1,7 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
+import { ApiError } from "./call";
 import { ticketOf, withoutTicket } from "./live/arrival";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
@@ -92,7 +93,7 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
   try {
     return await work;
   } catch (error) {
-    if (error instanceof api.ApiError && error.status === 401) forget();
+    if (error instanceof ApiError && error.status === 401) forget();
     notice.value = error instanceof Error ? error.message : String(error);
     return null;
   }

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { anchorThrough, siteOf } from "../src/plan/anchor";
-import { cornersOf, crsOf, earthAt, worldOf, type BaseMap } from "../src/plan/baseMap";
+import type { BaseMap } from "../src/api";
+import { cornersOf, crsOf, earthAt, worldOf } from "../src/plan/baseMap";
 
 const MAP: BaseMap = {
   image_url: "/api/v1/site/base-map/x",

@@ -3,20 +3,10 @@ import { effect, signal } from "@preact/signals";
 import Layer from "ol/layer/Layer";
 import type { FrameState } from "ol/Map";
 import * as api from "../api";
+import type { BaseMap, LatLon } from "../api";
 import type { AnchorView } from "../wire";
 import { siteOf } from "./anchor";
 import type { Place } from "./tools";
-
-/** Degrees. */
-export type LatLon = readonly [number, number];
-
-/** As the station says it; what lies between the corners goes in proportion. */
-export interface BaseMap {
-  image_url: string;
-  upper_left: LatLon;
-  upper_right: LatLon;
-  lower_left: LatLon;
-}
 
 export const baseMap = signal<BaseMap | null>(null);
 

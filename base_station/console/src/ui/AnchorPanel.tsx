@@ -1,9 +1,10 @@
 import { useSignal } from "@preact/signals";
 import { attempt } from "../sessions";
 import * as api from "../api";
+import type { LatLon } from "../api";
 import type { Picture } from "../live/picture";
 import { anchorThrough, doubtOf, type Fit, type Known } from "../plan/anchor";
-import { baseMap, type LatLon } from "../plan/baseMap";
+import { baseMap } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
 import { Ends } from "./Ends";
 import { MapPicker } from "./MapPicker";

@@ -1,30 +1,16 @@
-import { useSignal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
-import { attempt } from "../sessions";
 import * as api from "../api";
 import { actionWord, detailWords } from "../audit";
 import { clockTime, dateAndTime } from "../words";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useLoaded } from "./useLoaded";
-
-const PAGE = 100;
+import { usePages } from "./usePages";
 
 /** Who did what, newest first. */
 export function AuditDialog() {
-  const entries = useSignal<readonly api.AuditEntry[]>([]);
-  const ended = useSignal(false);
+  const { entries, older } = usePages(api.audit, (entry) => entry.t_ms);
   const [people] = useLoaded(api.people);
   const names = new Map((people.value ?? []).map((person) => [person.person_id, person.name]));
-  const more = () => {
-    const before = entries.peek().at(-1)?.t_ms;
-    void attempt(api.audit(before, PAGE)).then((page) => {
-      if (page === null) return;
-      entries.value = [...entries.peek(), ...page];
-      ended.value = page.length < PAGE;
-    });
-  };
-  useEffect(more, []);
   return (
     <Dialog title="Audit log" wide>
       <table class="audit">
@@ -42,8 +28,8 @@ export function AuditDialog() {
           ))}
         </tbody>
       </table>
-      {!ended.value && (
-        <button type="button" onClick={more}>
+      {older && (
+        <button type="button" onClick={older}>
           Older entries
         </button>
       )}

@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
-import { ApiError, removeBaseMap, setBaseMap } from "../api";
+import { removeBaseMap, setBaseMap } from "../api";
+import { ApiError } from "../call";
 import { baseMap, crsOf, worldOf } from "../plan/baseMap";
 import { attempt, user } from "../sessions";
 import { ConfirmButton } from "./ConfirmButton";

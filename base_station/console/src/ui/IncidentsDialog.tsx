@@ -8,11 +8,13 @@ import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
 import { fields, useLoaded } from "./useLoaded";
+import { usePages } from "./usePages";
 
 const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Positions"];
 
 export function IncidentsDialog() {
-  const [incidents, again] = useLoaded(api.incidents);
+  const { entries, loaded, older, again } = usePages(api.incidents, (one) => one.opened_ms);
+  const [formats] = useLoaded(api.exportFormats);
   const open = live.value?.picture.incident.value ?? null;
   const forgets = user.value?.role === "administrator";
   const running = open !== null && open.closed_ms === null ? open : null;
@@ -36,7 +38,7 @@ export function IncidentsDialog() {
         <caption>Incidents so far</caption>
         <Columns names={forgets ? [...COLUMNS, "Personal data"] : COLUMNS} />
         <tbody>
-          {(incidents.value ?? []).map((incident) => (
+          {entries.value.map((incident) => (
             <tr key={incident.incident_id}>
               <th scope="row">{incident.name}</th>
               <td>{dateAndTime(incident.opened_ms)}</td>
@@ -55,7 +57,7 @@ export function IncidentsDialog() {
                 </button>
               </td>
               <td>
-                <Downloads incident={incident} />
+                <Downloads incident={incident} formats={formats.value ?? []} />
               </td>
               <td>
                 <button
@@ -83,6 +85,14 @@ export function IncidentsDialog() {
           ))}
         </tbody>
       </table>
+      {loaded.value && entries.value.length === 0 && (
+        <p class="quiet">None yet. What a unit says is kept all the same.</p>
+      )}
+      {older && (
+        <button type="button" onClick={older}>
+          Older incidents
+        </button>
+      )}
     </Dialog>
   );
 }
@@ -145,9 +155,13 @@ function MinutesField({ name, label, value }: { name: string; label: string; val
   );
 }
 
+interface DownloadsProps {
+  incident: api.Incident;
+  formats: readonly api.ExportFormat[];
+}
+
 /** The tracks of an incident for other programs. */
-function Downloads({ incident }: { incident: api.Incident }) {
-  const [formats] = useLoaded(api.exportFormats);
+function Downloads({ incident, formats }: DownloadsProps) {
   return (
     <select
       aria-label={`Save ${incident.name} as a file`}
@@ -158,7 +172,7 @@ function Downloads({ incident }: { incident: api.Incident }) {
       }}
     >
       <option value="">Save as …</option>
-      {(formats.value ?? []).map((format) => (
+      {formats.map((format) => (
         <option key={format.name} value={format.name}>
           {format.name}
         </option>

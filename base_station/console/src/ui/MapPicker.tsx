@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
-import { earthAt, type BaseMap, type LatLon } from "../plan/baseMap";
+import type { BaseMap, LatLon } from "../api";
+import { earthAt } from "../plan/baseMap";
 
 const ZOOMS = [1, 2, 4, 8] as const;
 

@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
-import { ApiError, setPlan } from "../api";
+import { setPlan } from "../api";
+import { ApiError } from "../call";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
 import { dialog } from "../view";

@@ -18,7 +18,7 @@ interface Props {
 /** Play, seek and speed; the alarms are marks on the way and places to go to. */
 export function Transport({ replay, state }: Props) {
   const [loaded] = useLoaded(() => api.incidentAlarms(replay.incident.incident_id));
-  const alarms = loaded.value ?? [];
+  const alarms = (loaded.value ?? []).toReversed(); // as they were raised
   const { start_ms: start, end_ms: end, at_ms: at, playing } = state;
   const change = (what: api.ReplayChange) => void attempt(api.changeReplay(replay.id, what));
   const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });

@@ -1,0 +1,101 @@
+"""Lists that grow with every incident come page by page, and the pages have everything once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from base_station.db import models
+from base_station.db.accounts import Role
+from base_station.db.store import Store
+from shared.clock import NS_PER_MS
+from tests.station import DeskStation
+
+INCIDENT = "i-0"
+START_MS = 1_000
+EVERY_MS = (5, 5, 5, 6, 7, 7, 8, 9)  # some in one millisecond, and more of them than a page has
+TIMES_NS = [(START_MS + ms) * NS_PER_MS + number for number, ms in enumerate(EVERY_MS)]
+LISTS = {  # path: what names an entry, and its time
+    "/alarms": ("alarm_id", "raised_ms"),
+    f"/incidents/{INCIDENT}/alarms": ("alarm_id", "raised_ms"),
+    "/assignments": ("person_id", "from_ms"),
+    "/incidents": ("incident_id", "opened_ms"),
+    "/audit": ("entry_id", "t_ms"),
+}
+BOUNDED = {  # lists that do not grow with what happens, by what bounds them
+    "people and machines": {"/people", "/units", "/users", "/tokens", "/accountability"},
+    "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings"},
+    "one incident": {"/incidents/{incident_id}/tracks"},
+    "the program": {"/export-formats"},
+    "the last wishes": {"/forgettings"},
+}
+
+
+def fill(store: Store, times_ns: Sequence[int]) -> None:
+    """One entry of each list at each of these times, and an incident that was open all along."""
+    with store.write() as session:
+        session.add(incident(INCIDENT, 0))
+        for number, t_ns in enumerate(times_ns):
+            session.add_all(entries(t_ns, str(number)))
+
+
+def incident(incident_id: str, opened_ns: int) -> models.Incident:
+    return models.Incident(
+        incident_id=incident_id, name="", opened_ns=opened_ns, opened_by="", closed_by=""
+    )
+
+
+def entries(t_ns: int, number: str) -> list[models.Base]:
+    alarm = {"rule": "heat", "priority": 1, "state": "raised", "level": "", "text": "", "by": ""}
+    worn = {"person_name": "", "crew": "", "role": "", "until_ns": None}
+    return [
+        incident(f"i-{t_ns}", t_ns),
+        models.Alarm(alarm_id=number, unit_id="FF-01", raised_ns=t_ns, changed_ns=t_ns, **alarm),
+        models.Assignment(
+            action_id=number, unit_id="FF-01", person_id=number, from_ns=t_ns, **worn
+        ),
+        models.AuditEntry(entry_id=number, t_ns=t_ns, by="", action="", detail=""),
+    ]
+
+
+@pytest.mark.parametrize("path", LISTS)
+async def test_pages_have_everything_once(station: DeskStation, path: str) -> None:
+    fill(station.store, TIMES_NS)
+    name, time = LISTS[path]
+    async with station.client(Role.ADMINISTRATOR) as client:
+        everything: list[Any] = (await client.get(path)).json()
+        pages: list[list[Any]] = []
+        query: dict[str, int] = {"limit": 2}
+        while page := (await client.get(path, params=query)).json():
+            pages.append(page)
+            query["until_ms"] = page[-1][time]
+    assert len(everything) >= len(TIMES_NS)
+    paged = [one for page in pages for one in page]
+    assert [one[name] for one in paged] == [one[name] for one in everything]
+    assert [one[time] for one in paged] == sorted((one[time] for one in paged), reverse=True)
+    assert all(len(page) == 2 or page[1][time] == page[-1][time] for page in pages[:-1])
+
+
+@pytest.mark.parametrize("path", LISTS)
+async def test_a_page_is_bounded_unasked(station: DeskStation, path: str) -> None:
+    fill(station.store, [(number + 1) * NS_PER_MS for number in range(150)])
+    async with station.client(Role.ADMINISTRATOR) as client:
+        assert len((await client.get(path)).json()) == 100
+        for refused in (0, 1001):
+            answer = await client.get(path, params={"limit": refused})
+            assert answer.status_code == 422
+
+
+async def test_every_list_is_paged_or_bounded_otherwise(station: DeskStation) -> None:
+    async with station.client() as client:
+        document = (await client.get("/openapi.json")).json()
+    unpaged = set()
+    for path, operations in document["paths"].items():
+        answer = operations.get("get", {}).get("responses", {}).get("200", {})
+        schema = answer.get("content", {}).get("application/json", {}).get("schema", {})
+        asks = {one["name"] for one in operations.get("get", {}).get("parameters", ())}
+        if schema.get("type") == "array" and not {"limit", "until_ms"} <= asks:
+            unpaged.add(path.removeprefix("/api/v1"))
+    assert unpaged == set().union(*BOUNDED.values())

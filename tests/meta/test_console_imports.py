@@ -1,0 +1,25 @@
+"""No file of the console needs itself by way of others."""
+
+from __future__ import annotations
+
+import re
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2] / "base_station/console/src"
+ENDS = (".ts", ".tsx")
+IMPORT = re.compile(r'(?:from|import)\s+"(\.[^"]+)"')
+
+
+def imported(file: Path) -> set[Path]:
+    """The files of the console that this one imports, types too."""
+    places = [file.parent / said for said in IMPORT.findall(file.read_text(encoding="utf-8"))]
+    candidates = [place.with_name(place.name + end).resolve() for place in places for end in ENDS]
+    return {candidate for candidate in candidates if candidate.is_file()}
+
+
+def test_imports_go_one_way() -> None:
+    files = [file for end in ENDS for file in SOURCE.rglob(f"*{end}")]
+    graph = {file: imported(file) for file in files}
+    assert sum(map(len, graph.values())) > len(files), "the imports are read"
+    TopologicalSorter(graph).prepare()  # CycleError names the circle
