@@ -31,7 +31,6 @@ class Sender(msgspec.Struct):
     latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
     stopped_ns: int | None = None  # said goodbye in an orderly way
     duplicates: int = 0
-    out_of_order: int = 0
 
     def link_at(self, t_ns: int) -> Link:
         if self.heard_ns is None:
@@ -58,7 +57,6 @@ class Sender(msgspec.Struct):
         if boot is not self.boots[-1] or (
             header.t_mono_ns < latest_mono_ns and header.seq < boot.seen.lasts[-1]
         ):  # one that is said last of all is new: the clock was wrong before
-            self.out_of_order += 1
             return "old"
         self.latest_mono_ns[channel.name] = header.t_mono_ns
         self.stopped_ns = None

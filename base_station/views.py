@@ -26,6 +26,7 @@ from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
 from base_station.pins.pin import WAITING, Pin
 from base_station.unit_views import unit_views
+from base_station.unkept import unkept_problem
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 
@@ -149,6 +150,8 @@ def beacon_views(state: StationState) -> tuple[BeaconView, ...]:
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
     problems = [*state.problems.values(), *facts.problems]
+    if unkept := unkept_problem(state):
+        problems.append(unkept)
     if counts.undecodable:
         problems.append(
             f"{counts.undecodable} messages could not be read; last {counts.last_undecodable}"
