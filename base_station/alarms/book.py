@@ -59,7 +59,7 @@ class AlarmBook:
                     f"{error!r}",
                 )
                 continue
-            if verdict is None or (current is None and isinstance(verdict, Clear)):
+            if verdict is None:
                 continue
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
@@ -106,10 +106,12 @@ class AlarmBook:
         return _resolve(state, alarm, f"{by}: {note}" if note else by)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
-        """What alarms say of who wore the unit; that there were alarms stays."""
+        """What alarms say of who wore the unit, and what was said when they were dealt with; that
+        there were alarms stays.
+        """
         for alarm in (*state.alarms.values(), *state.history):
             if alarm.unit_id == unit.unit_id:
-                alarm.text = FORGOTTEN
+                alarm.text, alarm.by = FORGOTTEN, FORGOTTEN if alarm.by else ""
 
     def _follow(
         self,

@@ -25,6 +25,7 @@ from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPie
 from shared.messages.station import (
     Assign,
     RegisterUnit,
+    ResolveAlarm,
     Unassign,
 )
 from tests.forgetting_story import ANA, BO, Story, Walker, names_in
@@ -54,14 +55,20 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         walker = Walker(station, "FF-01")
         walker.walk(10, 3.0)
         walker.press_mayday()
+        (mayday,) = station.pipeline.state.alarms.values()
+        station.act(ResolveAlarm(mayday.alarm_id, f"spoke with {ANA}"))
         station.act(Unassign("FF-01"))
+        station.act(RegisterUnit("FF-02", "FF-02"))
+        station.act(Assign("FF-02", "p-bo", BO, "", ""))
+        Walker(station, "FF-02").press_mayday()
         forgetter.person("admin", "p-77")
         unit = station.pipeline.state.units["FF-01"]
         assert unit.trail == []
         assert unit.fused is None
         saved = station.pipeline.checkpoint()
         assert ANA.encode() not in saved
-        station.act(RegisterUnit("FF-02", "FF-02"))  # the log goes on
+        assert BO in station.pipeline.state.alarms["mayday|FF-02"].text
+        station.act(RegisterUnit("FF-03", "FF-03"))  # the log goes on
         assert len(station.recorder.segments()) == 2
     assert len(list(read_log(folder.log))) > 10
     text = b"".join(payload for _, _, payload in read_log(folder.log)).decode("utf-8", "ignore")

@@ -162,6 +162,18 @@ def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Scr
     assert changes(script, "heat")[-1] == ("RESOLVED", "caution")
     script.wait(1, lambda: script.temperature(U, 170.0))
     assert changes(script, "heat")[-1] == ("RAISED", "warning")
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, "is on his way out"))
+    script.wait(60, lambda: script.temperature(U, 120.0))
+    assert len(changes(script, "heat")) == 4, "what is less is no news of what was resolved"
+
+
+def test_the_last_fifty_resolved_alarms_are_at_hand(script: Script) -> None:
+    for _ in range(51):
+        script.now_s += 1.0
+        script.event(U, EventKind.FALL)
+        script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    resolved = [one.alarm_id for one in script.alarms if one.state is AlarmState.RESOLVED]
+    assert [one.alarm_id for one in script.pipeline.state.history] == resolved[1:]
 
 
 def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
@@ -211,6 +223,8 @@ def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     assert changes(script, "battery") == [("RAISED", "low")]
     script.wait(60, lambda: script.status(U, battery=0.9))
     assert changes(script, "battery")[-1] == ("RESOLVED", "low")
+    script.wait(1, lambda: script.status(U, battery=0.12))
+    assert len(changes(script, "battery")) == 2, "what is resolved stands no more"
 
 
 def test_a_position_that_nobody_knows_is_an_alarm_until_it_is_known(script: Script) -> None:
