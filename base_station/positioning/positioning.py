@@ -24,10 +24,10 @@ from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.said import said
+from base_station.positioning.silent import Silent
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import BEGAN_M, Landing
 from base_station.site.plan import Plan, Ring
-from base_station.site.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import FusedPosition, GpsFix, Header, Position
@@ -49,25 +49,20 @@ class Positioning:
         self._kind = kind
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
         self._grid: FloorGrid | None = None
+        self._silent = Silent(None)
         self._pinned = PinnedUnits(kind, smoother, saved_pinned)
 
     def consider(self, plan: Plan | None) -> None:
         """What stands in everybody's way, from now on."""
         self._grid = FloorGrid.of(plan)
+        self._silent = Silent(self._grid)
         self._pinned.grid = self._grid
         for fuser in (*self._fusers.values(), *self._pinned.all()):
             fuser.consider(self._grid)
 
     def reach(self, state: StationState, unit: UnitState) -> Ring:
-        """The border of what somebody who is not heard can have walked to since, on the floor
-        where that was; empty where no plan tells, or somebody is heard.
-        """
-        fused = unit.fused
-        if self._grid is None or fused is None or fused.floor is None or unit.link == "live":
-            return ()
-        known_m = RADII_95 * max(fused.std_north_m, fused.std_east_m)
-        way_m = known_m + roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
-        return self._grid.reach(fused.floor, fused.north_m, fused.east_m, way_m)
+        """``Silent.reach`` of now."""
+        return self._silent.reach(state.t_ns, unit)
 
     def save(self) -> dict[str, bytes]:
         return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}

@@ -1,4 +1,4 @@
-"""A plan's walls and stairs as squares: what a step crosses, and how far somebody can get."""
+"""A plan's walls and stairs as squares: what a step crosses, and where ways out begin."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 from base_station.site.crossing import cross_moved
 from base_station.site.plan import Plan, Ring
+from base_station.site.way_out import WayOut
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -19,8 +18,6 @@ CELL_M = 0.2
 MARGIN_M = 3.0  # of open ground about the building
 LOOK_M = 0.12  # how far apart a step is looked at: a wall is a square thick
 MOST_CELLS = 4_000_000
-SECTORS = 48
-WAYS_KEPT = 16
 
 
 class FloorGrid:
@@ -39,7 +36,6 @@ class FloorGrid:
         floors = {wall.floor for wall in plan.walls}
         self._walls = {floor: self._walls_of(plan, floor) for floor in sorted(floors)}
         on_stairs = {stairs.floor for stairs in plan.stairs}
-        self._ways: dict[tuple[int, int, int], Floats] = {}
         self._stairs = {floor: self._stairs_of(plan, floor) for floor in sorted(on_stairs)}
 
     @staticmethod
@@ -81,46 +77,16 @@ class FloorGrid:
         rows, columns = self._rows(place_m[:, 0]), self._columns(place_m[:, 1])
         return np.asarray(self._stairs[floor][rows, columns])
 
-    def reach(self, floor: int, north_m: float, east_m: float, way_m: float) -> Ring:
-        """The border of what can be walked to within ``way_m`` on one floor, as (east_m,
-        north_m), by the furthest square in each direction; empty where the floor or the place is
-        not on the plan.  Beyond the plan's edge nothing stands in the way.
-        """
+    def way_out(self, floor: int, north_m: float, east_m: float) -> WayOut | None:
+        """From a place on one floor; None where the floor or the place is not on the plan."""
         if floor not in self._walls or not self._covers(north_m, east_m):
-            return ()
-        start = int(self._rows(np.array(north_m))), int(self._columns(np.array(east_m)))
-        walked_m = self._walked_m(floor, start)
-        rows, columns = np.nonzero(walked_m <= way_m)
-        to_north_m = self._north_m + rows * CELL_M - north_m
-        to_east_m = self._east_m + columns * CELL_M - east_m
-        far_m = np.hypot(to_north_m, to_east_m)
-        last_row, last_column = self._shape[0] - 1, self._shape[1] - 1
-        at_edge = (rows == 0) | (rows == last_row) | (columns == 0) | (columns == last_column)
-        far_m[at_edge] += way_m - walked_m[rows, columns][at_edge]
-        sectors = np.rint(np.arctan2(to_east_m, to_north_m) / math.tau * SECTORS).astype(np.intp)
-        furthest_m = np.full(SECTORS, CELL_M)
-        np.maximum.at(furthest_m, sectors % SECTORS, far_m)
-        angles_rad = np.arange(SECTORS) * math.tau / SECTORS
-        ring_east_m = east_m + furthest_m * np.sin(angles_rad)
-        ring_north_m = north_m + furthest_m * np.cos(angles_rad)
-        return tuple(zip(ring_east_m.tolist(), ring_north_m.tolist(), strict=True))
+            return None
+        at = (north_m - self._north_m) / CELL_M, (east_m - self._east_m) / CELL_M
+        return WayOut(self._walls[floor], at, CELL_M)
 
     def _covers(self, north_m: float, east_m: float) -> bool:
         row, column = (north_m - self._north_m) / CELL_M, (east_m - self._east_m) / CELL_M
         return bool(0.0 <= row < self._shape[0] and 0.0 <= column < self._shape[1])
-
-    def _walked_m(self, floor: int, start: tuple[int, int]) -> Floats:
-        """The way to every square of the floor (Dijkstra); the last ones asked for are kept."""
-        key = (floor, *start)
-        if key not in self._ways:
-            if len(self._ways) >= WAYS_KEPT:
-                del self._ways[next(iter(self._ways))]
-            free = ~self._walls[floor]
-            free[start] = True
-            at = start[0] * self._shape[1] + start[1]
-            ways_m = dijkstra(_neighbours(free), directed=False, indices=at)
-            self._ways[key] = ways_m.reshape(self._shape)
-        return self._ways[key]
 
     def _rows(self, north_m: Floats) -> NDArray[np.intp]:
         return np.clip(
@@ -153,24 +119,6 @@ class FloorGrid:
             if one.floor == floor:
                 stairs |= _within(one.ring, north_m, east_m)
         return stairs
-
-
-def _neighbours(free: Flags) -> csr_matrix:
-    """Between squares that touch and are free: the way from one to the other."""
-    squares = np.arange(free.size).reshape(free.shape)
-    ends: list[tuple[NDArray[np.intp], NDArray[np.intp], float]] = []
-    for one, other, way_m in (
-        (np.s_[:, :-1], np.s_[:, 1:], CELL_M),
-        (np.s_[:-1, :], np.s_[1:, :], CELL_M),
-        (np.s_[:-1, :-1], np.s_[1:, 1:], CELL_M * math.sqrt(2.0)),
-        (np.s_[:-1, 1:], np.s_[1:, :-1], CELL_M * math.sqrt(2.0)),
-    ):
-        both = free[one] & free[other]
-        ends.append((squares[one][both], squares[other][both], way_m))
-    ways_m = np.concatenate([np.full(len(from_), way_m) for from_, _, way_m in ends])
-    from_all = np.concatenate([from_ for from_, _, _ in ends])
-    to_all = np.concatenate([to for _, to, _ in ends])
-    return csr_matrix((ways_m, (from_all, to_all)), shape=(free.size, free.size))
 
 
 def _within(ring: Ring, north_m: Floats, east_m: Floats) -> Flags:

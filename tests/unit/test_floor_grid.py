@@ -8,8 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.site.floor_grid import FloorGrid
+from base_station.site.floor_grid import CELL_M, FloorGrid
 from base_station.site.plan import Ring, read_plan
+from base_station.site.way_out import MOST_SQUARES, ring_about
 
 
 def plan_of(*features: tuple[str, list[list[float]]]) -> bytes:
@@ -51,6 +52,12 @@ def grid() -> FloorGrid:
     return found
 
 
+def reach(grid: FloorGrid, floor: int, north_m: float, east_m: float, way_m: float) -> Ring:
+    way_out = grid.way_out(floor, north_m, east_m)
+    reach_m = None if way_out is None else way_out.reach_m(way_m)
+    return () if reach_m is None else ring_about(north_m, east_m, reach_m)
+
+
 def test_a_step_through_a_wall_is_seen_and_one_through_the_door_is_not(grid: FloorGrid) -> None:
     from_m = np.array([[5.0, 9.5], [9.0, 9.5], [5.0, 5.0]])
     to_m = np.array([[5.0, 10.5], [9.0, 10.5], [6.0, 5.0]])
@@ -59,25 +66,52 @@ def test_a_step_through_a_wall_is_seen_and_one_through_the_door_is_not(grid: Flo
 
 def test_the_way_leads_through_the_door(grid: FloorGrid) -> None:
     """From beside the wall at its south end the other side is 16 m of walk away."""
-    near = area_m2(grid.reach(0, 1.0, 9.0, 5.0))
+    near = area_m2(reach(grid, 0, 1.0, 9.0, 5.0))
     assert near < 0.6 * math.pi * 5.0**2
-    assert furthest_east_m(grid.reach(0, 1.0, 9.0, 6.0)) < 10.3
-    assert furthest_east_m(grid.reach(0, 1.0, 9.0, 14.0)) > 12.0
+    assert furthest_east_m(reach(grid, 0, 1.0, 9.0, 6.0)) < 10.3
+    assert furthest_east_m(reach(grid, 0, 1.0, 9.0, 14.0)) > 12.0
 
 
 def test_nobody_gets_out_of_a_house_without_a_door(grid: FloorGrid) -> None:
-    ring = grid.reach(0, 5.0, 5.0, 200.0)
+    ring = reach(grid, 0, 5.0, 5.0, 200.0)
     assert all(-1.5 < east_m < 21.5 and -1.5 < north_m < 11.5 for east_m, north_m in ring)
 
 
 def test_beyond_the_plan_nothing_stands_in_the_way(grid: FloorGrid) -> None:
-    ring = grid.reach(0, -2.0, 10.0, 50.0)
+    ring = reach(grid, 0, -2.0, 10.0, 50.0)
     assert min(north_m for _, north_m in ring) == pytest.approx(-52.0, abs=0.5)
 
 
+def test_going_on_from_what_was_walked_is_walking_anew(grid: FloorGrid) -> None:
+    going_on = grid.way_out(0, 1.0, 9.0)
+    assert going_on is not None
+    for way_m in (0.0, 2.0, 2.1, 6.0, 13.0, 14.0, 14.0, 60.0):
+        anew = grid.way_out(0, 1.0, 9.0)
+        assert anew is not None
+        first, second = going_on.reach_m(way_m), anew.reach_m(way_m)
+        assert first is not None
+        assert second is not None
+        assert first.tolist() == second.tolist()
+
+
+def test_more_ground_than_a_floor_is_not_walked() -> None:
+    """It would hold up the station, and a circle tells as much."""
+    field = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [0.0, 0.0]]
+    grid = FloorGrid.of(read_plan(plan_of(("outline", field), ("wall", field))))
+    assert grid is not None
+    way_out = grid.way_out(0, 50.0, 50.0)
+    assert way_out is not None
+    widest_m = math.sqrt(MOST_SQUARES / math.pi) * CELL_M
+    reach_m = way_out.reach_m(0.9 * widest_m)
+    assert reach_m is not None
+    assert reach_m.max() == pytest.approx(0.9 * widest_m, abs=0.3)
+    assert way_out.reach_m(1.2 * widest_m) is None
+    assert way_out.reach_m(1.3 * widest_m) is None
+
+
 def test_what_the_plan_does_not_show_is_not_made_up(grid: FloorGrid) -> None:
-    assert grid.reach(3, 5.0, 5.0, 10.0) == ()
-    assert grid.reach(0, 500.0, 5.0, 10.0) == ()
+    assert reach(grid, 3, 5.0, 5.0, 10.0) == ()
+    assert reach(grid, 0, 500.0, 5.0, 10.0) == ()
     assert FloorGrid.of(None) is None
     assert FloorGrid.of(read_plan(plan_of(("outline", OUTLINE)))) is None
 

@@ -10,6 +10,9 @@ import pytest
 
 from base_station.bench.rig import said
 from base_station.events import Refused
+from base_station.positioning.silent import Silent
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.way_out import SECTORS
 from base_station.views import StationFacts, snapshot
 from edge.simulation.building import plan_path
 from shared.channels import GPS, backfilled_key
@@ -109,3 +112,13 @@ def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) ->
         assert any(isinstance(output, FusedPosition) for output in outputs)
     assert script.fused[-1].east_m == pytest.approx(6.0, abs=2.0)
     assert script.record(backfilled_key(U, GPS.suffix), encode(late[0])) == [], "a second copy"
+
+
+def test_a_station_that_starts_shows_the_same_as_one_that_walked_on(script: Script) -> None:
+    """What was walked a second before is in no checkpoint."""
+    script.wait(3, lambda: script.position(U, 0.0, 0.0))
+    script.wait(40)
+    state = script.pipeline.state
+    anew, unit = Silent(FloorGrid.of(state.plan)), state.units[U]
+    assert len(unit.reach) == SECTORS
+    assert anew.reach(state.t_ns, unit) == unit.reach
