@@ -191,6 +191,9 @@ class StationDrive:
         if heard is Heard.FORGED:
             text = f"Somebody on the bus speaks as the station ({key}): not believed"
             self._watch.note("bus", text)
+        elif heard is Heard.WILD:
+            text = f"More starts of a unit's program are said than can be ({key}): left out"
+            self._watch.note("bus", text)
         elif heard is Heard.REPEATED:
             self._repeated += 1
         elif heard is not Heard.LEAVE:

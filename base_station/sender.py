@@ -16,6 +16,7 @@ from shared.messages import Header
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
 BOOTS = 16  # runs of a unit's program that are told from each other
+WILD_NS = 60 * NS_PER_S  # more starts than that in a minute are nobody's program
 TOGETHER_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -31,6 +32,7 @@ class Sender(msgspec.Struct):
     latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
     stopped_ns: int | None = None  # said goodbye in an orderly way
     duplicates: int = 0
+    starts_ns: list[int] = msgspec.field(default_factory=list)  # of the last runs that came live
 
     def link_at(self, t_ns: int) -> Link:
         if self.heard_ns is None:
@@ -42,7 +44,7 @@ class Sender(msgspec.Struct):
 
     def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
         """Note that a message came, and say what it is worth."""
-        boot = self._boot(header.boot_id)
+        boot = self._boot(header.boot_id, t_ns)
         if not boot.seen.add(header.seq):
             self.duplicates += 1
             return "repeat"
@@ -66,6 +68,11 @@ class Sender(msgspec.Struct):
         """Whether this message came already, live or out of the journal."""
         boot = self._known_boot(boot_id)
         return boot is not None and seq in boot.seen
+
+    def starts_wildly(self, boot_id: int, t_ns: int) -> bool:
+        """Whether a live message is of one more run than there can be."""
+        often = len(self.starts_ns) == BOOTS and t_ns - self.starts_ns[0] < WILD_NS
+        return often and self._known_boot(boot_id) is None
 
     def take_back(self, boot_id: int, seq: int) -> None:
         """The log did not take it: it is missing like what never came."""
@@ -95,11 +102,12 @@ class Sender(msgspec.Struct):
         twins = [one for one in others if one.together_ns(running) >= TOGETHER_NS]
         return max(twins, key=lambda one: one.there_to_ns, default=None)
 
-    def _boot(self, boot_id: int) -> BootState:
+    def _boot(self, boot_id: int, t_ns: int) -> BootState:
         """The boot of a live message; one not heard of before is the one that runs now."""
         boot = self._known_boot(boot_id)
         if boot is None:
             boot = BootState(boot_id)
+            self.starts_ns = [*self.starts_ns[1 - BOOTS :], t_ns]
             self._let_run(boot)
         return boot
 

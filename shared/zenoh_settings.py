@@ -7,14 +7,22 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from shared.channels import ROOT
 from shared.tls import TlsIdentity
 
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
 _LEASE_MS = 3000
 _KEEP_ALIVES_A_LEASE = 4
 _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
-# What is larger is not taken. A unit says a kilobyte at once; two stations a plan or a picture.
+# What is larger is not taken, whoever sends it: two stations tell each other plans and pictures.
 MOST_BYTES = 64 * 1024 * 1024
+# What units say and answer is smaller by far: what is larger ends at the router.
+MOST_SAID_BYTES = 64 * 1024
+MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
+_LARGEST = (
+    ("said", "put", MOST_SAID_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
+    ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),
+)
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
 # in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
 _ROUTER_QUEUES = {
@@ -88,10 +96,20 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
 
 def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
     if isinstance(endpoint, StationEndpoint):
-        settings = {
+        settings: dict[str, Any] = {
             "mode": "router",
             "listen": {"endpoints": list(endpoint.listen)},
             "timestamping": {"enabled": True},
+            "low_pass_filter": [
+                {
+                    "id": name,
+                    "flows": ["ingress"],
+                    "messages": [kind],
+                    "key_exprs": [f"{ROOT}/{keys}" for keys in under],
+                    "size_limit": most_bytes,
+                }
+                for name, kind, most_bytes, under in _LARGEST
+            ],
         }
         if endpoint.access_control is not None:
             settings["access_control"] = dict(endpoint.access_control)

@@ -30,6 +30,7 @@ from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
 from base_station.drive import StationDrive
+from base_station.fair_share import FairShare
 from base_station.feed import LogFeed
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
@@ -106,7 +107,8 @@ class _LiveStation:
         alone = not opened.config.standby.name
         self._check = LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
         self._side = self._new_side()
-        hearing = bus.subscribe(f"{ROOT}/**", self._side.feed.offer)
+        self._share = FairShare(self._side.feed.offer, steady)
+        hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
         self._backfill = Backfill(bus, opened.feed.deliver, opened.clock, self._may_forget)
@@ -228,6 +230,8 @@ class _LiveStation:
             self._check.look(opened.recorder.segments())
             if self._side.leads:
                 enrolled.update()
+                for report in self._share.news():
+                    self._gate.submit(STATION_ID, report)
             if hindsight is not None:
                 hindsight.catch_up(records.incidents(), records.tracks_of)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from base_station.events import StationEvent, number_of
+from base_station.events import Received, StationEvent, number_of
 from base_station.live_state import StationState
 from shared.channels import Direction, Qos, parse_key
 from shared.errors import UnknownChannelError
@@ -18,6 +18,7 @@ class Heard(Enum):
     KEEP = "keep"
     URGENT = "urgent"  # keep it, and bring it to the disk before anybody hears of it
     FORGED = "forged"  # somebody speaks as the station
+    WILD = "wild"  # of a program that starts again and again, as none does
 
 
 def judge(key: str, event: StationEvent, state: StationState) -> Heard:
@@ -34,6 +35,8 @@ def judge(key: str, event: StationEvent, state: StationState) -> Heard:
         return Heard.FORGED
     if channel.direction is Direction.UP and _is_kept(event, state):
         return Heard.REPEATED
+    if channel.direction is Direction.UP and _is_wild(event, state):
+        return Heard.WILD
     return Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP
 
 
@@ -53,3 +56,11 @@ def _is_kept(event: StationEvent, state: StationState) -> bool:
         return False
     sender = state.sender(number[0])
     return sender is not None and sender.has(*number[1:])
+
+
+def _is_wild(event: StationEvent, state: StationState) -> bool:
+    if not isinstance(event, Received) or event.backfilled:
+        return False
+    header = event.message.header
+    sender = state.sender(header.unit_id)
+    return sender is not None and sender.starts_wildly(header.boot_id, event.t_ns)

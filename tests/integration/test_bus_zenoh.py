@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import closing
 
 import pytest
@@ -13,6 +14,7 @@ from base_station.bench.rig.station import free_port
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos
 from shared.errors import BusError
+from shared.zenoh_settings import MOST_ANSWERED_BYTES, MOST_SAID_BYTES
 from tests.waiting import until
 
 
@@ -72,18 +74,50 @@ def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(
     address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("shared.zenoh_settings.MOST_BYTES", 1_000_000)
+    assert sizes_heard(address, "muster/stations/v1/a/have", (500_000, 3_000_000, 5)) == [
+        500_000,
+        5,
+    ]
+
+
+@pytest.mark.parametrize("suffix", ["up/status", "alert/event", "heartbeat"])
+def test_what_is_larger_than_any_units_message_ends_at_the_router(
+    address: str, suffix: str
+) -> None:
+    sizes = (MOST_SAID_BYTES, MOST_SAID_BYTES + 1, 16_000_000, 5)
+    assert sizes_heard(address, f"muster/v1/anna/{suffix}", sizes) == [MOST_SAID_BYTES, 5]
+
+
+def sizes_heard(address: str, key: str, sizes: Sequence[int]) -> list[int]:
+    """What comes through a router of messages of these sizes, the last of which is small."""
     heard: list[int] = []
     with (
-        closing(ZenohBus(StationEndpoint((address,)))) as station,
+        closing(ZenohBus(StationEndpoint((address,)))),
+        closing(ZenohBus(ClientEndpoint((address,)))) as station,
         closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
     ):
-        station.subscribe("muster/v1/**", lambda _, payload: heard.append(len(payload)))
-        until(lambda: rogue.is_heard("muster/v1/anna/up/status"))
-        for size in (500_000, 3_000_000, 5):
-            rogue._session.put(
-                "muster/v1/anna/up/status",
-                bytes(size),
-                congestion_control=zenoh.CongestionControl.BLOCK,
-            )
-        until(lambda: 5 in heard)
-    assert heard == [500_000, 5]
+        station.subscribe("muster/**", lambda _, payload: heard.append(len(payload)))
+        until(lambda: rogue.is_heard(key))
+        for size in sizes:
+            rogue._session.put(key, bytes(size), congestion_control=zenoh.CongestionControl.BLOCK)
+        until(lambda: sizes[-1] in heard)
+    return heard
+
+
+def test_an_answer_that_is_larger_than_any_units_ends_at_the_router(address: str) -> None:
+    sizes = (MOST_ANSWERED_BYTES, MOST_ANSWERED_BYTES + 1, 5)
+    key = "muster/v1/anna/journal/range"
+    with (
+        closing(ZenohBus(StationEndpoint((address,)))),
+        closing(ZenohBus(ClientEndpoint((address,)))) as station,
+        closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
+    ):
+        rogue.serve(key, lambda *_: (bytes(size) for size in sizes))
+        heard: list[int] = []
+
+        def answered() -> bool:
+            heard[:] = [len(reply) for reply in station.query(key, b"", 2.0)]
+            return bool(heard)
+
+        until(answered)
+    assert heard == [MOST_ANSWERED_BYTES, 5]

@@ -1,0 +1,101 @@
+"""One sender that runs wild: what is too much of it goes nowhere, and others lose nothing."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.fair_share import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ, FairShare
+from shared.channels import COMMAND, EVENT, POSITION, STATUS
+from shared.clock import ManualClock
+
+KEY, ALERT, OTHER = POSITION.key("evil"), EVENT.key("evil"), STATUS.key("anna")
+
+
+class Station:
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.heard: list[str] = []
+        self.share = FairShare(lambda key, _: self.heard.append(key), self.clock)
+
+    def hear(self, key: str, times: int, size: int = 100) -> int:
+        """How many of them come through."""
+        before = self.heard.count(key)
+        for _ in range(times):
+            self.share.offer(key, bytes(size))
+        return self.heard.count(key) - before
+
+    def flood(self, seconds: int) -> None:
+        for _ in range(10 * seconds):
+            self.clock.advance(0.1)
+            self.hear(KEY, MESSAGES_HZ)
+
+    def news(self) -> list[tuple[str, bool]]:
+        return [(one.part, bool(one.text)) for one in self.share.news()]
+
+
+@pytest.fixture
+def station() -> Station:
+    return Station()
+
+
+def test_what_is_beyond_the_share_is_dropped_and_others_are_heard(station: Station) -> None:
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ
+    assert station.hear(OTHER, 50) == 50
+    station.clock.advance(0.5)
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ // 2
+    station.clock.advance(3600.0)
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ
+
+
+def test_alerts_have_a_share_of_their_own(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.hear(ALERT, 1000) == ALERTS_HZ
+
+
+def test_bytes_count_too(station: Station) -> None:
+    assert station.hear(KEY, 100, size=50_000) == BYTES_PER_S // 50_000
+
+
+def test_what_is_said_to_a_unit_is_not_said_by_it(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.hear(COMMAND.key("evil"), 1000) == 1000
+
+
+def test_a_key_that_no_unit_has_is_held_to_a_share(station: Station) -> None:
+    assert station.hear("muster/v1", 10_000) == MESSAGES_HZ
+
+
+def test_a_unit_that_says_as_much_as_units_do_is_never_cut(station: Station) -> None:
+    for _ in range(1000):
+        station.clock.advance(0.1)
+        assert station.hear(KEY, 5, size=1000) == 5
+    station.clock.advance(5.0)
+    assert station.hear(KEY, 250, size=1000) == 250, "what a link has held up"
+    assert station.news() == []
+
+
+def test_a_flood_is_told_once_and_so_is_its_end(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.news() == [], "one burst"
+    station.flood(5)
+    assert station.news() == [("flood evil", True)]
+    station.flood(5)
+    assert station.news() == []
+    station.clock.advance(10.0)
+    assert station.news() == [], "it may go on"
+    station.clock.advance(30.0)
+    assert station.news() == [("flood evil", False)]
+    assert station.news() == []
+
+
+def test_bursts_far_apart_are_no_flood(station: Station) -> None:
+    for _ in range(10):
+        station.hear(KEY, 2 * MESSAGES_HZ)
+        station.clock.advance(5.0)
+    assert station.news() == []
+
+
+def test_any_number_of_senders_costs_bounded_memory(station: Station) -> None:
+    for number in range(5000):
+        station.share.offer(POSITION.key(f"s{number}"), b"")
+    assert len(station.share._senders) <= 2000
