@@ -8,10 +8,11 @@ import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
+from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule, Clear, Finding
 from base_station.bench.rig import said
 from base_station.boot_state import BootState
-from base_station.live_state import Duty, Fault, UnitState
+from base_station.live_state import Duty, Fault, StationState, UnitState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -108,6 +109,11 @@ def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
 
 def test_it_is_silent_about_a_calm_unit(rule: AlarmRule) -> None:
     assert not isinstance(rule.judge(calm(), T_NS, ""), Finding)
+
+
+def test_a_unit_that_nobody_registered_is_not_believed() -> None:
+    raised = AlarmBook(ALARMS).review(StationState(t_ns=T_NS), in_trouble())
+    assert {alarm.rule for alarm in raised} == {"unknown-unit", "cloned-unit"}
 
 
 def test_it_knows_nothing_of_a_unit_never_heard(rule: AlarmRule) -> None:

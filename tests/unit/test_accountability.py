@@ -81,6 +81,10 @@ def overdue(script: Script) -> list[AlarmChange]:
     return [alarm for alarm in script.alarms if alarm.rule == "missed-check-in"]
 
 
+def rest_alarms(script: Script) -> list[AlarmChange]:
+    return [alarm for alarm in script.alarms if alarm.rule == "rest-due"]
+
+
 def refusals(script: Script) -> list[str]:
     return [output.reason for output in script.outputs if isinstance(output, Refused)]
 
@@ -119,7 +123,7 @@ def test_nothing_that_a_unit_measures_answers_it(script: Script) -> None:
     raised = [alarm for alarm in overdue(script) if alarm.unit_id == "FF-01"]
     assert [alarm.state for alarm in raised] == [AlarmState.RAISED]
     assert raised[0].priority == 1
-    assert "Person 1" in raised[0].text
+    assert raised[0].text == "Person 1: PAR overdue, not heard from for 1 min"
 
 
 def test_it_fires_once_and_is_armed_again_by_the_check_in(script: Script) -> None:
@@ -287,13 +291,26 @@ def test_work_begins_inside_and_rest_is_due_after_it(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(1)
     assert duty(script).work_since_ns is not None
-    script.wait(121, lambda: script.act(CheckIn("", "", True)))
-    due = [one for one in script.alarms if one.rule == "rest-due"]
-    assert [(one.unit_id, one.priority) for one in due] == [("FF-01", 3)]
+    script.wait(118, lambda: script.act(CheckIn("", "", True)))
+    assert rest_alarms(script) == []
+    script.wait(3)
+    (due,) = rest_alarms(script)
+    assert (due.unit_id, due.priority) == ("FF-01", 3)
+    assert due.text == "Person 1 has worked for 2 min: send to rest"
     script.act(SetRest("FF-01", True))
-    due = [one for one in script.alarms if one.rule == "rest-due"]
-    assert due[-1].state is AlarmState.RESOLVED
+    rests = rest_alarms(script)[-1]
+    assert (rests.state, rests.by) == (AlarmState.RESOLVED, "rests")
     assert duty(script).rest_since_ns == script.t_ns
+
+
+def test_who_is_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(121)
+    script.act(ResolveAlarm(rest_alarms(script)[-1].alarm_id, "in a moment"))
+    script.wait(599)
+    assert len(rest_alarms(script)) == 2
+    script.wait(1)
+    assert len(rest_alarms(script)) == 3
 
 
 def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:

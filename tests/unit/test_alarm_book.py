@@ -96,14 +96,15 @@ def test_pressing_again_is_another_mayday(script: Script) -> None:
     assert script.alarms[0].alarm_id != script.alarms[-1].alarm_id
 
 
-def test_pressing_again_is_to_be_acknowledged_again(script: Script) -> None:
-    script.event(U, EventKind.MAYDAY)
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+def test_another_one_is_to_be_acknowledged_again(script: Script, kind: EventKind) -> None:
+    script.event(U, kind)
     script.wait(1)
     script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
-    script.wait(5, lambda: script.status(U, mayday=True))
-    assert changes(script, "mayday")[-1] == ("ACKNOWLEDGED", "mayday"), "it is the same press"
-    script.event(U, EventKind.MAYDAY)
-    assert changes(script, "mayday")[-1] == ("RAISED", "mayday")
+    script.wait(5, lambda: script.status(U, mayday=kind is EventKind.MAYDAY))
+    assert script.alarms[-1].state.name == "ACKNOWLEDGED", "it is the same one"
+    script.event(U, kind)
+    assert script.alarms[-1].state.name == "RAISED"
     assert len({alarm.alarm_id for alarm in script.alarms}) == 1
     assert script.alarms[-1].by == ""
 
@@ -203,6 +204,8 @@ def test_link_lost_is_raised_at_30_s_and_ends_when_messages_return(script: Scrip
     assert changes(script, "link-lost") == []
     script.wait(2)
     assert changes(script, "link-lost") == [("RAISED", "lost")]
+    assert script.alarms[-1].priority == SOON
+    assert "Nothing heard" in script.alarms[-1].text
     script.wait(600)
     assert len(changes(script, "link-lost")) == 1
     script.wait(6, lambda: script.status(U))
@@ -215,6 +218,7 @@ def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> Non
     script.wait(40)
     (alarm,) = script.alarms
     assert (alarm.rule, alarm.level, alarm.priority) == ("link-lost", "switched off", 3)
+    assert "was switched off" in alarm.text
 
 
 def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
@@ -262,6 +266,14 @@ def test_an_unknown_unit_is_reported_once_and_not_believed() -> None:
         ("mayday", "RAISED"),
         ("unknown-unit", "RESOLVED"),
     ]
+
+
+def test_a_press_that_was_taken_back_before_the_unit_was_ours_is_no_mayday() -> None:
+    script = Script()
+    script.event(U, EventKind.MAYDAY)
+    script.event(U, EventKind.MAYDAY_CANCELLED)
+    script.register(U)
+    assert changes(script, "mayday") == []
 
 
 def test_a_problem_of_the_station_is_an_alarm(script: Script) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.alarms.battery import Battery
+from base_station.alarms.cloned_unit import ClonedUnit
 from base_station.alarms.heat import Heat
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.no_motion import NoMotion
@@ -13,6 +14,7 @@ from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.tracker_degraded import TrackerDegraded
 from base_station.alarms.tracker_gone import TrackerGone
 from base_station.bench.rig import said
+from base_station.boot_state import BootState
 from base_station.live_state import UnitState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
@@ -111,6 +113,31 @@ def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) ->
     tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=agent)
     tracked.description = said.description(HEADER, tracker=NO_TRACKER)
     assert judged(TrackerGone(), tracked) == ("gone" if found == "lost" else found)
+
+
+@pytest.mark.parametrize(("silent_s", "found"), [(29.9, "cloned"), (30.0, "over")])
+@pytest.mark.parametrize("silent", [1, 2])
+@pytest.mark.parametrize("who", ["unit", "tracking agent"])
+def test_two_machines_until_one_of_them_is_silent(
+    silent_s: float, found: str, silent: int, who: str
+) -> None:
+    """Whichever of the two it is; an older run was there with neither."""
+    speaker = UnitState("FF-01", heard_ns=NOW_NS)
+    speaker.boots = [BootState(3, there_from_ns=NOW_NS - ns(900), there_to_ns=NOW_NS - ns(800))] + [
+        BootState(
+            boot_id,
+            there_from_ns=NOW_NS - ns(100 - boot_id),
+            there_to_ns=NOW_NS - (ns(silent_s) if silent == boot_id else 0),
+        )
+        for boot_id in (1, 2)
+    ]
+    tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=speaker)
+    unit = speaker if who == "unit" else tracked
+    assert judged(ClonedUnit(), unit) == found
+    verdict = ClonedUnit().judge(unit, NOW_NS, "")
+    if isinstance(verdict, Finding):
+        assert f"as FF-01's {who};" in verdict.text
+        assert verdict.onset_ns == NOW_NS - ns(98)
 
 
 @pytest.mark.parametrize(("lasted_s", "found"), [(14.9, None), (15.0, "lost")])
