@@ -39,6 +39,9 @@ def calm(seen_ns: int = T_NS) -> UnitState:
         temperature_ns=seen_ns,
         position=said.position(HEADER),
         position_ns=seen_ns,
+        fused=said.fused(HEADER, "FF-01"),
+        description=said.description(HEADER),
+        boots=[BootState(1, there_from_ns=seen_ns - 600 * NS_PER_S, there_to_ns=seen_ns)],
     )
 
 
