@@ -23,6 +23,7 @@ _LARGEST = (
     ("said", "put", MOST_SAID_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
     ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),
 )
+_ASKED_HZ = 5.0  # a unit asks for the time once a second at most
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
 # in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
 _ROUTER_QUEUES = {
@@ -42,12 +43,14 @@ class StationEndpoint:
     """The router.  With ``tls``, which is mutual, the endpoints begin with ``tls/``.
 
     ``access_control``: Zenoh's section of that name, read once, when the bus is opened.
+    ``seldom_asked``: of questions under each of these keys a few a second go through.
     """
 
     listen: tuple[str, ...] = ("tcp/0.0.0.0:7447",)
     tls: TlsIdentity | None = None
     access_control: Mapping[str, Any] | None = None
     links: tuple[str, ...] = ()  # other stations' routers, which it joins
+    seldom_asked: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +114,15 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
                 for name, kind, most_bytes, under in _LARGEST
             ],
         }
+        if endpoint.seldom_asked:
+            settings["downsampling"] = [
+                {
+                    "id": "asked",
+                    "flows": ["ingress"],
+                    "messages": ["query"],
+                    "rules": [{"key_expr": k, "freq": _ASKED_HZ} for k in endpoint.seldom_asked],
+                }
+            ]
         if endpoint.access_control is not None:
             settings["access_control"] = dict(endpoint.access_control)
         if endpoint.links:

@@ -100,6 +100,16 @@ def access_control(registry: Registry) -> dict[str, Any]:
     }
 
 
+def seldom_asked(registry: Registry) -> tuple[str, ...]:
+    """Keys under which those who are enrolled ask the station something, each its own."""
+    asking = (
+        tracker_id(entry.name) if entry.holder is Holder.TRACKER else entry.name
+        for entry in registry.entries
+        if entry.holder in (Holder.UNIT, Holder.TRACKER) and entry.revoked is None
+    )
+    return tuple(clock_key(sender_id) for sender_id in dict.fromkeys(asking))
+
+
 def _own_rules(entry: Entry) -> list[dict[str, Any]]:
     """What only the holder of this one certificate may do."""
     if entry.holder is Holder.UNIT:

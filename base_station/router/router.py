@@ -17,7 +17,7 @@ from contextlib import closing
 from pathlib import Path
 from threading import Event, Thread
 
-from base_station.pki.access import access_control
+from base_station.pki.access import access_control, seldom_asked
 from base_station.pki.folder import PkiFolder
 from base_station.router.neighbour import Neighbour, listens
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
@@ -46,7 +46,9 @@ def endpoint_of(
     if not _is_secure((*listen, *links)):
         return StationEndpoint(listen, links=links)
     pki = PkiFolder(data)
-    return StationEndpoint(listen, pki.station_identity(), access_control(pki.registry()), links)
+    registry = pki.registry()
+    rules, seldom = access_control(registry), seldom_asked(registry)
+    return StationEndpoint(listen, pki.station_identity(), rules, links, seldom)
 
 
 def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 
 import pytest
@@ -12,7 +12,7 @@ import zenoh
 
 from base_station.bench.rig.station import free_port
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
-from shared.channels import Qos
+from shared.channels import Qos, clock_key
 from shared.errors import BusError
 from shared.zenoh_settings import MOST_ANSWERED_BYTES, MOST_SAID_BYTES
 from tests.waiting import until
@@ -102,6 +102,29 @@ def sizes_heard(address: str, key: str, sizes: Sequence[int]) -> list[int]:
             rogue._session.put(key, bytes(size), congestion_control=zenoh.CongestionControl.BLOCK)
         until(lambda: sizes[-1] in heard)
     return heard
+
+
+def test_a_unit_that_asks_all_the_time_is_answered_a_few_times_a_second(address: str) -> None:
+    key, other = clock_key("evil"), clock_key("anna")
+    asked: list[str] = []
+
+    def answer(key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
+        asked.append(key)
+        yield b"now"
+
+    with (
+        closing(ZenohBus(StationEndpoint((address,), seldom_asked=(key, other)))),
+        closing(ZenohBus(ClientEndpoint((address,)))) as station,
+        closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
+        closing(ZenohBus(ClientEndpoint((address,)))) as unit,
+    ):
+        station.serve(clock_key("*"), answer)
+        until(lambda: list(unit.query(other, b"", 1.0)) == [b"now"])
+        for _ in range(500):
+            rogue.ask(key, b"", 1.0, lambda _: None)
+        time.sleep(0.3)
+        assert list(unit.query(other, b"", 1.0)) == [b"now"]
+    assert 1 <= asked.count(key) < 50
 
 
 def test_an_answer_that_is_larger_than_any_units_ends_at_the_router(address: str) -> None:

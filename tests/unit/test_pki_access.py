@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from base_station.pki.access import access_control
+from base_station.pki.access import access_control, seldom_asked
 from base_station.pki.registry import Entry, Registry
 from shared.channels import (
     CHANNELS,
@@ -29,22 +29,25 @@ def entry(holder: Holder, name: str, common_name: str, revoked: datetime | None 
 
 
 @pytest.fixture
-def rules() -> dict[str, Any]:
-    return access_control(
-        Registry(
-            "Test",
-            (),
-            (),
-            (
-                entry(Holder.STATION, "station", "station"),
-                entry(Holder.UNIT, "anna", "anna", revoked=THEN),
-                entry(Holder.UNIT, "anna", "anna#2"),
-                entry(Holder.UNIT, "bert", "bert"),
-                entry(Holder.TRACKER, "bert", "bert@tracker"),
-                entry(Holder.OPERATOR, "chief", "operator:chief"),
-            ),
-        )
+def registry() -> Registry:
+    return Registry(
+        "Test",
+        (),
+        (),
+        (
+            entry(Holder.STATION, "station", "station"),
+            entry(Holder.UNIT, "anna", "anna", revoked=THEN),
+            entry(Holder.UNIT, "anna", "anna#2"),
+            entry(Holder.UNIT, "bert", "bert"),
+            entry(Holder.TRACKER, "bert", "bert@tracker"),
+            entry(Holder.OPERATOR, "chief", "operator:chief"),
+        ),
     )
+
+
+@pytest.fixture
+def rules(registry: Registry) -> dict[str, Any]:
+    return access_control(registry)
 
 
 def allowed(rules: dict[str, Any], common_name: str, flow: str, message: str) -> set[str]:
@@ -137,3 +140,7 @@ def test_the_station_may_do_everything_below_the_root(rules: dict[str, Any]) -> 
                 "muster/v1/**",
                 "muster/stations/v1/**",
             }
+
+
+def test_each_asks_for_the_time_under_a_key_of_its_own(registry: Registry) -> None:
+    assert seldom_asked(registry) == tuple(map(clock_key, ("anna", "bert", "bert@tracker")))
