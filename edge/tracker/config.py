@@ -1,13 +1,15 @@
 """Every parameter of the default tracker, in one place, with its unit.
 
-Named tuples rather than dataclasses because the compiled kernels take them as
-they are; they are as frozen.  ``rthz`` marks a noise density: a value per
-square root of hertz, so that nothing depends on the sample rate.
+``rthz`` marks a noise density: a value per square root of hertz, so that nothing depends on the
+sample rate.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 class EskfConfig(NamedTuple):
@@ -41,6 +43,7 @@ class EskfConfig(NamedTuple):
     stance_velocity_per_motion: float = 0.001  # m/s/sqrt(Hz) for each m/s^2 of motion
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
+    glide_gate: float = 5.0  # deviations of the velocity at which a foot does not stand
     # Noise density of the rate: base plus per_unrest * unrest^1.5.
     stance_rate_radps_rthz: float = 1e-3
     stance_rate_per_unrest: float = 1.0
@@ -161,3 +164,14 @@ class EskfConfig(NamedTuple):
     degraded_std_m: float = 3.0
     lost_std_m: float = 15.0
     aligned_tilt_std_rad: float = 0.05
+
+
+_PARAMETERS = np.dtype(list(get_type_hints(EskfConfig).items()))
+
+
+def config_record(config: EskfConfig) -> NDArray[Any]:
+    """Return one record of the same fields.
+
+    Compiled kernels hand a record on as one pointer, a tuple as every value of it.
+    """
+    return np.array([tuple(config)], _PARAMETERS)

@@ -29,7 +29,7 @@ from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
-from edge.tracker.stance import stand
+from edge.tracker.stance import glides, stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.stated import bend_way, state_position
 from edge.tracker.strapdown import advance, rotation_matrix
@@ -60,6 +60,7 @@ def filter_sample(
     ring[slot].updates = 0
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
+    still = still and not glides(ring, state, slot, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         believe_rest(state, config)
@@ -106,7 +107,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
     for i in range(3):
         state.rest_force_mps2[i] = ring[0].accel_mps2[i]
         state.gains.down_b[i] = state.rotation_nb[2, i]
-        state.standing_down_b[i] = state.rotation_nb[2, i]
+        state.doubted_b[i] = state.rotation_nb[2, i]
     state.landing_off = config.landing_off
     state.gain_off = config.landing_off
     progress.last_stance_s = ring[0].t_s

@@ -32,17 +32,50 @@ def doubt_bias(state: FilterState, config: EskfConfig) -> None:
     """
     if state.bias_shown:
         return
-    variance = _bias_variance(state, state.standing_down_b)
+    variance = _least_known(state)
     share = variance / config.start_gyro_bias_std_radps**2
     if share < SHOWN_SHARE:
         state.bias_shown = True
         for i in range(3):
             state.unshown[i] = 0.0
         return
+    state.unshown_bias_std_radps = max(state.unshown_bias_std_radps, _seen_bias_radps(state))
     scale = state.unshown_bias_std_radps * min(share, 1.0) / variance
-    state.unshown[0] = scale * _with_bias(state, POSITION, state.standing_down_b)
-    state.unshown[1] = scale * _with_bias(state, POSITION + 1, state.standing_down_b)
-    state.unshown[2] = scale * _with_bias(state, ATTITUDE + 2, state.standing_down_b)
+    state.unshown[0] = scale * _with_bias(state, POSITION, state.doubted_b)
+    state.unshown[1] = scale * _with_bias(state, POSITION + 1, state.doubted_b)
+    state.unshown[2] = scale * _with_bias(state, ATTITUDE + 2, state.doubted_b)
+
+
+@njit()
+def _least_known(state: FilterState) -> float:
+    """Turn ``doubted_b`` to where the bias is known least; return the variance along it.
+
+    That is about the vertical, as the foot has stood so far: whoever gets up from a crawl
+    has not shown what turned his heading while he crawled.  One step of the power iteration a
+    sample follows it.
+    """
+    along = state.angle_rad  # as scratch
+    square = 0.0
+    for i in range(3):
+        along[i] = _with_bias(state, GYRO_BIAS + i, state.doubted_b)
+        square += along[i] * along[i]
+    for i in range(3):
+        state.doubted_b[i] = along[i] / math.sqrt(max(square, 1e-30))
+    return _bias_variance(state, state.doubted_b)
+
+
+@njit()
+def _seen_bias_radps(state: FilterState) -> float:
+    """Return the root mean square of the bias about the other two axes, which gravity shows.
+
+    A sensor that is worse there than its kind is no better about the third.
+    """
+    square = 0.0
+    doubted = 0.0
+    for i in range(3):
+        square += state.gyro_bias_radps[i] ** 2
+        doubted += state.gyro_bias_radps[i] * state.doubted_b[i]
+    return math.sqrt(max(0.5 * (square - doubted * doubted), 0.0))
 
 
 @njit()

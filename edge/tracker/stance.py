@@ -13,7 +13,7 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import GYRO_BIAS
+from edge.tracker.error_model import GYRO_BIAS, VELOCITY
 from edge.tracker.measuring import begin_updates, end_updates, measure, measure_with_lever
 from edge.tracker.state import FilterState, Ring
 
@@ -27,7 +27,6 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     motion = ring[slot].motion_m2ps4
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
-        state.standing_down_b[i] = state.rotation_nb[2, i]
     begin_updates(state)
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
@@ -42,6 +41,22 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
             off_mps2 = ring[slot].accel_mps2[i] - state.rest_force_mps2[i]
             state.rest_force_mps2[i] += gain * off_mps2
     end_updates(state)
+
+
+@njit()
+def glides(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> bool:
+    """Whether the foot goes evenly where it seems to stand, as one that is dragged does.
+
+    That shows by a velocity that the filter is sure of.  The stillest samples of a stride are
+    believed in any case, or a filter that is wrong would never be put right.
+    """
+    if ring[slot].motion_m2ps4 <= config.threshold_ratio * ring[slot].stride_minimum_m2ps4:
+        return False
+    for i in range(VELOCITY, VELOCITY + 3):
+        speed_mps = state.velocity_n_mps[i - VELOCITY]
+        if speed_mps * speed_mps > config.glide_gate**2 * state.covariance[i, i]:
+            return True
+    return False
 
 
 @njit()

@@ -184,7 +184,7 @@ FILTER = np.dtype(
         ("bias_shown", np.bool_),
         ("unshown_bias_std_radps", np.float64),
         ("unshown", np.float64, 3),  # north and east (m) and heading (rad) by one deviation of it
-        ("standing_down_b", np.float64, 3),  # the vertical at the last still sample
+        ("doubted_b", np.float64, 3),  # unit vector along which it is known least
         ("rest_rate_radps", np.float64, 3),  # mean rate around the last still sample
         ("rest_rate_var_rad2ps2", np.float64),  # the rate's scatter about it
         ("ramp_var_m2", np.float64),  # doubt whether the floor is flat; see floor

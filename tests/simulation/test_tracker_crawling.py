@@ -1,0 +1,87 @@
+"""Whoever crawls drags his foot, and it may glide evenly for a moment without standing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from edge.bench.honesty import inertial
+from edge.bench.walk_errors import track, true_way_m
+from edge.simulation import Simulation
+from edge.simulation.legs import Crawl, Stand
+from edge.simulation.scenario import Scenario
+from edge.simulation.simulation import UNCALIBRATED_SENSORS
+from edge.tracker.config import EskfConfig
+from edge.tracker.error_model import GYRO_BIAS, POSITION, SIZE
+from edge.tracker.first_rest import doubt_bias
+from edge.tracker.port import Quality
+from edge.tracker.stance import glides
+from edge.tracker.state import RING, new_filter_state
+
+CUT_S = 9.3  # into the crawl
+WAY = Crawl(((8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (-4.0, 5.0), (-4.0, 0.0), (4.0, 0.0)))
+
+
+@pytest.mark.parametrize("seed", [100, 101, 104])
+def test_a_recording_that_begins_in_mid_crawl_takes_no_glide_for_a_stance(seed):
+    """The first stances teach the gyroscope's bias; a glide among them taught a wrong one."""
+    scenario = Scenario("crawl", "crawls", (Stand(4.0), WAY))
+    simulation = Simulation(scenario, seed, UNCALIBRATED_SENSORS)
+    first = round(CUT_S * simulation.description.rate_hz)
+    imu = inertial(simulation).part(slice(first, None))
+    description = replace(simulation.description, mag_present=False, barometer_present=False)
+    rows = track(description, imu, "eskf")
+    truth = simulation.truth(np.asarray(rows.t_ns * 1e-9, np.float64))
+    speed_mps = np.linalg.norm(truth.velocity_n_mps, axis=1)
+    assert not np.any(rows.stationary & (speed_mps > 0.5))
+    way_m, drift_rad = true_way_m(rows.quaternion_nb, truth)
+    assert np.mean(np.abs(drift_rad) <= 2.0 * rows.heading_std_rad) > 0.9
+    off_m = np.linalg.norm(rows.position_n_m[:, :2] - way_m[:, :2], axis=1)
+    std_m = np.sqrt(np.trace(rows.position_cov_m2[:, :2, :2], axis1=1, axis2=2))
+    held = (off_m <= 3.0 * std_m + 0.02) | (rows.quality != Quality.GOOD)
+    assert np.mean(held) > 0.95
+
+
+def standing(motion_m2ps4, speed_mps):
+    """A ring of one sample, and a filter that is sure of its velocity by a decimetre a second."""
+    ring = np.zeros(1, RING)
+    ring["motion_m2ps4"], ring["stride_minimum_m2ps4"] = motion_m2ps4, 0.03
+    state = new_filter_state()[0]
+    for i in range(SIZE):
+        state["covariance"][i, i] = 0.1**2
+    state["velocity_n_mps"][1] = speed_mps
+    return ring.view(np.recarray), state
+
+
+@pytest.mark.parametrize(
+    ("motion_m2ps4", "speed_mps", "is_one"),
+    [(0.7, 1.0, True), (0.7, 0.2, False), (0.05, 1.0, False), (0.7, -1.0, True)],
+    ids=["glides", "stands nearly", "the stillest of its stride", "backwards"],
+)
+def test_a_glide_is_told_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is_one):
+    ring, state = standing(motion_m2ps4, speed_mps)
+    assert glides(ring, state, 0, EskfConfig()) is is_one
+
+
+def test_a_gyroscope_that_is_worse_than_its_kind_is_doubted_about_the_vertical_too():
+    config = EskfConfig()
+    state = new_filter_state()[0]
+    state["unshown_bias_std_radps"] = config.data_sheet_bias_std_radps
+    state["doubted_b"] = [0.0, 0.0, 1.0]
+    for i in range(3):
+        state["covariance"][GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
+    state["covariance"][POSITION, GYRO_BIAS + 2] = state["covariance"][GYRO_BIAS + 2, POSITION] = (
+        0.2 * config.start_gyro_bias_std_radps**2
+    )
+    doubt_bias(state, config)
+    usual_m = float(state["unshown"][0])
+    state["gyro_bias_radps"] = [0.0, 0.0, 0.05]  # what the vertical shows is not of the level axes
+    doubt_bias(state, config)
+    assert state["unshown"][0] == usual_m
+    state["gyro_bias_radps"] = [0.04, 0.03, 0.0]
+    doubt_bias(state, config)
+    assert state["unshown"][0] == pytest.approx(
+        usual_m * 0.05 / np.sqrt(2.0) / config.data_sheet_bias_std_radps
+    )
