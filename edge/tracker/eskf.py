@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_time
-from edge.tracker.config import EskfConfig
+from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
@@ -46,6 +46,7 @@ class EskfTracker:
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
         self._block = slots // 4
+        self._parameters = config_record(self.config)
         self._state["gains"]["std"] = gain_std(description, self.config)
         self._state["unshown_bias_std_radps"] = unshown_bias_std_radps(description, self.config)
         self._state["compass"]["calibrated"] = description.mag_iron_std_ut is not None
@@ -83,7 +84,7 @@ class EskfTracker:
 
     def _work(self, *, final: bool) -> TrackBatch:
         first = int(self._progress["released"][0])
-        stop = work(self._ring, self._progress, self._state, self.config, final)
+        stop = work(self._ring, self._progress, self._state, self._parameters, final)
         return rows_of(self._ring, first, stop)
 
 
@@ -109,11 +110,11 @@ def work(
     ring: Ring,
     progress: NDArray[Any],
     state: NDArray[Any],
-    config: EskfConfig,
+    parameters: NDArray[Any],
     final: bool,
 ) -> int:
     """Take every sample as far as it can go; return one past the last released row."""
-    memory = progress[0]
+    memory, config = progress[0], parameters[0]
     while memory.timed < memory.received:
         k = memory.timed
         if not final and not _has_arrived(ring, memory.received, k, config):
