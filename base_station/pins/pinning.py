@@ -24,7 +24,7 @@ from base_station.fusion.smoother.port import (
     Verdict,
 )
 from base_station.live_state import StationState
-from base_station.pins.book import units_of
+from base_station.pins.book import BEFORE_NS, units_of
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
@@ -288,6 +288,8 @@ def _time_of(history: PathHistory, pin: Pin) -> int | str:
         return begin_ns
     if pin.t_ns > end_ns + NEAR_NS:
         return "the unit's path has not come to that time yet"
+    if pin.t_ns < begin_ns - BEFORE_NS:
+        return "the unit's path begins later; there is nothing to pin there"
     return min(max(pin.t_ns, begin_ns), end_ns)
 
 

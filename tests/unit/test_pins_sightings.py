@@ -25,8 +25,14 @@ def walk() -> Walk:
     return walk
 
 
-def sighting(walk: Walk, kind: SightingKind, seen_id: str, range_m: float | None = None) -> None:
-    header = walk.script.header("FF-01")
+def sighting(
+    walk: Walk,
+    kind: SightingKind,
+    seen_id: str,
+    range_m: float | None = None,
+    captured_s: float | None = None,
+) -> None:
+    header = walk.script.header("FF-01", captured_s)
     walk.script.say(Sighting(header, kind, seen_id, range_m))
 
 
@@ -62,6 +68,32 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     sighting(walk, SightingKind.BEACON, "far", 5000.0)
     assert walk.script.pipeline.state.pins == {}
     assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 4
+
+
+def test_who_was_met_before_his_path_began_tells_nothing_of_where() -> None:
+    """His first position comes a minute later, from somewhere else."""
+    met, alone = Walk("FF-01", "FF-02"), Walk("FF-01", "FF-02")
+    for walk in (met, alone):
+        walk.start("FF-01")
+        walk.go(60, silent=("FF-02",))
+        if walk is met:
+            sighting(walk, SightingKind.UNIT, "FF-02", 1.0)
+        walk.go(60, silent=("FF-02",))
+        walk.go(10)
+    (pin,) = met.script.pipeline.state.pins
+    assert met.state(pin) == "waiting"
+    assert met.trail("FF-01") == alone.trail("FF-01")
+    assert met.trail("FF-02") == alone.trail("FF-02")
+
+
+def test_what_was_seen_before_the_incident_is_not_where_the_path_begins(walk: Walk) -> None:
+    north_m, east_m = truth(0.0)
+    walk.script.act(PlaceBeacon("door-3", "door", north_m, east_m + 50.0, None, 0.2, 0.5))
+    before = walk.trail("FF-01")
+    sighting(walk, SightingKind.TAG, "door-3", captured_s=-600.0)
+    (pin,) = walk.script.pipeline.state.pins
+    assert walk.state(pin) == "waiting"
+    assert walk.trail("FF-01") == before
 
 
 def test_what_units_see_leaves_room_for_what_people_say(
