@@ -163,6 +163,7 @@ def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut:
             resumed.now_s = (t_ns - script.records[0][0]) / 1e9
             resumed.record(key, payload)
         assert resumed.outputs == script.outputs[begin[1] :]
+    assert [alarm.text for alarm in script.alarms if alarm.level.startswith("rule-")] == []
     for fused in script.fused:
         assert all(map(math.isfinite, (fused.north_m, fused.east_m, fused.down_m)))
         assert fused.std_north_m >= 0.0
