@@ -56,7 +56,7 @@ def begin(state: StationState, unit: UnitState, by: str) -> None:
     """Who wears this unit is on duty from now on, where an incident is open."""
     incident = state.incident
     if incident is not None and incident.closed_ns is None and unit.person is not None:
-        unit.duty = Duty(state.t_ns, by)
+        unit.duty = Duty(state.t_ns, by, ready_ns=state.t_ns)
         _note_due(state, unit.duty)
 
 
@@ -121,6 +121,7 @@ def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
     if resting == (duty.rest_since_ns is not None):
         raise UserError(f"{unit.name} is {'resting' if resting else 'at work'} already")
     duty.rest_since_ns = state.t_ns if resting else None
+    duty.ready_ns = state.t_ns
     duty.work_since_ns = None
     _note_due(state, duty)
 
@@ -132,7 +133,7 @@ def note_work(state: StationState, unit: UnitState) -> bool:
         return False
     if unit.inside_since_ns is None:
         return False
-    duty.work_since_ns = unit.inside_since_ns
+    duty.work_since_ns = max(unit.inside_since_ns, duty.ready_ns)
     _note_due(state, duty)
     return True
 

@@ -63,6 +63,7 @@ class Duty(msgspec.Struct):
     checked_in_ns: int  # when a person last vouched for the wearer
     checked_in_by: str
     asks_ns: list[int] = msgspec.field(default_factory=list)  # calls not answered, oldest first
+    ready_ns: int = 0  # since when on duty and not at rest
     work_since_ns: int | None = None
     rest_since_ns: int | None = None
     due_ns: int = 0  # of the next check-in

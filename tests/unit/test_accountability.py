@@ -327,6 +327,38 @@ def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
     assert duty(script).work_since_ns is None, "who rests where it is warm does not work"
 
 
+def test_work_after_a_rest_is_counted_from_its_end(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(100)
+    script.act(SetRest("FF-01", True))
+    script.wait(100)
+    script.act(SetRest("FF-01", False))
+    assert duty(script).rest_due_ns is None
+    script.wait(1)
+    assert rest_left_s(script) == 119.0
+    assert rest_alarms(script) == []
+
+
+def test_who_takes_over_a_unit_has_not_worked_yet(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(100)
+    script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    script.wait(1)
+    assert rest_left_s(script) == 119.0
+
+
+def test_an_answer_that_comes_after_a_newer_word_changes_nothing(script: Script) -> None:
+    script.status("FF-01")
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(5)
+    pressed_s = script.now_s
+    script.wait(20)
+    script.act(CheckIn("FF-01", "", False))
+    answer(script, pressed_s)
+    assert left_s(script) == INTERVAL_S
+    assert duty(script).checked_in_by == "chief"
+
+
 def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
     script = Script()
     script.register("FF-01")
@@ -347,7 +379,8 @@ def test_nobody_rests_twice(script: Script) -> None:
         CheckIn("FF-01", "red", False),
         CheckIn("FF-09", "", False),
         SetAccountability(float("nan"), 2400.0),
-        SetAccountability(1.0, 2400.0),
+        SetAccountability(29.9, 2400.0),
+        SetAccountability(1200.0, 43_200.1),
         SetRest("FF-09", True),
     ],
 )
@@ -362,6 +395,16 @@ def test_what_makes_no_sense_is_refused_with_a_sentence(
     assert saved is not None
     assert after is not None
     assert saved.state.units == after.state.units
+
+
+@pytest.mark.parametrize(
+    ("par_s", "work_s", "opens"), [(30.0, 43_200.0, True), (29.9, 60.0, False)]
+)
+def test_an_incident_has_times_that_can_be_kept(par_s: float, work_s: float, opens: bool) -> None:
+    script = Script()
+    script.act(OpenIncident("i1", "Mill Lane", par_s, work_s))
+    assert (script.pipeline.state.incident is not None) is opens
+    assert len(refusals(script)) == (not opens)
 
 
 def test_an_old_log_has_the_usual_times() -> None:
