@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import pytest
 
+from base_station.accountability import warning_s
 from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
-from base_station.live_state import Duty, UnitState
+from base_station.live_state import Duty, Incident, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
     AlarmChange,
@@ -363,7 +364,31 @@ def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # it is carried in
+    script.wait(1)
     assert unit(script).duty is None
+    script.act(CheckIn("FF-01", "", False))
+    assert refusals(script) == ["nobody of FF-01 is on duty in an open incident"]
+
+
+def test_of_two_incidents_the_first_is_closed_before_the_second_opens(script: Script) -> None:
+    script.act(OpenIncident("i2", "Dock"))
+    script.act(CloseIncident("i2"))
+    assert refusals(script) == [
+        "the incident 'Mill Lane' is open; close it first",
+        "no open incident i2",
+    ]
+    assert left_s(script) == INTERVAL_S
+    script.act(CloseIncident("i1"))
+    script.act(CloseIncident("i1"))
+    assert refusals(script)[2:] == ["no open incident i1"]
+
+
+@pytest.mark.parametrize(("interval_s", "before_s"), [(600.0, 150.0), (2400.0, 300.0)])
+def test_a_check_in_is_announced_in_the_last_quarter_and_five_minutes_at_most(
+    interval_s: float, before_s: float
+) -> None:
+    assert warning_s(Incident("i1", "Mill Lane", 0, None, interval_s)) == before_s
 
 
 def test_nobody_rests_twice(script: Script) -> None:

@@ -8,10 +8,19 @@ import pytest
 
 from base_station.commands.book import CLOSED_KEPT, MOST_OPEN, unanswered
 from base_station.events import CommandTouched, Refused
+from base_station.live_state import FORGOTTEN
 from shared.channels import REPLY, backfilled_key
 from shared.codec import encode
 from shared.messages import CommandKind, CommandReply, CommandState
-from shared.messages.station import Assign, ConfirmCommand, SendCommand, Unassign
+from shared.messages.station import (
+    Assign,
+    CloseIncident,
+    ConfirmCommand,
+    ForgetWearers,
+    OpenIncident,
+    SendCommand,
+    Unassign,
+)
 from tests.station_script import Script
 
 RECEIVED, ACKNOWLEDGED = CommandState.RECEIVED, CommandState.ACKNOWLEDGED
@@ -226,6 +235,42 @@ def test_who_speaks_as_the_station_must_be_the_station():
     forged = CommandReply(script.header("FF-02"), "c1", ACKNOWLEDGED)
     script.record("muster/v1/FF-01/alert/reply", encode(forged))
     assert states(script) == {"FF-01": "queued"}
+
+
+def test_it_is_open_until_the_last_who_was_told_has_answered():
+    script = crewed()
+    script.act(order(crew="red"))
+    script.reply("FF-01", "c1", ACKNOWLEDGED)
+    assert script.pipeline.state.commands["c1"].is_open
+    script.wait(61)
+    assert states(script) == {"FF-01": "acknowledged", "FF-02": "expired"}
+
+
+def test_what_a_unit_did_too_late_is_done_all_the_same():
+    script = to_one(CommandKind.LOCATE)
+    script.wait(70)
+    script.reply("FF-01", "c1", RECEIVED)
+    assert states(script) == {"FF-01": "received"}
+
+
+def test_what_was_said_to_a_wearer_and_who_answered_is_forgotten():
+    script = crewed()
+    for number in (1, 2):
+        script.act(order(f"c{number}", CommandKind.TEXT, f"FF-0{number}", text=f"come, {number}"))
+        script.reply(f"FF-0{number}", f"c{number}", ACKNOWLEDGED)
+    script.act(ForgetWearers("FF-01"))
+    hers, his = script.pipeline.state.commands.values()
+    assert (hers.text, hers.deliveries["FF-01"].acknowledged_by) == (FORGOTTEN, FORGOTTEN)
+    assert (his.text, his.deliveries["FF-02"].acknowledged_by) == ("come, 2", "Person 2")
+
+
+def test_nobody_is_forgotten_while_an_incident_is_open():
+    script = to_one()
+    script.act(OpenIncident("i1", "Mill Lane"))
+    (refused,) = script.act(ForgetWearers("FF-01"))
+    assert isinstance(refused, Refused)
+    script.act(CloseIncident("i1"))
+    assert not any(isinstance(one, Refused) for one in script.act(ForgetWearers("FF-01")))
 
 
 def test_what_is_kept_is_bounded():

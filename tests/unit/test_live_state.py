@@ -171,6 +171,7 @@ def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> Non
         SetStart(U, math.nan, 0.0, 0.0, 0.0, 1.0, 0.1),
         SetStart(U, 0.0, 0.0, 0.0, 0.0, math.inf, 0.1),
         SetAnchor(90.1, 4.0, 0.0, 0.0),
+        SetAnchor(-90.1, 4.0, 0.0, 0.0),
         SetAnchor(52.0, -180.1, 0.0, 0.0),
         SetAnchor(52.0, math.nan, 0.0, 0.0),
     ],
