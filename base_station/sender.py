@@ -15,8 +15,9 @@ from shared.messages import Header
 
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
-BOOTS = 16  # runs of a unit's program that are told from each other
-WILD_NS = 60 * NS_PER_S  # more starts than that in a minute are nobody's program
+BOOTS = 1000  # runs of a unit's program of which it is known what came; older ones are not fetched
+STARTS = 16
+WILD_NS = 60 * NS_PER_S  # more starts than that in such a time are nobody's program
 TOGETHER_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -71,7 +72,7 @@ class Sender(msgspec.Struct):
 
     def starts_wildly(self, boot_id: int, t_ns: int) -> bool:
         """Whether a live message is of one more run than there can be."""
-        often = len(self.starts_ns) == BOOTS and t_ns - self.starts_ns[0] < WILD_NS
+        often = len(self.starts_ns) == STARTS and t_ns - self.starts_ns[0] < WILD_NS
         return often and self._known_boot(boot_id) is None
 
     def take_back(self, boot_id: int, seq: int) -> None:
@@ -107,7 +108,7 @@ class Sender(msgspec.Struct):
         boot = self._known_boot(boot_id)
         if boot is None:
             boot = BootState(boot_id)
-            self.starts_ns = [*self.starts_ns[1 - BOOTS :], t_ns]
+            self.starts_ns = [*self.starts_ns[1 - STARTS :], t_ns]
             self._let_run(boot)
         return boot
 

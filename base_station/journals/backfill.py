@@ -15,6 +15,7 @@ from functools import partial
 from threading import Condition, Thread
 from typing import NamedTuple
 
+from base_station.journals.pace import MOST_BYTES
 from base_station.journals.unit_journal import Held, Question, UnitJournal
 from shared.bus import Bus
 from shared.channels import ROOT, backfilled_key, unread_key
@@ -27,6 +28,7 @@ logger = logging.getLogger(__name__)
 
 AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES come
 _TIMEOUT_S = 10.0
+_MOST_CAME_BYTES = 8 * MOST_BYTES  # in answer to one question; what a unit says beyond is not kept
 
 Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
 Report = Mapping[str, tuple[Held, ...]]  # by unit, of units that are linked
@@ -67,6 +69,7 @@ class Backfill:
         self._turns: deque[str] = deque()  # units that may have something to be asked, by turns
         self._reported: Report = {}
         self._asking: dict[str, _Asked] = {}
+        self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
         self._news = Condition()
         self._report: Report | None = None
         self._urgent: list[tuple[_Asked, bytes | None]] = []
@@ -176,6 +179,8 @@ class Backfill:
     def _ask(self, unit_id: str, question: Question) -> None:
         asked = _Asked(unit_id, question, self._clock.monotonic_ns())
         self._asking[unit_id] = asked
+        with self._news:
+            self._came_bytes[unit_id] = 0
         try:
             self._bus.ask(
                 f"{ROOT}/{unit_id}/journal/{question.selector}",
@@ -191,6 +196,9 @@ class Backfill:
     def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
         """Called by a thread of the bus."""
         with self._news:
+            self._came_bytes[asked.unit_id] += len(reply or b"")
+            if reply is not None and self._came_bytes[asked.unit_id] > _MOST_CAME_BYTES:
+                return  # far more than was asked for
             (self._urgent if asked.question.urgent else self._replies).append((asked, reply))
             self._news.notify()
 

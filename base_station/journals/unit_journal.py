@@ -10,10 +10,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 from base_station.journals.pace import LEAST_BYTES, Pace
+from base_station.sender import BOOTS
 from shared.clock import NS_PER_S
+from shared.errors import WireError
 from shared.messages import JournalChunk, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
@@ -105,8 +108,8 @@ class UnitJournal:
         """
         self._silent = False
         runs_of = {one.boot_id: one.runs for one in held}
-        for boot_id in runs_of:
-            self._boots.setdefault(boot_id, _Boot())
+        known = dict.fromkeys((*self._indexed, *runs_of))
+        self._boots = {boot_id: self._boots.get(boot_id) or _Boot() for boot_id in known}
         for boot_id, boot in self._boots.items():
             boot.report(runs_of.get(boot_id, ()))
         if now_ns >= self._index_due_ns or not runs_of.keys() <= self._indexed.keys():
@@ -126,12 +129,17 @@ class UnitJournal:
         return self._ask_alerts() or self._ask_piece() or self._acknowledge()
 
     def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
-        """Learn from one reply; what it brings is to be kept.  Raises WireError."""
+        """Learn from one reply; what it brings is to be kept.
+
+        Raises WireError where it makes no sense, or is no answer to this question.
+        """
         self._told += 1
         if question.what in ("index", "acknowledge"):
             self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 1)
             return None
         chunk = JournalChunk.from_bytes(reply)
+        if not _answers(question, chunk):
+            raise WireError(f"boot {chunk.boot_id:x} from {chunk.from_seq} was not asked for")
         boot = self._boots.setdefault(chunk.boot_id, _Boot())
         if chunk.urgent_only:
             boot.urgent_known.add_run(Run(chunk.from_seq, chunk.to_seq))
@@ -163,8 +171,9 @@ class UnitJournal:
         """Two machines under one name both answer."""
         self._index_due_ns = now_ns + _INDEX_EVERY_NS
         before = {} if is_first else self._indexed
-        self._indexed = before | {one.boot_id: None for one in index.boots}
-        for one in index.boots:
+        newest = index.boots[-BOOTS:]
+        self._indexed = before | {one.boot_id: None for one in newest}
+        for one in newest:
             boot = self._boots.setdefault(one.boot_id, _Boot())
             boot.first = one.first_seq
             boot.newest = max(boot.newest, one.last_seq)
@@ -204,6 +213,14 @@ def _range(what: str, boot_id: int, run: Run, total: int, *, urgent: bool = Fals
     parameters = {"epoch": boot_id, "from": run.first, "to": run.last, "total": total}
     parameters["bytes"] = min(total, _REPLY_BYTES)
     return Question(what, tuple(parameters.items()), urgent)
+
+
+def _answers(question: Question, chunk: JournalChunk) -> bool:
+    asked = dict(question.parameters)
+    run = asked["from"] <= chunk.from_seq <= chunk.to_seq <= asked["to"]
+    seqs = [chunk.from_seq - 1, *(entry.seq for entry in chunk.entries), chunk.to_seq + 1]
+    in_order = all(one < other for one, other in pairwise(seqs))
+    return chunk.boot_id == asked["epoch"] and run and in_order
 
 
 def _union(one: SequenceSet, other: SequenceSet) -> SequenceSet:

@@ -161,12 +161,15 @@ class StubBus:
         self.asked: dict[str, ReplyHandler] = {}  # by unit; what is under way
         self.most = 0
         self.questions: list[tuple[str, str]] = []
+        self.first_asked: dict[str, int] = {}  # sequence number, by unit
 
     def ask(self, selector, payload, timeout_s, on_reply, *, urgent=False):
         unit_id, what = selector.split("/")[2], selector.split("/")[4].partition("?")[0]
         assert unit_id not in self.asked, "one question at a time"
         self.questions.append((unit_id, what))
         self.asked[unit_id] = on_reply
+        values = dict(pair.split("=") for pair in selector.partition("?")[2].split(";") if pair)
+        self.first_asked[unit_id] = int(values.get("from", 0))
         self.most = max(self.most, len(self.asked))
 
     def answer(self, unit_id: str, *replies: bytes) -> None:
@@ -194,7 +197,7 @@ def crowd():
         bus.answer(unit_id, index)
     until(lambda: len(bus.asked) == 40)
     for unit_id in units:
-        bus.answer(unit_id, JournalChunk(BOOT, 1, 101, (), urgent_only=True).to_bytes())
+        bus.answer(unit_id, JournalChunk(BOOT, 1, 100, (), urgent_only=True).to_bytes())
     report()
     yield bus, report
     backfill.close()
@@ -214,8 +217,9 @@ def test_units_take_turns_and_one_that_is_silent_holds_up_none(crowd):
     for _ in range(200):
         until(lambda: len(bus.asked) == AT_ONCE)
         unit_id = next(one for one in bus.asked if one != silent)
-        piece = JournalEntry(1, "up/position", b"one")
-        bus.answer(unit_id, JournalChunk(BOOT, 1, 1, (piece,)).to_bytes())
+        first = bus.first_asked[unit_id]
+        piece = JournalEntry(first, "up/position", b"one")
+        bus.answer(unit_id, JournalChunk(BOOT, first, first, (piece,)).to_bytes())
     turns = Counter(unit_id for unit_id, what in bus.questions if what == "range")
     assert turns.pop(silent) == 1
     assert len(turns) == 39
@@ -246,9 +250,10 @@ def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
         if payload == b"old":
             go.wait()
 
-    def chunk(payload: bytes, suffix: str, last: int, *, urgent_only: bool) -> bytes:
-        entries = (JournalEntry(1, suffix, payload),)
-        return JournalChunk(BOOT, 1, last, entries, urgent_only=urgent_only).to_bytes()
+    def chunk(unit_id: str, payload: bytes, suffix: str, *, urgent_only: bool) -> bytes:
+        first = bus.first_asked[unit_id]
+        entries = (JournalEntry(first, suffix, payload),)
+        return JournalChunk(BOOT, first, 100, entries, urgent_only=urgent_only).to_bytes()
 
     def report() -> None:
         tell(backfill, {unit_id: (Held(BOOT, (Run(101, 101),)),) for unit_id in "ABC"})
@@ -261,13 +266,13 @@ def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
         bus.answer(unit_id, JournalIndex((JournalBoot(BOOT, 1, 101, 0, 0),)).to_bytes())
     until(lambda: len(bus.asked) == 3)
     for unit_id in "AB":
-        bus.answer(unit_id, JournalChunk(BOOT, 1, 101, (), urgent_only=True).to_bytes())
+        bus.answer(unit_id, JournalChunk(BOOT, 1, 100, (), urgent_only=True).to_bytes())
     report()
     until(lambda: [what for _, what in bus.questions].count("range") == 2)
-    bus.answer("A", chunk(b"old", "up/position", 1, urgent_only=False))
+    bus.answer("A", chunk("A", b"old", "up/position", urgent_only=False))
     until(lambda: delivered == [b"old"])
-    bus.answer("B", chunk(b"old too", "up/position", 1, urgent_only=False))
-    bus.answer("C", chunk(b"fall", "alert/event", 101, urgent_only=True))
+    bus.answer("B", chunk("B", b"old too", "up/position", urgent_only=False))
+    bus.answer("C", chunk("C", b"fall", "alert/event", urgent_only=True))
     go.set()
     until(lambda: len(delivered) == 3)
     backfill.close()
@@ -285,3 +290,24 @@ def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
     bench.spool.close()
     keys = {parse_unread_key(key): payload for key, payload in bench.delivered}
     assert keys == {("FF-01", BOOT, n): rotten[n] for n in rotten}
+
+
+def test_what_a_unit_answers_far_beyond_what_was_asked_is_not_kept(monkeypatch):
+    monkeypatch.setattr("base_station.journals.backfill._MOST_CAME_BYTES", 1000)
+    bus, delivered = StubBus(), []
+    backfill = Backfill(cast("Bus", bus), lambda *one: delivered.append(one), ManualClock())
+    backfill.start()
+    report = {"A": (Held(BOOT, (Run(101, 101),)),)}
+    tell(backfill, report)
+    until(lambda: len(bus.asked) == 1)
+    bus.answer("A", JournalIndex((JournalBoot(BOOT, 1, 101, 0, 0),)).to_bytes())
+    until(lambda: len(bus.asked) == 1)
+    chunks = [
+        JournalChunk(BOOT, n, n, (JournalEntry(n, "alert/event", bytes(100)),), urgent_only=True)
+        for n in range(1, 100)
+    ]
+    bus.answer("A", *(one.to_bytes() for one in chunks))
+    until(lambda: len(bus.questions) == 3, "it is asked for the rest")
+    backfill.close()
+    assert 0 < len(delivered) < 10
+    assert bus.first_asked["A"] == len(delivered) + 1

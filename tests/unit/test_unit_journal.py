@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from base_station.journals.unit_journal import Held, Question, UnitJournal
+from base_station.sender import BOOTS
+from shared.errors import WireError
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 
@@ -130,11 +132,13 @@ def test_of_two_machines_under_one_name_both_journals_are_known() -> None:
 
 def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), last=30)
-    for what in ("urgent", "range"):
+    for what in ("urgent", "range", "range"):
         journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 1)
         question = journal.next_question() or Question("none")
         assert question.what == what
-        answer(journal, question, JournalChunk(BOOT, 11, 20, (), urgent_only=what == "urgent"))
+        asked = dict(question.parameters)
+        chunk = JournalChunk(BOOT, asked["from"], asked["to"], (), urgent_only=what == "urgent")
+        answer(journal, question, chunk)
     for _ in range(5):
         journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 2)
     assert next_of(journal)[0] == "acknowledge"  # nobody has them
@@ -142,3 +146,36 @@ def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> 
     journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 3)
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+
+
+def test_an_answer_to_another_question_is_not_believed() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30))
+    question = journal.next_question()
+    assert question is not None
+    entry = JournalEntry(12, "alert/event", b"")
+    for chunk in (
+        JournalChunk(BOOT + 1, 11, 20, ()),
+        JournalChunk(BOOT, 1, 20, ()),
+        JournalChunk(BOOT, 11, 2**63, ()),
+        JournalChunk(BOOT, 20, 11, ()),
+        JournalChunk(BOOT, 13, 20, (entry,)),
+        JournalChunk(BOOT, 11, 20, (entry, entry)),
+    ):
+        with pytest.raises(WireError):
+            journal.take(question, chunk.to_bytes(), 1)
+
+
+def test_of_any_number_of_runs_the_newest_are_asked_for() -> None:
+    journal = UnitJournal()
+    journal.report((Held(BOOTS + 5, (Run(1, 3),)),), 0)
+    indexed(journal, *(JournalBoot(number, 1, 3, 0, 0) for number in range(1, BOOTS + 6)))
+    assert len(journal._boots) <= BOOTS
+    journal.report((Held(BOOTS + 5, (Run(1, 3),)),), 1)
+    asked = []
+    for _ in range(5):
+        question = journal.next_question()
+        assert question is not None
+        epoch = dict(question.parameters)["epoch"]
+        asked.append(epoch)
+        answer(journal, question, JournalChunk(epoch, 1, 3, (), urgent_only=True))
+    assert asked == [BOOTS + 4 - number for number in range(5)]

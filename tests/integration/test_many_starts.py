@@ -1,0 +1,66 @@
+"""A unit's program that has started again and again: each message is in the log once."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from contextlib import ExitStack, closing
+from pathlib import Path
+
+import pytest
+
+from base_station.bench.rig.said import position
+from base_station.journals.backfill import Backfill
+from base_station.sender import STARTS
+from edge.journal_server import JournalServer
+from edge.spool import Journaled, Spool
+from shared.channels import POSITION
+from shared.clock import NS_PER_S, SystemClock
+from shared.codec import encode
+from shared.messages import Header
+from shared.messages.station import RegisterUnit
+from tests.live_station import LiveStation
+from tests.waiting import until
+
+U = "FF-01"
+MESSAGES = 5
+RUNS = STARTS + 9  # so quickly after each other that some are left to the journal
+
+
+@pytest.mark.timeout(120)
+def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
+    tmp_path: Path,
+) -> None:
+    boot_ids = itertools.count(1)
+    said: list[bytes] = []
+    with LiveStation(tmp_path / "station") as station, ExitStack() as stack:
+        station.act(RegisterUnit(U, "one"))
+        for run in range(RUNS):
+            spool = Spool(tmp_path / "journal.sqlite", boot_ids.__next__, 0, 10**9)
+            stack.callback(spool.close)
+            messages = [
+                position(Header(U, spool.boot_id, seq, (10 * run + seq) * NS_PER_S))
+                for seq in range(1, MESSAGES + 1)
+            ]
+            spool.append([Journaled(one.header.seq, POSITION, 0, encode(one)) for one in messages])
+            said += map(encode, messages)
+            for one in messages:
+                station.say(one)
+        server = JournalServer(U, spool)
+        station.router.attach_unit().serve(server.key_expression, server.replies)
+        backfill = Backfill(station.bus, station.feed.deliver, SystemClock())
+        stack.enter_context(closing(backfill))
+        stack.callback(station.feed.close)
+        backfill.start()
+
+        def counts() -> set[int]:
+            backfill.report(station.reported)
+            logged = Counter(payload for _, _, payload in station.log.records())
+            return {logged[payload] for payload in said}
+
+        until(lambda: counts() == {1}, "all of it is there")
+        for _ in range(3):
+            station.reported = {}
+            until(lambda: station.reported, "the next report")
+            assert counts() == {1}
+        assert backfill.fetched == (RUNS - STARTS) * MESSAGES
