@@ -59,6 +59,7 @@ from shared.messages import (
     Tick,
     UnitEvent,
 )
+from shared.messages.station import SetAnchor, SetPlan
 
 _CAN_WAIT = (Status, Temperature, Heartbeat)  # said again in a second, and slow to change
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
@@ -152,6 +153,9 @@ class StationPipeline:
                 outputs.extend(self._repin(effect.unit_ids))
             else:
                 outputs.append(UnitTouched(effect.unit_id))
+        if isinstance(message.action, SetAnchor | SetPlan):  # who is silent was seen there too
+            shown = [unit for unit in self.state.units.values() if unit.fused is not None]
+            outputs.extend(output for unit in shown for output in self._fuse(unit))
         return outputs
 
     def _hear(self, event: Received, channel: Channel) -> list[Output]:

@@ -15,6 +15,7 @@ from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
 from base_station.views import StationFacts, health_view, snapshot
 from shared.messages import EventKind, Heartbeat
+from shared.messages.pins import SetPin
 from shared.messages.station import (
     Assign,
     OpenIncident,
@@ -32,6 +33,10 @@ OUTLINE = (
     b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"type":"Feature",'
     b'"properties":{"kind":"outline"},"geometry":{"type":"Polygon","coordinates":'
     b"[[[-10,10],[10,10],[10,30],[-10,30],[-10,10]]]}}]}"
+)
+STOREYS = (
+    b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":3,"down_m":-50}]},'
+    b'"features":[]}'
 )
 
 
@@ -183,6 +188,32 @@ def test_a_place_that_cannot_be_is_refused_in_words(
     assert [type(output) for output in outputs] == [Refused]
     assert script.pipeline.state.anchor is None
     assert not script.pipeline.state.start_set
+
+
+def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
+    script: Script,
+) -> None:
+    """The first good fix said where the frame lies; then somebody says it better."""
+    for second in range(20):
+        script.now_s += 1.0
+        script.position(U, float(second), 0.0)
+        script.gps(U, 52.0 + second * 9e-6, 4.0, horizontal_std_m=2.0)
+    script.act(SetPin("p1", U, script.t_ns, 19.0, 0.0, 1.0, None, 0.1, 0.5, ""))
+    script.wait(60)
+    before = unit(script).fused
+    assert before is not None
+    script.act(SetAnchor(51.999, 4.0, 0.0, math.pi / 2.0))
+    script.act(SetPlan(STOREYS))
+    after = unit(script).fused
+    assert after is not None
+    place, last = (after.north_m, after.east_m), unit(script).trail[-1]
+    assert place == pytest.approx((before.east_m, -111.3 - before.north_m), abs=1.0)
+    assert place == pytest.approx((last.north_m, last.east_m), abs=0.5)
+    assert after.t_meas_ns == before.t_meas_ns
+    assert after.floor == 3
+    pin = script.pipeline.state.pins["p1"]
+    assert (pin.north_m, pin.east_m) == pytest.approx((0.0, -111.3 - 19.0), abs=1.0)
+    assert pin.heading_rad == pytest.approx(0.1 - math.pi / 2.0)
 
 
 def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
