@@ -170,6 +170,7 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         lost,
         link="lost",
         last_heard_ms=NOW_MS - 71_000,
+        status_ms=NOW_MS - 72_000,
         position=position(3, 71_000),
         trust=wire.TrustView("red", "not heard: shown where it last was"),
     )

@@ -31,6 +31,26 @@ def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
     expect(calm).not_to_have_class(re.compile("brief"))  # who is chosen is shown whole
 
 
+def test_what_somebody_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    silent = page.locator(".card", has_text="Tomas Novak").locator(".activity")
+    expect(silent).to_contain_text("1 min old")
+    heard = page.locator(".card", has_text="Mira Okafor").locator(".activity")
+    expect(heard).to_have_text("Walking")
+
+
+def test_whoever_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    lost = scenes.crowd().alarms[3]
+    page.locator(".card").last.scroll_into_view_if_needed()
+    strip(page).get_by_role("button", name=lost.text).first.click()
+    actions = page.get_by_role("group", name="For Tomas Novak")
+    expect(actions).to_be_in_viewport(ratio=1)
+    expect(page.locator(".card.chosen .name")).to_be_in_viewport(ratio=1)
+    page.locator(".card.normal").nth(5).get_by_role("button").first.click()  # at the lower edge
+    expect(page.locator(".card-actions")).to_be_in_viewport(ratio=1)
+
+
 def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
     """The button to acknowledge is followed at its place by the one to resolve."""
     page, station = stage.open(scenes.bad_minute())
@@ -166,7 +186,8 @@ def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
     assert sent.value.post_data_json == {"at_ms": last_ms - 5000}
     with page.expect_request(re.compile("/replays/r1$")) as sent:
         bar.get_by_label("Go to an alarm").select_option(index=1)
-    assert sent.value.post_data_json == {"at_ms": scenes.PAST_ALARMS[0]["raised_ms"] - 5000}
+    first_ms = min(alarm["raised_ms"] for alarm in scenes.PAST_ALARMS)
+    assert sent.value.post_data_json == {"at_ms": first_ms - 5000}, "as they were raised"
     expect(bar.get_by_role("button", name="Next alarm")).to_be_disabled()
     expect(page.get_by_role("button", name="Evacuate")).to_have_count(0)
 

@@ -53,6 +53,18 @@ def test_dialogs_fit_every_screen(stage: Stage) -> None:
         page.set_viewport_size({"width": 1280, "height": 800})
 
 
+def test_nothing_of_a_dialog_lies_beside_a_phone(stage: Stage) -> None:
+    """Who has one hand does not look for a button to the right of the screen."""
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    for name in ("Incidents", "Units", "People"):
+        page.get_by_role("button", name="Menu").click()
+        dialog = menu(page, name)
+        dialog.get_by_role("row").nth(1).wait_for()
+        beyond_px = dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth")
+        assert beyond_px <= 0, name
+        close(dialog)
+
+
 def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     tools = page.get_by_role("group", name="On the plan")

@@ -116,16 +116,16 @@ function Tokens({ role }: { role: api.Role }) {
           Copy it now, it is not shown again: <code>{made.value}</code>
         </p>
       )}
-      <table>
+      <table class="stacked">
         <Columns names={["Token", "May", "Valid until"]} spoken="Remove" />
         <tbody>
           {(tokens.value ?? []).map((token) => (
             <tr key={token.token_id}>
               <th scope="row">{token.name}</th>
-              <td>
+              <td data-label="May">
                 {token.role}, {token.scopes.length === 0 ? "all parts" : token.scopes.join(", ")}
               </td>
-              <td>{token.expires_ms === null ? "always" : dateAndTime(token.expires_ms)}</td>
+              <td data-label="Valid until">{token.expires_ms === null ? "always" : dateAndTime(token.expires_ms)}</td>
               <td>
                 <ConfirmButton
                   label="Remove"

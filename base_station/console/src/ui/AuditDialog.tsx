@@ -13,7 +13,7 @@ export function AuditDialog() {
   const names = new Map((people.value ?? []).map((person) => [person.person_id, person.name]));
   return (
     <Dialog title="Audit log" wide>
-      <table class="audit">
+      <table class="audit stacked">
         <Columns names={["When", "Who", "Did", "What"]} />
         <tbody>
           {entries.value.map((entry) => (

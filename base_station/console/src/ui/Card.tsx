@@ -1,9 +1,12 @@
+import type { RefObject } from "preact";
 import { memo } from "preact/compat";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { select, selectedUnit } from "../view";
+import { centring, select, selectedUnit } from "../view";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
+import { OLD_MS } from "../plan/ellipse";
 import type { AlarmView, UnitView } from "../wire";
 import * as words from "../words";
 import { CardActions } from "./CardActions";
@@ -23,13 +26,14 @@ interface Props {
 
 export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
+  const chosen = selectedUnit.value === unitId;
+  const card = useInSight(chosen);
   if (unit === undefined) return null;
   const name = displayName(unit);
-  const chosen = selectedUnit.value === unitId;
   const unheard = unit.link === "lost" || unit.link === "never";
   const short = brief && !chosen && urgency === "normal" && isUsual(unit);
   return (
-    <li class={`card ${urgency} ${flags({ unheard, chosen, brief: short })}`} data-unit={unitId}>
+    <li class={`card ${urgency} ${flags({ unheard, chosen, brief: short })}`} data-unit={unitId} ref={card}>
       <button
         type="button"
         class="card-head"
@@ -44,7 +48,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
             <span class="quiet">{crewAndRole(unit)}</span>
             <ParMark unit={unit} picture={picture} />
           </span>
-          <Activity unit={unit} />
+          <Activity unit={unit} picture={picture} />
         </span>
       </button>
       <OpenAlarms unit={unit} alarms={picture.alarms.value} />
@@ -63,6 +67,16 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
   );
 });
 
+/** Whoever was chosen, here, on the plan or by an alarm, is to be seen with all that can be done. */
+function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
+  const card = useRef<HTMLLIElement>(null);
+  const asked = chosen ? centring.value : 0;
+  useLayoutEffect(() => {
+    if (asked > 0) card.current?.scrollIntoView({ block: "nearest" });
+  }, [asked]);
+  return card;
+}
+
 /** Heard, placed and known: what there is to say of it is usual. */
 function isUsual({ position, person, status, link, cloned }: UnitView): boolean {
   const known = position !== null && person !== null && status !== null;
@@ -79,12 +93,14 @@ function crewAndRole(unit: UnitView): string {
   return [unit.person.crew, unit.person.role].filter((word) => word !== "").join(" · ");
 }
 
-function Activity({ unit }: { unit: UnitView }) {
+function Activity({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const mayday = unit.status?.mayday ?? false;
+  const oldMs = unit.status_ms === null ? 0 : picture.nowMs.value - unit.status_ms;
   return (
     <span class={`activity ${mayday ? "mayday" : ""}`}>
       <Icon name={mayday ? "alarm" : activityOrNone(unit)} />
       {words.activityOf(unit)}
+      {oldMs >= OLD_MS && <small class="old-mark">{words.age(oldMs)} old</small>}
     </span>
   );
 }

@@ -22,7 +22,7 @@ export function IncidentsDialog() {
     <Dialog title="Incidents" wide>
       {mayAct.value && running === null && <OpenForm done={again} />}
       {mayAct.value && running !== null && (
-        <p class="row">
+        <p class="row said">
           <span>
             <strong>{running.name}</strong> is open.
           </span>
@@ -34,15 +34,15 @@ export function IncidentsDialog() {
         </p>
       )}
       {mayAct.value && running !== null && <TimesForm incident={running} />}
-      <table>
+      <table class="stacked">
         <caption>Incidents so far</caption>
         <Columns names={forgets ? [...COLUMNS, "Personal data"] : COLUMNS} />
         <tbody>
           {entries.value.map((incident) => (
             <tr key={incident.incident_id}>
               <th scope="row">{incident.name}</th>
-              <td>{dateAndTime(incident.opened_ms)}</td>
-              <td>
+              <td data-label="Opened">{dateAndTime(incident.opened_ms)}</td>
+              <td data-label="Lasted">
                 {incident.closed_ms === null
                   ? "open"
                   : minutes(incident.closed_ms - incident.opened_ms)}

@@ -12,7 +12,7 @@ export function PeopleDialog() {
   return (
     <Dialog title="People" wide>
       <PersonForm done={again} />
-      <table>
+      <table class="stacked">
         <Columns names={["Name", "Crew", "Role", "Photo"]} spoken="Change" />
         <tbody>
           {(people.value ?? []).map((person) => (
@@ -20,6 +20,7 @@ export function PeopleDialog() {
           ))}
         </tbody>
       </table>
+      {people.value?.length === 0 && <p class="quiet">Nobody yet. Add whoever may wear a unit.</p>}
     </Dialog>
   );
 }
@@ -52,9 +53,9 @@ function PersonRow({ person, done }: RowProps) {
           {person.name}
         </span>
       </th>
-      <td>{person.crew}</td>
-      <td>{person.role}</td>
-      <td>
+      <td data-label="Crew">{person.crew}</td>
+      <td data-label="Role">{person.role}</td>
+      <td data-label="Photo">
         <input
           type="file"
           accept="image/*"

@@ -10,7 +10,7 @@ export function PlaceFields({ start }: { start?: { north_m: number; east_m: numb
   return (
     <fieldset class="place">
       <legend>
-        {at === undefined ? "Click on the plan, or give the place:" : "Place (click to change it)"}
+        {at === undefined ? "Click on the plan, or type:" : "Place (click to change it)"}
       </legend>
       <Metres name="north" label="North, m" value={at?.north_m} />
       <Metres name="east" label="East, m" value={at?.east_m} />

@@ -29,6 +29,9 @@ export function PlanTools({ picture }: { picture: Picture }) {
           {conflicts > 0 && `, ${conflicts} in conflict`}
         </ToolButton>
       )}
+      {picture.ready.value && picture.plan.value === null && (
+        <p class="quiet">No plan: people are shown on a metre grid. A plan is loaded under Site.</p>
+      )}
     </div>
   );
 }

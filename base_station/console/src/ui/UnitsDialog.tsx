@@ -18,7 +18,7 @@ export function UnitsDialog() {
   return (
     <Dialog title="Units and who wears them" wide>
       <RegisterForm />
-      <table class="units">
+      <table class="units stacked">
         <Columns
           names={[
             "Unit",
@@ -47,6 +47,9 @@ export function UnitsDialog() {
           })}
         </tbody>
       </table>
+      {ids.length === 0 && (
+        <p class="quiet">None yet. One that is switched on appears here by itself.</p>
+      )}
     </Dialog>
   );
 }
@@ -66,15 +69,17 @@ function UnitRow({ unit, people, calibration }: RowProps) {
         {linkWord(unit.link)}
         {unit.cloned && <small class="warned"> {TWO_MACHINES}</small>}
       </td>
-      <td>
+      <td data-label="Clock">
         <UnitClock clock={unit.clock} />
       </td>
-      <td>{unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}</td>
-      <td>
+      <td data-label="Worn by">
+        {unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}
+      </td>
+      <td data-label="Calibration">
         <Calibration unit={unit} calibration={calibration} />
       </td>
-      <td>{unit.registered && <Rate unitId={unit.unit_id} />}</td>
-      <td>{unit.registered && <Recording unitId={unit.unit_id} />}</td>
+      <td data-label="Positions a second">{unit.registered && <Rate unitId={unit.unit_id} />}</td>
+      <td data-label="Raw recording">{unit.registered && <Recording unitId={unit.unit_id} />}</td>
     </tr>
   );
 }

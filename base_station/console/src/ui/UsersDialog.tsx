@@ -11,7 +11,7 @@ export function UsersDialog() {
   return (
     <Dialog title="Users" wide>
       <NewUser done={again} />
-      <table>
+      <table class="stacked">
         <Columns names={["User", "Role", "New password", "Logged in"]} spoken="Remove" />
         <tbody>
           {(users.value ?? []).map((user) => (
@@ -63,7 +63,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
         {username}
         {username === me.value?.username && <small> (you)</small>}
       </th>
-      <td>
+      <td data-label="Role">
         <select
           aria-label={`Role of ${username}`}
           value={user.role}
@@ -77,7 +77,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
           ))}
         </select>
       </td>
-      <td>
+      <td data-label="New password">
         <form
           class="inline"
           onSubmit={(event) => {
@@ -98,7 +98,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
           <button>Set</button>
         </form>
       </td>
-      <td>
+      <td data-label="Logged in">
         {user.sessions === 0 ? (
           "no"
         ) : (
