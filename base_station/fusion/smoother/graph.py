@@ -18,6 +18,7 @@ from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise,
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.landmarks import Landmark, Visit, Visited
 from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
+from base_station.fusion.smoother.lines import Line, add_line, find_lines
 from base_station.fusion.smoother.live_estimates import add_shown
 from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
 from base_station.fusion.smoother.path_equations import add_path, add_places, add_seen
@@ -43,6 +44,7 @@ class Graph:
         self.shown: dict[str, Ints] = {}  # rows where the live estimate is heeded
         self.words: dict[str, Words] = {}  # of walls
         self.landmarks: list[Landmark] = []
+        self._lines: list[Line] = []
         self.beliefs = {one: Belief.none(len(chain)) for one, chain in chains.items()}
         self._columns: dict[str, slice] = {}
         first = 0
@@ -50,8 +52,8 @@ class Graph:
             self._columns[unit_id] = slice(first, first + STATES * len(chain))
             first = self._columns[unit_id].stop
         self.shared = Shared(first, units)
-        bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
-        self.visited = Visited(bases, self.beliefs)
+        self._bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
+        self.visited = Visited(self._bases, self.beliefs)
         self._legs = {unit_id: Legs.of(chain) for unit_id, chain in chains.items()}
         self._axis_rad: float | None = None
         self._normal: NormalEquations
@@ -65,6 +67,17 @@ class Graph:
         self.landmarks += landmarks
         for one in landmarks:
             self.shared.add_landmarks(self.visited.places_m(one).mean(axis=0))
+
+    def find_lines(self) -> bool:
+        """Lines that people walk along again and again, as it looks now, in place of those found
+        before; false: there are and were none.
+        """
+        if self._axis_rad is None:
+            return False
+        before, spreads = self._lines, self.own_spreads()
+        self._lines = find_lines(self._legs, self.beliefs, spreads, self._axis_rad)
+        self.shared.set_lines(len(self._lines))
+        return bool(before or self._lines)
 
     def relax(self, noise: WalkNoise) -> None:
         """Solve from the beginning, and then about that."""
@@ -116,6 +129,10 @@ class Graph:
         for landmark, place_m in zip(self.landmarks, shared.landmarks_m, strict=True):
             self.visited.add(equations, landmark, column, place_m)
             column += 2
+        if self._axis_rad is not None:
+            axis = self._axis_rad, shared.axis
+            for column, line in enumerate(self._lines, start=shared.lines):
+                add_line(equations, line, column, axis, self._bases, self.beliefs)
         return equations.normal(self._columns, STATES)
 
     def _align(self) -> None:

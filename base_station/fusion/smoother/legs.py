@@ -24,6 +24,7 @@ from base_station.fusion.learnt.legs import (
     evidence,
     remember,
 )
+from base_station.fusion.learnt.stairs import SLOPE
 from base_station.fusion.path.points import BREAK, RESTART, PathArrays
 from base_station.fusion.smoother.chain import STATES, Belief, Chain
 from base_station.fusion.smoother.equations import Equations
@@ -46,6 +47,10 @@ class Legs:
     direction_rad: Floats  # own frame
     length_m: Floats
     variance: Floats
+    middle_knot: Ints  # before its middle
+    since_m: Floats  # (n, 2) own path from that knot to the middle
+    down_m: Floats  # of the middle
+    climbs: NDArray[np.bool_]
 
     @staticmethod
     def of(chain: Chain) -> Legs:
@@ -62,14 +67,33 @@ class Legs:
                 variance = WALLS_STD_RAD**2 + (ASIDE_M / leg.length_m) ** 2
                 found.append((leg.direction_rad, leg.length_m, variance))
         knot = np.searchsorted(chain.knots, np.array(rows, dtype=np.int64), side="right") - 1
-        columns = np.array(found).reshape(-1, 3).T
-        return Legs(knot, *columns)
+        direction_rad, length_m, variances = np.array(found).reshape(-1, 3).T
+        middles = _middles(chain, np.array(rows, dtype=np.int64), length_m)
+        return Legs(knot, direction_rad, length_m, variances, *middles)
 
     def turned_rad(self, belief: Belief) -> Floats:
         """Their directions in the incident frame, as it is believed."""
         turn = belief.x[self.knot, 2:4]
         directions: Floats = np.arctan2(turn[:, 1], turn[:, 0]) + self.direction_rad
         return directions
+
+
+def _middles(
+    chain: Chain, rows: Ints, length_m: Floats
+) -> tuple[Ints, Floats, Floats, NDArray[np.bool_]]:
+    """Of legs that end at these rows of the path: the knot before the middle, the own path from
+    there (n, 2), how far down it lies, and whether the leg climbs.
+    """
+    path = chain.path
+    steps_m = np.hypot(*np.diff(path.own_m, axis=0).T) if len(path) > 1 else np.zeros(0)
+    walked_m = np.concatenate(([0.0], np.cumsum(steps_m)))
+    middle_m = walked_m[rows] - 0.5 * length_m
+    own_m = np.column_stack([np.interp(middle_m, walked_m, axis) for axis in path.own_m.T])
+    down_m = np.interp(middle_m, walked_m, path.down_m)
+    rise_m = path.down_m[rows] - np.interp(walked_m[rows] - length_m, walked_m, path.down_m)
+    before = np.maximum(np.searchsorted(walked_m, middle_m, side="right") - 1, 0)
+    knot = np.searchsorted(chain.knots, before, side="right") - 1
+    return knot, own_m - chain.own_m[knot], down_m, np.abs(rise_m) > SLOPE * length_m
 
 
 def axis_of(legs: Mapping[str, Legs], beliefs: Mapping[str, Belief]) -> float | None:

@@ -33,6 +33,7 @@ Floats = NDArray[np.float64]
 
 TIE_TAIL = 3.0  # standard deviations from which a meeting counts less
 SWEEPS = 6  # over what walls say
+LINE_SWEEPS = 2  # over which lines legs are of
 CONTRADICTED = 0.3  # of log weight lost a piece, on the mean: the plan or the path is wrong
 
 
@@ -137,12 +138,17 @@ class _Solving:
             graph.step(self._noise)
 
     def close_loops(self) -> None:
-        """Where trails lead over the same stairs again, they are drawn together."""
+        """Where trails lead over the same stairs again, or along the same line, they are drawn
+        together.  Where a plan's walls are heeded they tell more.
+        """
         graph = self._graph
         stairs = find_stairs(graph.chains, graph.beliefs, graph.own_spreads())
         if stairs:
             graph.lead_through(stairs)
             graph.settle(self._noise)
+        for _ in range(0 if graph.words else LINE_SWEEPS):
+            if graph.find_lines():
+                graph.settle(self._noise)
 
     def solution(self) -> Solution:
         graph = self._graph

@@ -31,7 +31,8 @@ SKY_S = 600.0  # from one knot of the common error to the next
 class Shared:
     """Columns behind those of the chains: what has to be added to the building's axis, and pairs
     of north and east: how far off each place is where units begin, the receivers' common error at
-    knots of time, how far off the plan lies, and landmarks.
+    knots of time, how far off the plan lies, and landmarks.  At the end, how far across each line
+    lies that people walk along.
     """
 
     def __init__(self, first: int, units: Mapping[str, UnitEvidence]) -> None:
@@ -50,7 +51,7 @@ class Shared:
             best_m = min(u.path.fix_std_m.min() for u in units.values() if len(u.path.fix_t_ns))
             self.sky_std_m = float(np.sqrt(common_m2(best_m)))
         self.plan = self._sky + 2 * len(self._sky_t_ns)
-        self.landmarks = self.end = self.plan + 2
+        self.landmarks = self.lines = self.end = self.plan + 2
         self._x = np.zeros(self.end - first)  # as last believed
 
     def add_priors(self, equations: Equations) -> None:
@@ -86,17 +87,21 @@ class Shared:
         return (columns, 1.0 - part), (behind, part)
 
     def add_landmarks(self, places_m: Floats) -> None:
-        """More of them (n, 2), believed there."""
+        """More of them (n, 2), believed there; before any lines."""
         self._x = np.concatenate((self._x, places_m.ravel()))
-        self.end += places_m.size
+        self.lines = self.end = self.end + places_m.size
+
+    def set_lines(self, count: int) -> None:
+        """In place of those there were."""
+        self.end = self.lines + count
 
     def forget(self) -> None:
         """Believe nothing any more."""
-        self._x = np.zeros(self.end - self.axis)
+        self._x = np.zeros(self.lines - self.axis)
 
     def take(self, x: Floats) -> None:
         """Believe a solution."""
-        self._x = x[self.axis :]
+        self._x = x[self.axis : self.lines]
 
     @property
     def plan_m(self) -> Floats:
