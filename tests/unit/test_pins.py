@@ -9,12 +9,13 @@ import pytest
 from base_station.checkpoint import read_checkpoint
 from base_station.events import PinsTouched, Refused, TrailFilled
 from shared.messages.pins import (
+    RemoveBeacon,
     RemovePin,
     SetMeeting,
     SetPin,
     StartTogether,
 )
-from shared.messages.station import CloseIncident, OpenIncident, SetPlan
+from shared.messages.station import CloseIncident, ForgetWearers, OpenIncident, SetPlan
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
 from tests.station_script import START_NS, Script
@@ -224,6 +225,57 @@ def test_bad_pins_are_refused_with_a_sentence(
     assert sentence in refused.reason
     assert walk.script.pipeline.state.pins == {}
     assert walk.trail("FF-01") == before
+
+
+@pytest.mark.parametrize(
+    ("other_id", "t_s", "std_m", "sentence"),
+    [
+        ("FF-01", 0.0, 1.0, "cannot meet itself"),
+        ("nobody", 0.0, 1.0, "no registered unit"),
+        ("FF-02", 9.0, 1.0, "is 9 s in the future"),
+        ("FF-02", -31.0, 1.0, "is 12 s before the path of FF-01"),
+        ("FF-02", 0.0, 0.0, "more than 0"),
+    ],
+)
+def test_bad_meetings_are_refused_with_a_sentence(
+    other_id: str, t_s: float, std_m: float, sentence: str
+) -> None:
+    walk = Walk("FF-01")
+    walk.go(20)
+    walk.script.register("FF-02")
+    t_ns = walk.script.t_ns + round(t_s * 1e9)
+    outputs = walk.script.act(SetMeeting("m", "FF-01", other_id, t_ns, std_m, ""))
+    (refused,) = [output for output in outputs if isinstance(output, Refused)]
+    assert sentence in refused.reason
+    assert walk.script.pipeline.state.pins == {}
+
+
+def test_what_is_not_there_cannot_be_removed() -> None:
+    for action in (RemovePin("p"), RemoveBeacon("b")):
+        (refused,) = Script().act(action)
+        assert isinstance(refused, Refused)
+
+
+def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("base_station.pins.book.MOST_PINS", 2)
+    walk = Walk("FF-01")
+    walk.go(20)
+    for pin_id in ("p1", "p2", "p2", "p3"):
+        walk.pin(pin_id, "FF-01", 10.0)
+    assert list(walk.script.pipeline.state.pins) == ["p1", "p2"]
+    assert [type(one) for one in walk.script.outputs].count(Refused) == 1
+
+
+def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
+    both = Walk("FF-01", "FF-02", "FF-03")
+    both.go(20)
+    for unit_id in both.units:
+        both.pin(f"of {unit_id}", unit_id, 10.0)
+    both.script.act(SetMeeting("m", "FF-01", "FF-02", both.script.t_ns, 1.0, ""))
+    both.script.act(CloseIncident("i1"))
+    both.script.act(ForgetWearers("FF-01"))
+    state = both.script.pipeline.state
+    assert state.pins.keys() == state.pin_verdicts.keys() == {"of FF-02", "of FF-03"}
 
 
 def test_a_pin_on_a_floor_brings_the_height(walk: Walk) -> None:
