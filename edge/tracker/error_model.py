@@ -16,10 +16,15 @@ chapter 7 (global angular error).
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numba import njit
 
 from edge.samples import Floats
+
+if TYPE_CHECKING:
+    from edge.tracker.state import FilterState
 
 POSITION = 0
 VELOCITY = 3
@@ -45,13 +50,19 @@ def transition_matrix(rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) ->
 
 
 @njit()
-def propagate(covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_s: float) -> None:
-    """Replace ``covariance`` P (22, 22) by ``F P F'``, using what is zero and one in F."""
+def propagate(state: FilterState, dt_s: float) -> None:
+    """Replace the covariance P by ``F P F'``, using what is zero and one in F.
+
+    The record is taken whole, for it tells the compiler how long the rows of P are: so it can
+    work on several columns at once.
+    """
+    p, rotation_nb, force_n_mps2 = state.covariance, state.rotation_nb, state.force_n_mps2
     fx = dt_s * force_n_mps2[0]
     fy = dt_s * force_n_mps2[1]
     fz = dt_s * force_n_mps2[2]
-    p = covariance
-    r = dt_s * rotation_nb
+    r00, r01, r02 = dt_s * rotation_nb[0, 0], dt_s * rotation_nb[0, 1], dt_s * rotation_nb[0, 2]
+    r10, r11, r12 = dt_s * rotation_nb[1, 0], dt_s * rotation_nb[1, 1], dt_s * rotation_nb[1, 2]
+    r20, r21, r22 = dt_s * rotation_nb[2, 0], dt_s * rotation_nb[2, 1], dt_s * rotation_nb[2, 2]
     # Rows: M = F P, top down so that every row reads rows not yet changed.
     for j in range(SIZE):
         v0, v1, v2 = p[3, j], p[4, j], p[5, j]
@@ -61,28 +72,31 @@ def propagate(covariance: Floats, rotation_nb: Floats, force_n_mps2: Floats, dt_
         p[0, j] += dt_s * v0
         p[1, j] += dt_s * v1
         p[2, j] += dt_s * v2
-        p[3, j] = v0 + fz * a1 - fy * a2 - (r[0, 0] * b0 + r[0, 1] * b1 + r[0, 2] * b2)
-        p[4, j] = v1 + fx * a2 - fz * a0 - (r[1, 0] * b0 + r[1, 1] * b1 + r[1, 2] * b2)
-        p[5, j] = v2 + fy * a0 - fx * a1 - (r[2, 0] * b0 + r[2, 1] * b1 + r[2, 2] * b2)
-        p[6, j] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
-        p[7, j] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
-        p[8, j] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
-    # Columns: P = M F'; the lower triangle is the mirror.
+        p[3, j] = v0 + fz * a1 - fy * a2 - (r00 * b0 + r01 * b1 + r02 * b2)
+        p[4, j] = v1 + fx * a2 - fz * a0 - (r10 * b0 + r11 * b1 + r12 * b2)
+        p[5, j] = v2 + fy * a0 - fx * a1 - (r20 * b0 + r21 * b1 + r22 * b2)
+        p[6, j] = a0 - (r00 * g0 + r01 * g1 + r02 * g2)
+        p[7, j] = a1 - (r10 * g0 + r11 * g1 + r12 * g2)
+        p[8, j] = a2 - (r20 * g0 + r21 * g1 + r22 * g2)
+    # Columns: P = M F' above the diagonal, left to right; the lower triangle is the mirror.
+    for i in range(VELOCITY):
+        row = p[i]
+        row[0] += dt_s * row[3]
+        row[1] += dt_s * row[4]
+        row[2] += dt_s * row[5]
+    for i in range(ATTITUDE):
+        row = p[i]
+        a0, a1, a2 = row[6], row[7], row[8]
+        b0, b1, b2 = row[13], row[14], row[15]
+        row[3] = row[3] + fz * a1 - fy * a2 - (r00 * b0 + r01 * b1 + r02 * b2)
+        row[4] = row[4] + fx * a2 - fz * a0 - (r10 * b0 + r11 * b1 + r12 * b2)
+        row[5] = row[5] + fy * a0 - fx * a1 - (r20 * b0 + r21 * b1 + r22 * b2)
     for i in range(TURN):
         row = p[i]
-        v0, v1, v2 = row[3], row[4], row[5]
-        a0, a1, a2 = row[6], row[7], row[8]
         g0, g1, g2 = row[10], row[11], row[12]
-        b0, b1, b2 = row[13], row[14], row[15]
-        row[0] += dt_s * v0
-        row[1] += dt_s * v1
-        row[2] += dt_s * v2
-        row[3] = v0 + fz * a1 - fy * a2 - (r[0, 0] * b0 + r[0, 1] * b1 + r[0, 2] * b2)
-        row[4] = v1 + fx * a2 - fz * a0 - (r[1, 0] * b0 + r[1, 1] * b1 + r[1, 2] * b2)
-        row[5] = v2 + fy * a0 - fx * a1 - (r[2, 0] * b0 + r[2, 1] * b1 + r[2, 2] * b2)
-        row[6] = a0 - (r[0, 0] * g0 + r[0, 1] * g1 + r[0, 2] * g2)
-        row[7] = a1 - (r[1, 0] * g0 + r[1, 1] * g1 + r[1, 2] * g2)
-        row[8] = a2 - (r[2, 0] * g0 + r[2, 1] * g1 + r[2, 2] * g2)
+        row[6] -= r00 * g0 + r01 * g1 + r02 * g2
+        row[7] -= r10 * g0 + r11 * g1 + r12 * g2
+        row[8] -= r20 * g0 + r21 * g1 + r22 * g2
     for i in range(TURN):
         for j in range(i + 1, SIZE):
             p[j, i] = p[i, j]

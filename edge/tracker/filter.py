@@ -32,7 +32,7 @@ from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import glides, stand
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.stated import bend_way, state_position
-from edge.tracker.strapdown import advance, rotation_matrix
+from edge.tracker.strapdown import advance, dot, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
 from edge.tracker.warmth import follow_warmth
 from edge.tracker.zero_velocity import stance_threshold, steady_rate, unrest
@@ -141,11 +141,11 @@ def _predict(
         state.force_n_mps2,
         state.angle_rad,
     )
-    propagate(state.covariance, state.rotation_nb, state.force_n_mps2, dt_s)
+    propagate(state, dt_s)
     turn_walk(state, follow_gain_errors(state, dt_s, config))
     bend_way(state, dt_s)
-    state.swing_rad += dt_s * math.sqrt((state.gyro_radps**2).sum())
-    speed_mps = math.sqrt((state.velocity_n_mps**2).sum())
+    state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))
+    speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     _add_noise(ring, progress, state, k, dt_s, config)
     ring[slot].interval_s = dt_s

@@ -17,6 +17,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, POSITION
 from edge.tracker.stance import lever_velocity_row
 from edge.tracker.state import FilterState, Ring
+from edge.tracker.strapdown import dot
 
 SWING_RAD = 0.3  # that a foot turns at least in a stride; a crawling one hardly more
 
@@ -32,7 +33,7 @@ def land(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
     squares = 0.0
     for i in range(2):
         lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
-        off_mps = (row * state.lever_b_m).sum() - state.velocity_n_mps[i]
+        off_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
         squares += off_mps * off_mps
     off = min(math.sqrt(squares) / state.swing_rad, config.landing_off_most)
     state.landings = min(state.landings + 1.0, config.landing_memory)

@@ -92,13 +92,14 @@ def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
     fx = dt_s * ring[slot].force_n_mps2[0]
     fy = dt_s * ring[slot].force_n_mps2[1]
     fz = dt_s * ring[slot].force_n_mps2[2]
-    rotation = dt_s * ring[slot].rotation_nb
+    rotation = ring[slot].rotation_nb
     vx, vy, vz = adjoint[3], adjoint[4], adjoint[5]
     ax, ay, az = adjoint[6], adjoint[7], adjoint[8]
     for i in range(3):
         adjoint[3 + i] += dt_s * adjoint[i]
-        adjoint[GYRO_BIAS + i] -= rotation[0, i] * ax + rotation[1, i] * ay + rotation[2, i] * az
-        adjoint[ACCEL_BIAS + i] -= rotation[0, i] * vx + rotation[1, i] * vy + rotation[2, i] * vz
+        x, y, z = dt_s * rotation[0, i], dt_s * rotation[1, i], dt_s * rotation[2, i]
+        adjoint[GYRO_BIAS + i] -= x * ax + y * ay + z * az
+        adjoint[ACCEL_BIAS + i] -= x * vx + y * vy + z * vz
     adjoint[6] += fy * vz - fz * vy
     adjoint[7] += fz * vx - fx * vz
     adjoint[8] += fx * vy - fy * vx

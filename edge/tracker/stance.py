@@ -16,6 +16,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, VELOCITY
 from edge.tracker.measuring import begin_updates, end_updates, measure, measure_with_lever
 from edge.tracker.state import FilterState, Ring
+from edge.tracker.strapdown import dot
 
 MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 
@@ -83,5 +84,5 @@ def _measure_velocity(
 ) -> None:
     row = ring[slot].lever_row[axis]
     lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
-    residual_mps = (row * state.lever_b_m).sum() - state.velocity_n_mps[axis]
+    residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[axis]
     measure_with_lever(ring, state, slot, axis, row, residual_mps, variance)

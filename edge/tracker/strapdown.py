@@ -19,6 +19,12 @@ GRAVITY_MPS2 = 9.80665
 
 
 @njit()
+def dot(a: Floats, b: Floats) -> float:
+    """Return the product of two vectors (3,)."""
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+@njit()
 def rotate_attitude(quaternion_nb: Floats, angle_b_rad: Floats) -> None:
     """Turn ``quaternion_nb`` (4,) in place by a rotation vector (3,) in sensor axes."""
     x, y, z = angle_b_rad[0], angle_b_rad[1], angle_b_rad[2]

@@ -27,6 +27,7 @@ from edge.tracker.error_model import (
     warm,
 )
 from edge.tracker.stance import lever_velocity_row
+from edge.tracker.state import new_filter_state
 from edge.tracker.strapdown import (
     GRAVITY_MPS2,
     advance,
@@ -115,9 +116,12 @@ def test_sparse_propagation_is_the_dense_product(seed):
     *_, interval = _advanced(state)
     matrix = transition_matrix(*interval, 0.02)
     expected = matrix @ covariance @ matrix.T
-    propagate(covariance, *interval, 0.02)
-    np.testing.assert_allclose(covariance, expected, rtol=1e-12, atol=1e-12)
-    assert np.array_equal(covariance, covariance.T)
+    filtered = new_filter_state()[0]
+    filtered["covariance"] = covariance
+    filtered["rotation_nb"], filtered["force_n_mps2"] = interval
+    propagate(filtered, 0.02)
+    np.testing.assert_allclose(filtered["covariance"], expected, rtol=1e-12, atol=1e-12)
+    assert np.array_equal(filtered["covariance"], filtered["covariance"].T)
 
 
 @pytest.mark.parametrize("index", [POSITION, VELOCITY + 1, GYRO_BIAS + 2])
