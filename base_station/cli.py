@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from base_station.recordings.command import fetch_recording
+from base_station.user_commands import users
 
 if TYPE_CHECKING:
     from base_station.config import StationConfig
 
 app = typer.Typer(help="The base station.", no_args_is_help=True, pretty_exceptions_enable=False)
-users = typer.Typer(help="Who may log in.", no_args_is_help=True)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.add_typer(users, name="users")
@@ -194,48 +194,6 @@ def assess(
         write_report(report, json_file)
 
 
-@users.command("list")
-def list_users(data: Path = Path("muster-data")) -> None:
-    """Names and roles."""
-    from base_station.app.folder import open_accounts  # noqa: PLC0415
-
-    with ExitStack() as closing:
-        for user in open_accounts(data, closing).users():
-            typer.echo(f"{user.username}\t{user.role}")
-
-
-@users.command("add")
-def add_user(
-    name: str,
-    role: Annotated[str, typer.Option(help="viewer, commander or administrator.")] = "viewer",
-    data: Path = Path("muster-data"),
-) -> None:
-    """Add a user; the password is asked for, or read from standard input."""
-    from base_station.app.folder import open_accounts  # noqa: PLC0415
-    from base_station.db.accounts import Role  # noqa: PLC0415
-
-    with ExitStack() as closing:
-        open_accounts(data, closing).add_user(name, _ask_password(), Role.of(role))
-
-
-@users.command("password")
-def change_password(name: str, data: Path = Path("muster-data")) -> None:
-    """Give a user a new password; their sessions and tokens end."""
-    from base_station.app.folder import open_accounts  # noqa: PLC0415
-
-    with ExitStack() as closing:
-        open_accounts(data, closing).change_user(name, _ask_password(), None)
-
-
-@users.command("remove")
-def remove_user(name: str, data: Path = Path("muster-data")) -> None:
-    """Remove a user with all sessions and tokens."""
-    from base_station.app.folder import open_accounts  # noqa: PLC0415
-
-    with ExitStack() as closing:
-        open_accounts(data, closing).remove_user(name)
-
-
 @log.command("recover")
 def recover(data: Path = Path("muster-data")) -> None:
     """End torn segments in order; a station does this by itself when it starts."""
@@ -299,9 +257,3 @@ def _ask_again(what: str, about: str) -> None:
     said = typer.prompt(question) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
     if said != what:
         raise UserError(f"{said!r} is not {what!r}; nothing was deleted")
-
-
-def _ask_password() -> str:
-    if sys.stdin.isatty():
-        return str(typer.prompt("Password", hide_input=True, confirmation_prompt=True))
-    return sys.stdin.readline().rstrip("\n")

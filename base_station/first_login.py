@@ -6,7 +6,8 @@ import os
 import secrets
 from pathlib import Path
 
-from base_station.db.accounts import Accounts, Role
+from base_station.db.accounts import Accounts
+from base_station.db.principals import Role
 from shared.errors import StoreError
 
 USERNAME = "admin"

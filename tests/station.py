@@ -20,9 +20,10 @@ from base_station.api.hub import Hub
 from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.api.wire import Delta, Snapshot
-from base_station.db.accounts import Accounts, Role
+from base_station.db.accounts import Accounts
 from base_station.db.base_maps import BaseMaps
 from base_station.db.models import Incident
+from base_station.db.principals import Role
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster

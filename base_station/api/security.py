@@ -24,7 +24,7 @@ from starlette.requests import HTTPConnection
 
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station, services_of
-from base_station.db.accounts import Principal, Role
+from base_station.db.principals import Principal, Role
 
 COOKIE = "muster_session"
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

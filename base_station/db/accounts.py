@@ -13,15 +13,14 @@ from __future__ import annotations
 import hashlib
 import secrets
 from collections.abc import Collection, Sequence
-from enum import IntEnum
 
-import msgspec
 from pwdlib import PasswordHash
 from sqlalchemy import ColumnElement, and_, delete, func, select
 from sqlalchemy.orm import Session
 
 from base_station.db.models import ApiToken, HandOver, LoginSession, User
 from base_station.db.passwords import Passwords
+from base_station.db.principals import Principal, Role
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
@@ -29,34 +28,6 @@ from shared.errors import UserError
 SESSION_S = 12 * 3600
 HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
-
-
-class Role(IntEnum):
-    """Each may do what those below it may."""
-
-    VIEWER = 1
-    COMMANDER = 2
-    ADMINISTRATOR = 3
-
-    @property
-    def word(self) -> str:
-        return self.name.lower()
-
-    @staticmethod
-    def of(word: str) -> Role:
-        try:
-            return Role[word.upper()]
-        except KeyError:
-            known = ", ".join(role.word for role in Role)
-            raise UserError(f"there is no role {word!r}; roles are {known}") from None
-
-
-class Principal(msgspec.Struct, frozen=True):
-    """Who is asking."""
-
-    username: str
-    role: Role
-    scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
 
 
 class Accounts:

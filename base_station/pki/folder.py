@@ -162,7 +162,9 @@ class PkiFolder:
             )
             authority, hosts = self._authority(), _with_loopback(hosts)
             issued = issue(authority, common_name, Holder.STATION, self._now(), valid, hosts)
-            registry = registry.with_entry(_entry(Holder.STATION, name, common_name, issued))
+            registry = registry.with_entry(
+                Entry.of(Holder.STATION, name, common_name, issued.certificate)
+            )
             connect = tuple(dict.fromkeys((*registry.connect, endpoint)))
             registry = msgspec.structs.replace(registry, connect=connect)
             save_registry(self.registry_path, registry)
@@ -260,7 +262,8 @@ class PkiFolder:
         authority = self._authority()
         issued = issue(authority, common_name, holder, self._now(), valid)
         save_registry(
-            self.registry_path, registry.with_entry(_entry(holder, name, common_name, issued))
+            self.registry_path,
+            registry.with_entry(Entry.of(holder, name, common_name, issued.certificate)),
         )
         identity = TlsIdentity(
             authority.certificate_pem(), issued.certificate_pem(), issued.key_pem()
@@ -273,7 +276,7 @@ class PkiFolder:
         )
         write_atomically(self._folder / "station.key", issued.key_pem())
         write_atomically(self._folder / "station.pem", issued.certificate_pem())
-        entry = _entry(Holder.STATION, STATION_NAME, STATION_NAME, issued)
+        entry = Entry.of(Holder.STATION, STATION_NAME, STATION_NAME, issued.certificate)
         save_registry(self.registry_path, registry.with_entry(entry))
 
     def _authority(self) -> Issued:
@@ -291,15 +294,3 @@ class PkiFolder:
 
 def _with_loopback(hosts: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*hosts, "localhost", "127.0.0.1", "::1")))
-
-
-def _entry(holder: Holder, name: str, common_name: str, issued: Issued) -> Entry:
-    certificate = issued.certificate
-    return Entry(
-        holder,
-        name,
-        common_name,
-        f"{certificate.serial_number:x}",
-        certificate.not_valid_before_utc,
-        certificate.not_valid_after_utc,
-    )

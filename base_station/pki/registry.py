@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 import msgspec
+from cryptography.x509 import Certificate
 
 from base_station.pki.files import write_atomically
 from shared.channels import tracker_id
@@ -23,6 +24,17 @@ class Entry(msgspec.Struct, frozen=True):
     valid_from: datetime
     valid_to: datetime
     revoked: datetime | None = None
+
+    @staticmethod
+    def of(holder: Holder, name: str, common_name: str, certificate: Certificate) -> Entry:
+        return Entry(
+            holder,
+            name,
+            common_name,
+            f"{certificate.serial_number:x}",
+            certificate.not_valid_before_utc,
+            certificate.not_valid_after_utc,
+        )
 
 
 class Registry(msgspec.Struct, frozen=True):

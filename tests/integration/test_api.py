@@ -11,7 +11,7 @@ import pytest
 import pytest_asyncio
 from PIL import Image
 
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from base_station.exporters import EXPORTERS
 from shared.clock import ManualClock
 from shared.messages import EventKind, Position, UnitEvent

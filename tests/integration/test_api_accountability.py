@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from httpx import AsyncClient
 
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Tick
 from tests.station import DeskStation

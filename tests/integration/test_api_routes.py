@@ -17,7 +17,7 @@ from PIL import Image
 from base_station.api.routes import ROUTERS
 from base_station.api.security import Scope
 from base_station.api.wire import StandbyView
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from base_station.db.records import EVER, Window
 from base_station.recordings.desk import RecordingDesk
 from shared.clock import ManualClock

@@ -13,7 +13,8 @@ import pytest_asyncio
 
 from base_station.api.routes import ROUTERS
 from base_station.api.security import COOKIE, Scope
-from base_station.db.accounts import SESSION_S, Role
+from base_station.db.accounts import SESSION_S
+from base_station.db.principals import Role
 from shared.clock import ManualClock
 from tests.station import ORIGIN, PASSWORD, DeskStation
 

@@ -8,7 +8,7 @@ import pytest
 
 from base_station.api.headers import content_policy
 from base_station.api.wire import StandbyView
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from tests.station import DeskStation
 
 HERE, THERE = "https://b:8443", "https://a:8443"

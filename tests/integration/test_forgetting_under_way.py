@@ -12,7 +12,7 @@ import msgspec
 import pytest
 
 from base_station.data_folder import DataFolder
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.forgetting.forgetter import ClosedLog, Forgetter

@@ -9,9 +9,10 @@ from threading import Event
 
 import pytest
 
-from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts, Role
+from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts
 from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
+from base_station.db.principals import Role
 from base_station.db.records import EVER, Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store

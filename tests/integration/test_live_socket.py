@@ -17,7 +17,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from base_station.api.routes import live
 from base_station.api.security import COOKIE
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from base_station.server import ConsoleServer, bind
 from shared.messages.station import OpenIncident
 from tests.station import PASSWORD, DeskStation

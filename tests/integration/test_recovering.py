@@ -18,7 +18,7 @@ from base_station.app.early import early_console
 from base_station.bench.rig import said as said_by_bench
 from base_station.config import HttpConfig, StationConfig
 from base_station.data_folder import DataFolder
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from base_station.live import last_known
 from base_station.live import recovering as module
 from base_station.live.recovering import recovering

@@ -11,7 +11,8 @@ from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import COOKIE, Throttle, Viewer
 from base_station.api.services import Services, Station
-from base_station.db.accounts import HAND_OVER_S, SESSION_S, Principal
+from base_station.db.accounts import HAND_OVER_S, SESSION_S
+from base_station.db.principals import Principal
 
 router = APIRouter(tags=["login"])
 

@@ -13,7 +13,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.users import RoleWord
 from base_station.api.security import Scope, Viewer
 from base_station.api.services import Station
-from base_station.db.accounts import Role
+from base_station.db.principals import Role
 from shared.clock import NS_PER_S
 
 router = APIRouter(tags=["tokens"])

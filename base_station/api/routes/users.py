@@ -12,8 +12,8 @@ from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import Administrator, Throttle, Viewer
 from base_station.api.services import Station
-from base_station.db.accounts import Role
 from base_station.db.passwords import MIN_PASSWORD
+from base_station.db.principals import Role
 
 router = APIRouter(tags=["users"])
 
