@@ -23,7 +23,8 @@ from base_station.fusion.path.points import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback
-from base_station.pins.pinning import evidence_of_all, floors_along, ties_of
+from base_station.pins.evidence import evidence_of_all, ties_of
+from base_station.pins.pinning import floors_along
 from base_station.site.floor_grid import FloorGrid
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.quality import Quality

@@ -19,21 +19,22 @@ from base_station.fusion.smoother.port import (
     SmoothedPath,
     Smoother,
     Solution,
-    Tie,
-    UnitEvidence,
     Verdict,
 )
 from base_station.live_state import StationState
-from base_station.pins.book import BEFORE_NS, units_of
-from base_station.pins.pin import Beacon, Pin, PinVerdict
+from base_station.pins.book import units_of
+from base_station.pins.evidence import (
+    evidence_of_one,
+    own_places,
+    place_of,
+    receiver_of_station,
+    time_of,
+)
+from base_station.pins.pin import Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.learnt_floors import FloorSaid
-from base_station.site.storeys import floor_at, storey_of
+from base_station.site.storeys import floor_at
 from base_station.trail import TRAIL_POINTS, TrailStep
-from shared.clock import NS_PER_S
 
-NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
-SUREST_M = 0.05  # nobody knows a place better
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
 
 
@@ -53,8 +54,8 @@ class Past:
         places: Sequence[PlaceSeen],
     ) -> Solution:
         """One unit's past; the station's receiver tells what all receivers err by."""
-        evidence = _receiver_of_station(state)
-        evidence[unit_id] = _evidence(history, places, self.grid)
+        evidence = receiver_of_station(state)
+        evidence[unit_id] = evidence_of_one(history, places, self.grid)
         solution = self.smoother.solve(evidence)
         verdicts = {place.name: solution.verdicts[place.name] for place in places}
         return Solution({unit_id: solution.paths[unit_id]}, verdicts)
@@ -62,7 +63,7 @@ class Past:
     def alone(self, state: StationState, unit_id: str, history: PathHistory) -> SmoothedPath:
         """A unit's path by all that is known of it but its meetings; the same at each of them."""
         if unit_id not in self._alone:
-            places = _own_places(state, unit_id, history)
+            places = own_places(state, unit_id, history)
             self._alone[unit_id] = self.solve(state, unit_id, history, places).paths[unit_id]
         return self._alone[unit_id]
 
@@ -132,50 +133,6 @@ def trail_of(state: StationState, points: PathArrays, path: SmoothedPath) -> lis
     ]
 
 
-def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str, UnitEvidence]:
-    """Everything that is known of every unit that has a path, but for meetings; ``grid``: the
-    plan's walls.
-    """
-    return {
-        unit_id: _evidence(history, _own_places(state, unit_id, history), grid)
-        for unit_id, history in sorted(state.paths.items())
-        if history.begin_ns is not None
-    }
-
-
-def floors_said(state: StationState) -> list[FloorSaid]:
-    """On which floors people and beacons say that somebody was, with the heights as they were
-    estimated without any pin.
-    """
-    said = []
-    for pin in state.pins.values():
-        history = state.paths.get(pin.unit_id)
-        floor = state.beacons.get(pin.other_id, pin).floor
-        if floor is None or history is None or history.begin_ns is None:
-            continue
-        t_ns = _time_of(history, pin)
-        if not isinstance(t_ns, str):
-            points = history.arrays()
-            row = int(np.searchsorted(points.t_ns, t_ns).clip(0, len(points) - 1))
-            north_m, east_m = points.shown_m[row].tolist()
-            said.append(FloorSaid(north_m, east_m, float(points.down_m[row]), floor))
-    return said
-
-
-def ties_of(state: StationState) -> list[Tie]:
-    """Meetings of units whose paths both reach them."""
-    ties = []
-    for pin in state.pins.values():
-        paths = [state.paths.get(one) for one in (pin.unit_id, pin.other_id)]
-        reached = [path for path in paths if path is not None and path.begin_ns is not None]
-        if pin.kind == "meeting" and len(reached) == 2:
-            times = [_time_of(path, pin) for path in reached]
-            if not any(isinstance(t_ns, str) for t_ns in times):
-                std_m = max(pin.std_m, SUREST_M)
-                ties.append(Tie(pin.pin_id, pin.unit_id, pin.other_id, pin.t_ns, std_m))
-    return ties
-
-
 def floors_along(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
     """By the heights that are known now and the storeys that are; without any, as they were said
     then.
@@ -204,7 +161,7 @@ def _places(
         if pin.kind == "meeting":
             place = _met(state, past, unit_id, history, pin)
         else:
-            place = _place(state, history, pin)
+            place = place_of(state, history, pin)
         if isinstance(place, str):
             waiting[pin.pin_id] = place
         else:
@@ -212,57 +169,18 @@ def _places(
     return places, waiting
 
 
-def _receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
-    """Of the unit that stays there, where somebody has said that it stands."""
-    unit_id = state.barometers.reference_id or ""
-    history = state.paths.get(unit_id)
-    if history is None or history.begin_ns is None or history.start is None:
-        return {}
-    return {unit_id: _evidence(history, _own_places(state, unit_id, history), None)}
-
-
-def _own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:
-    """What pins say of a unit's place by now, but for meetings."""
-    pins = [one for one in state.pins.values() if one.unit_id == unit_id and one.kind != "meeting"]
-    places = [_place(state, history, pin) for pin in pins]
-    return [place for place in places if not isinstance(place, str)]
-
-
-def _place(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | str:
-    t_ns = _time_of(history, pin)
-    if isinstance(t_ns, str):
-        return t_ns
-    beacon = state.beacons.get(pin.other_id) if pin.other_id else None
-    if pin.other_id and beacon is None:
-        return f"nobody has said where {pin.kind} {pin.other_id} hangs"
-    at: Pin | Beacon = beacon or pin
-    assert at.north_m is not None
-    assert at.east_m is not None
-    storey = storey_of(state.storeys_at(at.north_m, at.east_m), at.floor)
-    return PlaceSeen(
-        name=pin.pin_id,
-        t_ns=t_ns,
-        north_m=at.north_m,
-        east_m=at.east_m,
-        std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
-        down_m=None if storey is None else storey.down_m,
-        heading_rad=pin.heading_rad,
-        heading_std_rad=pin.heading_std_rad,
-    )
-
-
 def _met(
     state: StationState, past: Past, unit_id: str, history: PathHistory, pin: Pin
 ) -> PlaceSeen | str:
     """Where the other one was then, by its own evidence."""
-    t_ns = _time_of(history, pin)
+    t_ns = time_of(history, pin)
     if isinstance(t_ns, str):
         return t_ns
     other_id = pin.other_id if pin.unit_id == unit_id else pin.unit_id
     other = state.paths.get(other_id)
     if other is None or other.begin_ns is None:
         return f"no position of {other_id} has come yet"
-    there_ns = _time_of(other, pin)
+    there_ns = time_of(other, pin)
     if isinstance(there_ns, str):
         return there_ns
     path = past.alone(state, other_id, other)
@@ -279,31 +197,11 @@ def _met(
     )
 
 
-def _time_of(history: PathHistory, pin: Pin) -> int | str:
-    """When on the path the pin is, or what it waits for."""
-    begin_ns, end_ns = history.begin_ns, history.end_ns
-    assert begin_ns is not None
-    assert end_ns is not None
-    if pin.t_ns == 0:
-        return begin_ns
-    if pin.t_ns > end_ns + NEAR_NS:
-        return "the unit's path has not come to that time yet"
-    if pin.t_ns < begin_ns - BEFORE_NS:
-        return "the unit's path begins later; there is nothing to pin there"
-    return min(max(pin.t_ns, begin_ns), end_ns)
-
-
 def _await(history: PathHistory, pins: Sequence[Pin], waiting: Mapping[str, str]) -> None:
     """Note when the path will have come to the first pin that waits for it."""
     end_ns = history.end_ns or 0
     times = [pin.t_ns for pin in pins if pin.pin_id in waiting and pin.t_ns > end_ns]
     history.awaited_ns = min(times, default=None)
-
-
-def _evidence(
-    history: PathHistory, places: Sequence[PlaceSeen], grid: FloorGrid | None
-) -> UnitEvidence:
-    return UnitEvidence(history.arrays(), history.start, history.start_ns, places, grid)
 
 
 def _judged(state: StationState, verdict: Verdict) -> PinVerdict:

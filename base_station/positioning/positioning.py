@@ -16,9 +16,9 @@ from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, Plac
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
 from base_station.pins.book import has_pins
+from base_station.pins.evidence import floors_said
 from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
-from base_station.pins.pinning import floors_said
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe

@@ -1,0 +1,126 @@
+"""What is known of units' pasts, pins among it, as a smoother takes it; but for meetings, which
+hang on somebody else's past.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.smoother.port import PlaceSeen, Tie, UnitEvidence
+from base_station.live_state import StationState
+from base_station.pins.book import BEFORE_NS
+from base_station.pins.pin import Beacon, Pin
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.learnt_floors import FloorSaid
+from base_station.site.storeys import storey_of
+from shared.clock import NS_PER_S
+
+NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
+SUREST_M = 0.05  # nobody knows a place better
+
+
+def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str, UnitEvidence]:
+    """Everything that is known of every unit that has a path, but for meetings; ``grid``: the
+    plan's walls.
+    """
+    return {
+        unit_id: evidence_of_one(history, own_places(state, unit_id, history), grid)
+        for unit_id, history in sorted(state.paths.items())
+        if history.begin_ns is not None
+    }
+
+
+def ties_of(state: StationState) -> list[Tie]:
+    """Meetings of units whose paths both reach them."""
+    ties = []
+    for pin in state.pins.values():
+        paths = [state.paths.get(one) for one in (pin.unit_id, pin.other_id)]
+        reached = [path for path in paths if path is not None and path.begin_ns is not None]
+        if pin.kind == "meeting" and len(reached) == 2:
+            times = [time_of(path, pin) for path in reached]
+            if not any(isinstance(t_ns, str) for t_ns in times):
+                std_m = max(pin.std_m, SUREST_M)
+                ties.append(Tie(pin.pin_id, pin.unit_id, pin.other_id, pin.t_ns, std_m))
+    return ties
+
+
+def floors_said(state: StationState) -> list[FloorSaid]:
+    """On which floors people and beacons say that somebody was, with the heights as they were
+    estimated without any pin.
+    """
+    said = []
+    for pin in state.pins.values():
+        history = state.paths.get(pin.unit_id)
+        floor = state.beacons.get(pin.other_id, pin).floor
+        if floor is None or history is None or history.begin_ns is None:
+            continue
+        t_ns = time_of(history, pin)
+        if not isinstance(t_ns, str):
+            points = history.arrays()
+            row = int(np.searchsorted(points.t_ns, t_ns).clip(0, len(points) - 1))
+            north_m, east_m = points.shown_m[row].tolist()
+            said.append(FloorSaid(north_m, east_m, float(points.down_m[row]), floor))
+    return said
+
+
+def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
+    """Of the unit that stays there, where somebody has said that it stands."""
+    unit_id = state.barometers.reference_id or ""
+    history = state.paths.get(unit_id)
+    if history is None or history.begin_ns is None or history.start is None:
+        return {}
+    return {unit_id: evidence_of_one(history, own_places(state, unit_id, history), None)}
+
+
+def own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:
+    """What pins say of a unit's place by now, but for meetings."""
+    pins = [one for one in state.pins.values() if one.unit_id == unit_id and one.kind != "meeting"]
+    places = [place_of(state, history, pin) for pin in pins]
+    return [place for place in places if not isinstance(place, str)]
+
+
+def place_of(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | str:
+    t_ns = time_of(history, pin)
+    if isinstance(t_ns, str):
+        return t_ns
+    beacon = state.beacons.get(pin.other_id) if pin.other_id else None
+    if pin.other_id and beacon is None:
+        return f"nobody has said where {pin.kind} {pin.other_id} hangs"
+    at: Pin | Beacon = beacon or pin
+    assert at.north_m is not None
+    assert at.east_m is not None
+    storey = storey_of(state.storeys_at(at.north_m, at.east_m), at.floor)
+    return PlaceSeen(
+        name=pin.pin_id,
+        t_ns=t_ns,
+        north_m=at.north_m,
+        east_m=at.east_m,
+        std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
+        down_m=None if storey is None else storey.down_m,
+        heading_rad=pin.heading_rad,
+        heading_std_rad=pin.heading_std_rad,
+    )
+
+
+def time_of(history: PathHistory, pin: Pin) -> int | str:
+    """When on the path the pin is, or what it waits for."""
+    begin_ns, end_ns = history.begin_ns, history.end_ns
+    assert begin_ns is not None
+    assert end_ns is not None
+    if pin.t_ns == 0:
+        return begin_ns
+    if pin.t_ns > end_ns + NEAR_NS:
+        return "the unit's path has not come to that time yet"
+    if pin.t_ns < begin_ns - BEFORE_NS:
+        return "the unit's path begins later; there is nothing to pin there"
+    return min(max(pin.t_ns, begin_ns), end_ns)
+
+
+def evidence_of_one(
+    history: PathHistory, places: Sequence[PlaceSeen], grid: FloorGrid | None
+) -> UnitEvidence:
+    return UnitEvidence(history.arrays(), history.start, history.start_ns, places, grid)
