@@ -95,8 +95,7 @@ def _std_m(state: StationState, sighting: Sighting) -> float:
 def _same_visit(state: StationState, pin: Pin) -> Pin | None:
     """The newest pin that tells of the same meeting of the same two."""
     for earlier in reversed(state.pins.values()):
-        if abs(earlier.t_ns - pin.t_ns) < AGAIN_NS and earlier.kind == pin.kind:
-            same = {earlier.unit_id, earlier.other_id} == {pin.unit_id, pin.other_id}
-            if same and (pin.kind == "meeting" or earlier.unit_id == pin.unit_id):
-                return earlier
+        same = {earlier.unit_id, earlier.other_id} == {pin.unit_id, pin.other_id}
+        if same and earlier.kind == pin.kind and abs(earlier.t_ns - pin.t_ns) < AGAIN_NS:
+            return earlier
     return None

@@ -221,6 +221,21 @@ def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> Non
     assert "was switched off" in alarm.text
 
 
+def test_a_sensor_that_fails_is_told_in_the_unit_s_words_until_a_person_has_seen_it(
+    script: Script,
+) -> None:
+    script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
+    (alarm,) = script.alarms
+    assert (alarm.rule, alarm.priority) == ("unit-fault", SOON)
+    assert alarm.text == "unit FF-01's unit: the accelerometer is stuck"
+    script.wait(60, lambda: script.status(U))
+    script.act(ResolveAlarm(alarm.alarm_id, "gets another"))
+    script.now_s += 1.0
+    script.event(U, EventKind.STORAGE_FAULT)
+    assert script.alarms[-1].text == "unit FF-01's unit: storage fault"
+    assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED", "RAISED"]
+
+
 def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     script.wait(2, lambda: script.status(U, battery=0.09))
     script.wait(60, lambda: script.status(U, battery=0.12))

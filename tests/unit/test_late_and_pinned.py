@@ -15,7 +15,7 @@ from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, GpsFix, Header, Position
-from shared.messages.pins import SetPin
+from shared.messages.pins import RemovePin, SetPin
 from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
 from tests.live_station import make_pipeline
 from tests.station_script import Script
@@ -98,6 +98,17 @@ def test_late_fixes_correct_the_pinned_trail_once_they_are_all_there(walker: Wal
     assert walker.solved() == 1
     assert walker.worst_off_m() < 2.0
     assert walker.solved() == 0
+
+
+def test_without_the_pin_what_came_late_is_there_all_the_same(walker: Walker) -> None:
+    plain = Walker()
+    plain.script.act(RemovePin("p1"))
+    for one in (walker, plain):
+        for _ in one.backfill():
+            pass
+    walker.script.act(RemovePin("p1"))
+    trails = [one.script.pipeline.state.units["FF-01"].trail for one in (walker, plain)]
+    assert trails[0] == trails[1]
 
 
 def test_a_journal_of_hundreds_is_solved_now_and_then(walker: Walker) -> None:

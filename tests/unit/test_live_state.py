@@ -224,6 +224,7 @@ def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
     assert len(trail) == TRAIL_POINTS
     steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(trail)]
     assert min(steps_ns) >= 10**9
+    assert max(steps_ns) < 2 * 10**9
 
 
 def test_time_inside_begins_at_the_outline_or_at_the_first_steps(script: Script) -> None:

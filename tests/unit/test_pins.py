@@ -276,6 +276,10 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     both.script.act(ForgetWearers("FF-01"))
     state = both.script.pipeline.state
     assert state.pins.keys() == state.pin_verdicts.keys() == {"of FF-02", "of FF-03"}
+    assert state.units["FF-01"].plain_trail is None
+    saved = read_checkpoint(both.script.pipeline.checkpoint())
+    assert saved is not None
+    assert "FF-01" not in saved.pinned
 
 
 def test_a_pin_on_a_floor_brings_the_height(walk: Walk) -> None:

@@ -45,6 +45,9 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     walk.script.act(PlaceBeacon("door-3", "door", north_m, east_m, None, 0.2, 0.5))
     assert walk.state(pin.pin_id) == "used"
     assert walk.now_off_m("FF-01") < 1.0 < before_m
+    sighting(walk, SightingKind.TAG, "door-3")
+    walk.script.act(PlaceBeacon("door-3", "front door", north_m, east_m, None, 0.2, 0.5))
+    assert walk.script.pipeline.state.beacons["door-3"].seen_ns == walk.script.t_ns
     walk.script.act(RemoveBeacon("door-3"))
     assert walk.state(pin.pin_id) == "waiting"
     assert walk.now_off_m("FF-01") == before_m
@@ -68,6 +71,40 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     sighting(walk, SightingKind.BEACON, "far", 5000.0)
     assert walk.script.pipeline.state.pins == {}
     assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 4
+
+
+def test_two_who_see_each_other_have_met_once() -> None:
+    both = Walk("FF-01", "FF-02")
+    both.go(10)
+    sighting(both, SightingKind.UNIT, "FF-02", 2.0)
+    other = both.script.header("FF-02")
+    both.script.say(Sighting(other, SightingKind.UNIT, "FF-01", 1.0))
+    state = both.script.pipeline.state
+    (pin,) = state.pins.values()
+    assert pin.unit_id == "FF-02", "the nearer of the two"
+    assert state.pin_verdicts.keys() == state.pins.keys()
+
+
+@pytest.mark.parametrize(
+    ("kind", "placed", "std_m"),
+    [
+        (SightingKind.BEACON, False, 1.5),
+        (SightingKind.BEACON, True, 4.0),
+        (SightingKind.TAG, False, 0.3),
+        (SightingKind.TAG, True, 4.0),
+        (SightingKind.UNIT, False, 1.5),
+    ],
+)
+def test_without_a_range_somebody_is_within_reach(
+    kind: SightingKind, placed: bool, std_m: float
+) -> None:
+    walk = Walk("FF-01", "FF-02")
+    walk.go(1)
+    if placed:
+        walk.script.act(PlaceBeacon("FF-02", "door", 0.0, 0.0, None, 0.2, 8.0))
+    sighting(walk, kind, "FF-02")
+    (pin,) = walk.script.pipeline.state.pins.values()
+    assert pin.std_m == pytest.approx(std_m)
 
 
 def test_who_was_met_before_his_path_began_tells_nothing_of_where() -> None:

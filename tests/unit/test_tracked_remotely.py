@@ -132,6 +132,15 @@ def test_a_unit_that_tracks_itself_is_shown_as_it_says() -> None:
     assert script.unit.shown_status == script.unit.status
 
 
+def test_a_unit_that_tracks_itself_again_is_not_shown_by_its_agent_s_last_words(
+    script: Remote,
+) -> None:
+    script.status(U, steps=10)
+    script.status(AGENT, steps=120)
+    script.describe("eskf")
+    assert script.unit.shown_status == script.unit.status
+
+
 def gone(script: Remote) -> list[AlarmState]:
     return [alarm.state for alarm in script.alarms if alarm.rule == "tracker-gone"]
 

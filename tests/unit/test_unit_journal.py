@@ -39,6 +39,17 @@ def next_of(journal: UnitJournal) -> tuple[str, dict[str, int]]:
     return question.what, dict(question.parameters)
 
 
+def asked_of(journal: UnitJournal) -> list[dict[str, int]]:
+    """Everything that is asked for where nothing is left any more."""
+    asked: list[dict[str, int]] = []
+    while (question := journal.next_question()) is not None and question.what != "acknowledge":
+        asked.append(dict(question.parameters))
+        first, last = asked[-1]["from"], asked[-1]["to"]
+        boot_id, urgent = asked[-1]["epoch"], question.what == "urgent"
+        answer(journal, question, JournalChunk(boot_id, first, last, (), urgent_only=urgent))
+    return asked
+
+
 def test_alerts_are_asked_for_at_once_over_the_whole_of_what_is_missing() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), Run(61, 70))
     what, asked = next_of(journal)
@@ -73,6 +84,25 @@ def test_what_the_alerts_brought_is_not_fetched_again() -> None:
     journal.report((Held(BOOT, (Run(1, 18), Run(21, 21))),), 1)
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("range", 19, 19)
+
+
+def test_who_does_not_answer_is_not_asked_before_the_next_report() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30))
+    question = journal.next_question()
+    assert question is not None
+    journal.end(question, 1)
+    assert journal.next_question() is None
+    journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 1)
+    assert journal.next_question() == question
+
+
+def test_a_run_that_the_journal_has_no_more_is_not_asked_for() -> None:
+    journal = UnitJournal()
+    for first, due_ns in ((1, 0), (2, 3600 * 10**9)):
+        journal.report((Held(3, (Run(1, 10),)),), due_ns)
+        indexed(journal, *[JournalBoot(boot_id, 1, 10, 0, 0) for boot_id in range(first, 4)])
+    journal.report((Held(3, (Run(1, 10),)),), 0)
+    assert {question["epoch"] for question in asked_of(journal)} == {2}
 
 
 def test_the_newest_piece_is_asked_for_first() -> None:

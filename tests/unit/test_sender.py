@@ -1,0 +1,58 @@
+"""Which messages of one sender are there, and which of them say how it is now."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.sender import BOOTS, Sender
+from shared.channels import POSITION, STATUS, Channel
+from shared.clock import NS_PER_S
+from shared.messages import Header
+
+NOW_NS = 1_700_000_000 * NS_PER_S
+
+
+def said(seq: int, mono_s: float = 100.0, boot_id: int = 7) -> Header:
+    return Header("FF-01", boot_id, seq, round(mono_s * NS_PER_S))
+
+
+@pytest.fixture
+def sender() -> Sender:
+    """The fifth message of its run came, of its hundredth second."""
+    sender = Sender("FF-01")
+    assert sender.accept(STATUS, said(5), NOW_NS) == "new"
+    return sender
+
+
+@pytest.mark.parametrize(
+    ("channel", "seq", "mono_s", "worth"),
+    [
+        (STATUS, 5, 100.0, "repeat"),
+        (STATUS, 6, 101.0, "new"),
+        (STATUS, 4, 99.0, "old"),
+        (POSITION, 4, 99.0, "new"),
+        (STATUS, 6, 99.0, "new"),  # its clock was wrong before
+    ],
+)
+def test_what_is_said_before_what_came_already_is_old(
+    sender: Sender, channel: Channel, seq: int, mono_s: float, worth: str
+) -> None:
+    assert sender.accept(channel, said(seq, mono_s), NOW_NS) == worth
+
+
+def test_what_the_log_did_not_take_is_missing_like_what_never_came(sender: Sender) -> None:
+    assert [sender.has(7, seq) for seq in (4, 5)] == [False, True]
+    sender.take_back(7, 5)
+    sender.take_back(8, 5)  # of a run of which nothing came
+    assert not sender.has(7, 5)
+    assert not sender.has(8, 5)
+    assert sender.recall(7, 5) == "old"
+    assert sender.recall(7, 5) == "repeat"
+
+
+def test_runs_out_of_the_journal_are_known_and_never_the_one_that_runs(sender: Sender) -> None:
+    for boot_id in range(100, 100 + 2 * BOOTS):
+        assert sender.recall(boot_id, 1) == "old"
+        assert sender.has(boot_id, 1)
+    assert len(sender.boots) == BOOTS
+    assert sender.boots[-1].boot_id == 7
