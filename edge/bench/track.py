@@ -21,6 +21,7 @@ from edge.bench.perturbed import perturbed_table, score_perturbed
 from edge.bench.scoring import Score, score_track
 from edge.bench.simulated import score_simulated, simulated_walks
 from edge.bench.speed import measure_speed, print_speed
+from edge.bench.wearers import measure_wearers, wearers_table
 from edge.sources.recording import RecordingSource, read_truth
 from edge.track_command import run_tracker
 from edge.tracker import TRACKERS
@@ -80,6 +81,12 @@ def bench_track(
         bool,
         typer.Option("--honesty", help="Also compare what is stated of simulated walks (minutes)."),
     ] = False,
+    wearers: Annotated[
+        bool,
+        typer.Option(
+            "--wearers", help="Also track simulated wearers that nobody recorded (minutes)."
+        ),
+    ] = False,
     cross_validation: Annotated[
         bool,
         typer.Option("--cross-validate", help="Also leave each dataset out once (a minute)."),
@@ -122,6 +129,10 @@ def bench_track(
         results = measure_honesty()
         console.print(honesty_table(results))
         report["honesty"] = [asdict(result) for result in results]
+    if wearers:
+        worn = measure_wearers()
+        console.print(wearers_table(worn))
+        report["wearers"] = [asdict(one) for one in worn]
     if cross_validation:
         left_out = cross_validate(trials)
         console.print(left_out_table(left_out))

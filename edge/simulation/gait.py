@@ -32,6 +32,9 @@ class Gait:
     lands_on_heel: bool = True  # ... or on the ball
     leaves_on_heel: bool = False
     sink_rad: float = 0.0  # by which the heel sinks while the ball stands, off the tread's edge
+    uneven_m: float = 0.0  # of what lies on the floor, root mean square
+    tilt_rad: float = 0.0  # deviation of its slopes
+    slip_m: float = 0.0  # by which the shoe slips back when it pushes off
 
 
 WALK = Gait(Activity.WALKING, 1.36, 1.06, 0.34, radians(-62), radians(20), 0.04)
@@ -66,6 +69,16 @@ SIDEWAYS = Gait(
     clearance_m=0.04,
     facing_rad=-pi / 2.0,
     lands_on_heel=False,
+)
+HOSE = replace(LADEN, stride_m=0.60, toe_off_rad=radians(-40), strike_rad=radians(3), slip_m=0.015)
+RUBBLE = replace(
+    SEARCH,
+    stride_m=0.50,
+    stride_s=1.25,
+    strike_rad=radians(2),
+    clearance_m=0.12,
+    uneven_m=0.07,
+    tilt_rad=radians(8),
 )
 STAIRS_UP = Gait(
     activity=Activity.STAIRS_UP,
@@ -120,4 +133,6 @@ PACES: dict[str, Gait] = {
     "limp": LIMP,
     "backwards": BACKWARDS,
     "sideways": SIDEWAYS,
+    "hose": HOSE,
+    "rubble": RUBBLE,
 }

@@ -14,7 +14,10 @@ from msgspec import Meta
 Point = tuple[float, float]
 Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(gt=0.0, le=1e6)]
-Pace = Literal["search", "walk", "hurry", "run", "sprint", "laden", "limp", "backwards", "sideways"]
+Pace = Literal[
+    "search", "walk", "hurry", "run", "sprint", "laden", "limp", "backwards", "sideways", "hose",
+    "rubble",
+]  # fmt: skip
 Risers = Annotated[int, Meta(ge=1, le=200)]
 AtOnce = Annotated[int, Meta(ge=1, le=3)]  # risers that one step takes
 StairsPace = Literal["walk", "run"]
@@ -56,6 +59,24 @@ class Stand(msgspec.Struct, frozen=True, tag="stand", forbid_unknown_fields=True
     duration_s: Seconds
 
 
+class Wait(msgspec.Struct, frozen=True, tag="wait", forbid_unknown_fields=True):
+    """Stand about: the weight goes from leg to leg, the foot is put anew now and then."""
+
+    duration_s: Seconds
+
+
+class Kneel(msgspec.Struct, frozen=True, tag="kneel", forbid_unknown_fields=True):
+    """Kneel down, work there, get up again."""
+
+    duration_s: Seconds
+
+
+class Sit(msgspec.Struct, frozen=True, tag="sit", forbid_unknown_fields=True):
+    """Sit down, cross the legs now and then, get up again."""
+
+    duration_s: Seconds
+
+
 class Ride(msgspec.Struct, frozen=True, tag="ride", forbid_unknown_fields=True):
     """Stand in a lift that goes up (``rise_m`` positive) or down without a stop."""
 
@@ -82,4 +103,4 @@ class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True
     to: Points
 
 
-Leg = Walk | Stairs | Spiral | Stand | Ride | Turn | Lie | Crawl
+Leg = Walk | Stairs | Spiral | Stand | Wait | Kneel | Sit | Ride | Turn | Lie | Crawl

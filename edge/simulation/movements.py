@@ -72,9 +72,9 @@ def stride(
     toe_off_rad = gait.toe_off_rad * float(jitter[2])
     plan.pitch.move(*window(0.00, 0.42), toe_off_rad)
     plan.pitch.move(*window(0.42, 0.84), gait.strike_rad * float(jitter[3]))
-    plan.pitch.move(*window(0.84, 1.00), float(abs(rng.normal(0.0, _SETTLE_RAD))))
+    plan.pitch.move(*window(0.84, 1.00), _tilt_rad(rng, gait) or abs(_settle_rad(rng)))
     plan.roll.move(*window(0.15, 0.50), float(rng.normal(radians(7), radians(2))))
-    plan.roll.move(*window(0.50, 0.95), float(rng.normal(0.0, _SETTLE_RAD)))
+    plan.roll.move(*window(0.50, 0.95), _tilt_rad(rng, gait) or _settle_rad(rng))
     # The toes point outward in mid-swing.
     plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + radians(6))
     plan.yaw.move(*window(0.55, 0.95), yaw_rad)
@@ -87,24 +87,39 @@ def stride(
     plan.footfall_s.append(end_s)
 
 
+def _settle_rad(rng: np.random.Generator) -> float:
+    return float(rng.normal(0.0, _SETTLE_RAD))
+
+
+def _tilt_rad(rng: np.random.Generator, gait: Gait) -> float:
+    """How far a foothold slopes; 0 on a floor."""
+    return float(rng.normal(0.0, gait.tilt_rad)) if gait.tilt_rad else 0.0
+
+
 def _stand_on_it(
     plan: BodyPlan, rng: np.random.Generator, gait: Gait, begin_s: float, off_s: float
 ) -> None:
     """The shoe settles, is flat for a moment, and begins to roll over the ball (or the heel).
 
-    On the ball alone the heel sinks instead, and no moment is still.
+    On the ball alone the heel sinks instead, and no moment is still.  On what slopes the shoe
+    stands as it has come down, and what it stands on gives way a little.
     """
     flat_s = begin_s + 0.35 * (off_s - begin_s)
     rise_s = begin_s + 0.60 * (off_s - begin_s)
     roll_over_rad = float(abs(rng.normal(_ROLL_OVER_RAD, _SETTLE_RAD)))
-    plan.roll.move(begin_s, flat_s, 0.0)
+    gives_way_rad = 0.2 * _tilt_rad(rng, gait)
+    plan.roll.move(begin_s, flat_s, plan.roll.last + gives_way_rad if gait.tilt_rad else 0.0)
     # The pivot changes while the foot is flat, where it has no effect.
     plan.pivot.move(flat_s, rise_s, float(gait.leaves_on_heel))
     if gait.sink_rad:
         plan.pitch.move(begin_s, rise_s, gait.sink_rad)
-    else:
+    elif not gait.tilt_rad:
         plan.pitch.move(begin_s, flat_s, 0.0)
     plan.pitch.move(rise_s, off_s, copysign(roll_over_rad, gait.toe_off_rad))
+    if gait.slip_m:
+        slip_m = abs(float(rng.normal(0.0, gait.slip_m)))
+        plan.north.move(rise_s, off_s, plan.north.last - slip_m * cos(plan.yaw.last))
+        plan.east.move(rise_s, off_s, plan.east.last - slip_m * sin(plan.yaw.last))
 
 
 def _swing_trunk(plan: BodyPlan, gait: Gait, begin_s: float, end_s: float) -> None:

@@ -8,7 +8,21 @@ import numpy as np
 
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.gait import PACES, STAIRS_PACES, TURN, Gait
-from edge.simulation.legs import Leg, Lie, Point, Ride, Spiral, Stairs, Stand, Turn, Walk
+from edge.simulation.legs import (
+    Kneel,
+    Leg,
+    Lie,
+    Point,
+    Ride,
+    Sit,
+    Spiral,
+    Stairs,
+    Stand,
+    Turn,
+    Wait,
+    Walk,
+)
+from edge.simulation.lingering import sit, stay_kneeling, wait
 from edge.simulation.movements import kneel, lie, pull, ride, rise, stand, stride, unwrapped
 from edge.simulation.polyline import Polyline, arc, split_at_sharp_turns
 
@@ -36,6 +50,12 @@ class Planner:
             self._climb(leg)
         elif isinstance(leg, Stand):
             stand(self.plan, leg.duration_s)
+        elif isinstance(leg, Wait):
+            wait(self.plan, self._rng, leg.duration_s)
+        elif isinstance(leg, Kneel):
+            stay_kneeling(self.plan, self._rng, leg.duration_s)
+        elif isinstance(leg, Sit):
+            sit(self.plan, self._rng, leg.duration_s)
         elif isinstance(leg, Ride):
             ride(self.plan, leg.rise_m, leg.speed_mps)
         elif isinstance(leg, Turn):
@@ -69,6 +89,9 @@ class Planner:
                     along_m += self._rng.normal(0.0, 0.03) * gait.stride_m
                 heading_rad = line.heading_rad(along_m, reach_m) + gait.facing_rad
                 down_m = begin_down_m - slope * along_m if walk.rise_m else None
+                if gait.uneven_m:
+                    pile_m = abs(self._rng.normal(0.0, gait.uneven_m)) if k < strides else 0.0
+                    down_m = begin_down_m - slope * along_m - float(pile_m)
                 self._stride(gait, line.point(along_m), heading_rad, down_m)
 
     def _climb(self, stairs: Stairs | Spiral) -> None:

@@ -9,7 +9,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from edge.bench.honesty import inertial
 from edge.samples import ImuBatch
+from edge.simulation import Scenario, Simulation
+from edge.simulation.legs import Stand, Walk
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.rows import join_rows
 from edge.tracker.strapdown import rotation_matrix
@@ -68,6 +71,28 @@ def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
     np.testing.assert_allclose(reach_m, expected_m, atol=2e-3)
     np.testing.assert_allclose(rows.position_n_m[:, 2], WHOLE.position_n_m[:, 2], atol=2e-3)
     assert np.array_equal(rows.stationary, WHOLE.stationary)
+
+
+def test_the_other_foot_is_tracked_as_the_mirror_image():
+    """Nothing prefers a side: reflected samples give the reflected way, as sure of it."""
+    legs = (Stand(2.0), Walk(((6.0, 0.0), (6.0, 5.0))), Stand(1.0))
+    simulation = Simulation(Scenario("turn", "turns right", legs), 3)
+    imu = inertial(simulation)
+    mirror = np.array([1.0, -1.0, 1.0])  # a rate is a pseudovector
+    other = ImuBatch(imu.t_ns, mirror * imu.accel_mps2, -mirror * imu.gyro_radps)
+    right, left = run(imu, simulation.description), run(other, simulation.description)
+
+    def seen_from_start(rows):
+        """Along the way there, and to its right."""
+        north_m, east_m, down_m = rows.position_n_m.T
+        there = rows.position_n_m[-1, :2] / np.linalg.norm(rows.position_n_m[-1, :2])
+        along_m = there[0] * north_m + there[1] * east_m
+        return np.column_stack((along_m, there[0] * east_m - there[1] * north_m, down_m))
+
+    np.testing.assert_allclose(seen_from_start(left), mirror * seen_from_start(right), atol=1e-6)
+    np.testing.assert_allclose(left.heading_std_rad, right.heading_std_rad, rtol=1e-6)
+    assert np.array_equal(left.stationary, right.stationary)
+    assert np.array_equal(left.quality, right.quality)
 
 
 @settings(max_examples=10)

@@ -14,7 +14,19 @@ from edge.samples import AmbientSample, BatterySample, Floats, GpsSample, OtherS
 from edge.simulation import SCENARIOS, Scenario, Simulation, open_simulation
 from edge.simulation.building import load_building
 from edge.simulation.kinematics import Motion
-from edge.simulation.legs import Leg, Pace, Point, Spiral, Stairs, Stand, Turn, Walk
+from edge.simulation.legs import (
+    Kneel,
+    Leg,
+    Pace,
+    Point,
+    Sit,
+    Spiral,
+    Stairs,
+    Stand,
+    Turn,
+    Wait,
+    Walk,
+)
 from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
 from shared.messages.status import Activity
@@ -219,6 +231,32 @@ def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
     height_m = -simulation.truth(np.arange(0.0, simulation.duration_s, 0.005)).position_n_m[:, 2]
     assert height_m.min() > 0.06
     assert height_m.max() > 0.1
+
+
+@pytest.mark.parametrize("leg", [Wait(60.0), Kneel(30.0), Sit(90.0)], ids=["wait", "kneel", "sit"])
+def test_whoever_lingers_moves_his_foot_and_gets_up_where_he_was(leg: Wait | Kneel | Sit) -> None:
+    simulation, ends = ends_of(Stand(1.0), leg, Stand(2.0))
+    t_s = np.arange(0.0, simulation.duration_s, 0.01)
+    motion = simulation.truth(t_s)
+    moving = np.linalg.norm(motion.velocity_n_mps, axis=1) > 0.02
+    assert 0.01 < moving.mean() < 0.5
+    assert ends.position_n_m[1, 2] == pytest.approx(ends.position_n_m[0, 2], abs=0.01)
+    assert np.linalg.norm(ends.position_n_m[1] - ends.position_n_m[0]) < 0.4
+    lifted_m = ends.position_n_m[0, 2] - motion.position_n_m[:, 2].min()
+    assert (lifted_m > 0.3) == isinstance(leg, Sit), "only crossed legs take it off the ground"
+    assert simulation.duration_s >= leg.duration_s
+
+
+def test_a_foothold_in_rubble_is_high_and_slopes_and_a_pulled_shoe_slips() -> None:
+    rubble = Simulation(Scenario("test", "", (Stand(1.0), Walk(((9.0, 0.0),), "rubble"))))
+    footfalls = rubble.truth(np.array(rubble.plan.footfall_s))
+    slope_deg = np.degrees(np.arccos(footfalls.rotation_nb[:, 2] @ footfalls.rotation_nb[-1, 2]))
+    assert np.ptp(footfalls.position_n_m[:, 2]) > 0.05
+    assert slope_deg.max() > 5.0
+    hose = Simulation(Scenario("test", "", (Stand(1.0), Walk(((9.0, 0.0),), "hose"))))
+    begun_s = np.array(hose.plan.footfall_s[:-1])
+    held_m = [hose.truth(begun_s + of_stance_s).position_n_m[:, 0] for of_stance_s in (0.35, 0.62)]
+    assert np.mean(held_m[1] - held_m[0]) < -0.003
 
 
 TOML = """
