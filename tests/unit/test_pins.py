@@ -280,6 +280,7 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     saved = read_checkpoint(both.script.pipeline.checkpoint())
     assert saved is not None
     assert "FF-01" not in saved.pinned
+    assert "FF-01" not in state.paths
 
 
 def test_a_pin_on_a_floor_brings_the_height(walk: Walk) -> None:
@@ -312,6 +313,8 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     walk.script.act(CloseIncident("i1"))
     walk.go(5)
     walk.script.act(OpenIncident("i2", "Another"))
-    assert walk.script.pipeline.state.pins == {}
+    state = walk.script.pipeline.state
+    assert state.pins == state.pin_verdicts == {}
+    assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
     walk.go(5)
     assert len(walk.trail("FF-01")) <= 6

@@ -44,7 +44,7 @@ def test_it_gives_back_what_it_was_given_in_order_over_all_channels(tmp_path):
 
 def test_a_new_start_is_a_new_boot_and_the_old_one_is_still_served(tmp_path):
     first = spool_at(tmp_path)
-    first.append([entry(seq) for seq in range(1, 11)])
+    first.append([entry(seq, IMU if seq < 6 else EVENT) for seq in range(1, 11)])
     first.close()
     second = spool_at(tmp_path, boot_ids=[1, 1, 2])  # an id that was used is drawn again
     assert second.boot_id == 2
@@ -87,12 +87,16 @@ def test_room_is_made_from_the_least_worth_and_oldest(tmp_path):
 
 def test_what_the_station_has_goes_first(tmp_path):
     spool = spool_at(tmp_path, limit_bytes=1 * MB)
-    spool.append([entry(seq, EVENT, 800) for seq in range(1, 301)])
-    spool.acknowledge(spool.boot_id, 300)
+    spool.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
+    spool.acknowledge(spool.boot_id, 600)
     assert spool.pending == 0
-    spool.append([entry(seq, IMU, 800) for seq in range(301, 1101)])
-    assert spool.pending == 800
-    assert set(range(301, 1101)) <= set(seqs(spool, spool.boot_id))
+    for start in range(601, 1201, 50):
+        spool.append([entry(seq, IMU, 800) for seq in range(start, start + 50)])
+    assert spool.pending == 600
+    kept = seqs(spool, spool.boot_id)
+    assert kept == list(range(kept[0], 1201))
+    assert 1 < kept[0] <= 601
+    assert spool.first_seq == kept[0]
     assert spool.rows_freed == 0  # nothing was given up that the station does not have
     spool.close()
 
