@@ -1,4 +1,8 @@
-"""Whether what was written to the log is still there: a disk may give back other bytes."""
+"""Whether what was written to the log is still there: a disk may give back other bytes.
+
+What was whole when it was looked at may not be later, so all of it is looked at again now and then,
+and at once where somebody who reads it meets damage.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +17,18 @@ from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState
 _log = logging.getLogger(__name__)
 
 
+_AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's housekeeping
+
+
 class LogCheck:
-    """Reads each complete segment once in the life of the program; from any thread."""
+    """Reads the complete segments, one a look, round after round; from any thread."""
 
     def __init__(self, remedy: str) -> None:
         """``remedy``: what becomes of a damaged one, for a person."""
         self._remedy = remedy
         self._lock = Lock()
         self._read: set[Path] = set()
+        self._idle = 0  # looks since all were read
         self._damaged: dict[Path, str] = {}  # with what is wrong
 
     def look(self, segments: Iterable[SegmentInfo]) -> None:
@@ -29,6 +37,9 @@ class LogCheck:
             new = (one.path for one in segments if one.state is SegmentState.CLOSED)
             path = next((one for one in new if one not in self._read), None)
             if path is None:
+                self._idle += 1
+                if self._idle >= _AGAIN_LOOKS:
+                    self._begin_again()
                 return
             self._read.add(path)
         try:
@@ -40,6 +51,16 @@ class LogCheck:
             _log.error("the log is damaged: %s", damage)
             with self._lock:
                 self._damaged[path] = damage
+
+    def suspect(self, what: str) -> None:
+        """Somebody who reads the log has met this damage."""
+        with self._lock:
+            if not any(path.name in what for path in self._damaged):
+                self._begin_again()
+
+    def _begin_again(self) -> None:
+        self._idle = 0
+        self._read = set(self._damaged)
 
     @property
     def damaged(self) -> tuple[Path, ...]:

@@ -18,6 +18,7 @@ from base_station.feed import LogFeed
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
 from base_station.forgetting.forgetter import Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
+from base_station.log_check import LogCheck
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
@@ -25,6 +26,9 @@ from base_station.recorder import Recorder
 from base_station.steady_clock import SteadyClock
 from shared.clock import Clock
 from shared.messages.station import Action
+
+_RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
+_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
 
 
 @dataclass(frozen=True)
@@ -38,11 +42,12 @@ class Disk:
     projection: SqlProjection
     checkpoints: Checkpoints
     clock: SteadyClock  # station time, behind all that is in the log
+    check: LogCheck
 
     @property
     def log(self) -> LogFeed:
         """What is written up to the moment of reading."""
-        return LogFeed(self.folder.log, self.recorder.flush)
+        return LogFeed(self.folder.log, self.recorder.flush, self.check.suspect)
 
     @property
     def archive(self) -> Archive:
@@ -85,9 +90,17 @@ class Disk:
 
 
 def open_disk(
-    folder: DataFolder, recorder: Recorder, clock: Clock, announce: Announce, closing: ExitStack
+    folder: DataFolder,
+    recorder: Recorder,
+    clock: Clock,
+    announce: Announce,
+    closing: ExitStack,
+    *,
+    alone: bool = True,
 ) -> Disk:
-    """The database is made from the log where there is none."""
+    """The database is made from the log where there is none.  ``alone``: no other station has a
+    copy of that.
+    """
     is_new = not folder.database.exists()
     store = closing.enter_context(Store(folder.database))
     if is_new and recorder.segments():
@@ -106,4 +119,5 @@ def open_disk(
         projection=projection,
         checkpoints=Checkpoints(folder.checkpoints),
         clock=steady,
+        check=LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER),
     )

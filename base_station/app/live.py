@@ -37,11 +37,11 @@ from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
-from base_station.log_check import LogCheck
 from base_station.past.checkpoints import Checkpoints, SavedState
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
+from base_station.standby.lacking import Lacking
 from base_station.standby.places import Place
 from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
 from base_station.views import StationFacts
@@ -52,9 +52,6 @@ from shared.messages.station import Action
 from shared.service_manager import ServiceManager
 
 _log = logging.getLogger(__name__)
-
-_RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
-_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
 
 
 class _Again(NamedTuple):
@@ -104,8 +101,8 @@ class _LiveStation:
         self._announce, self._manager = announce, manager
         self._again: _Again | None = None
         bus, steady = opened.bus, self._disk.clock
-        alone = not opened.config.standby.name
-        self._check = LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
+        self._lacking = Lacking()
+        self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
         self._side = self._new_side()
         self._share = FairShare(self._side.feed.offer, steady)
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
@@ -151,7 +148,7 @@ class _LiveStation:
             log=disk.recorder,
             disk=disk.log,
             files=disk.recorder,
-            check=self._check,
+            check=disk.check,
             live=opened.feed,
             clock=disk.clock,
             tables=KeptTables(disk.store),
@@ -227,7 +224,8 @@ class _LiveStation:
 
         def keep_house() -> None:
             index.update(opened.recorder.segments())
-            self._check.look(opened.recorder.segments())
+            self._disk.check.look(opened.recorder.segments())
+            self._make_good()
             if self._side.leads:
                 enrolled.update()
                 for report in self._share.news():
@@ -242,25 +240,34 @@ class _LiveStation:
     def _begin(self, place: tuple[int, int], state: StationState) -> None:
         """What the log says, before the drive runs."""
 
-        def is_held() -> bool:
+        def is_in_incident() -> bool:
             incident = state.incident
-            return not self._leads() or (incident is not None and incident.closed_ns is None)
+            return incident is not None and incident.closed_ns is None
 
-        self._disk.clock.hold_while(is_held)
+        self._is_in_incident = is_in_incident
+        self._lacking.note_stepped(self._stepped_from_ns, place[0])
+        self._disk.clock.hold_while(lambda: not self._leads() or is_in_incident())
         self._side.begin(place, state)
 
     def _leads(self) -> bool:
         return self._side.leads
 
     def _start_again(self, cut: Place | None) -> None:
-        self._again = self._again or _Again(cut)
+        self._again = self._again or _Again(cut, self._lacking.is_so)
         self._server.stop()
 
     def _step_again(self, end_ns: int) -> None:
-        """A standby shows what the active station shows; that one goes on as it is."""
-        if not self._leads() and end_ns > self._stepped_from_ns:
-            self._again = self._again or _Again(None, mended=True)
-            self._server.stop()
+        self._lacking.note_mended(end_ns)
+        self._make_good()
+
+    def _make_good(self) -> None:
+        standing = self._side.standing
+        spared = standing is not None and standing.view().in_step
+        in_incident = self._is_in_incident()
+        if self._lacking.can_be_made_good(
+            leads=self._leads(), spared=spared, in_incident=in_incident
+        ):
+            self._start_again(None)
 
     def _may_forget(self) -> bool:
         return self._side.may_forget() and not self._opened.feed.late_waits
@@ -293,7 +300,8 @@ class _LiveStation:
             *opened.expiry.problems(),
             *side.problems(),
             *self._forgettings.problems(),
-            *self._check.problems(),
+            *self._disk.check.problems(),
+            *self._lacking.problems(),
         ]
         if not opened.router.is_open:
             problems.append("The bus's router is away and is started again; no unit is linked")

@@ -1,0 +1,87 @@
+"""The log is looked at again: what was whole once may not be later."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from base_station.feed import LogFeed
+from base_station.log_check import LogCheck
+from base_station.recorder import Recorder
+from base_station.standby.lacking import Lacking
+from shared.channels import POSITION
+from shared.clock import NS_PER_S, SystemClock
+from shared.mcap_log import SegmentPolicy
+
+T0 = 1_800_000_000 * NS_PER_S
+
+
+@pytest.fixture
+def recorder(tmp_path: Path) -> Iterator[Recorder]:
+    recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(segment_s=1.0, chunk_bytes=4096))
+    chance = random.Random(1)
+    for number in range(300):
+        t_ns = T0 + number * NS_PER_S // 100
+        recorder.write(t_ns, POSITION.key("anna"), chance.randbytes(100))
+    recorder.flush()
+    yield recorder
+    recorder.close()
+
+
+def looked(check: LogCheck, recorder: Recorder, times: int = 5) -> LogCheck:
+    for _ in range(times):
+        check.look(recorder.segments())
+    return check
+
+
+def flip(recorder: Recorder) -> Path:
+    path = recorder.segments()[0].path
+    content = bytearray(path.read_bytes())
+    content[len(content) // 3] ^= 0x10
+    path.write_bytes(content)
+    return path
+
+
+def test_what_breaks_later_is_found_by_the_next_round(
+    recorder: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check = looked(LogCheck(""), recorder)
+    path = flip(recorder)
+    assert looked(check, recorder, 100).damaged == ()
+    monkeypatch.setattr("base_station.log_check._AGAIN_LOOKS", 50)
+    assert looked(check, recorder, 60).damaged == (path,)
+
+
+def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:
+    check = looked(LogCheck(""), recorder)
+    feed = LogFeed(recorder.folder, recorder.flush, check.suspect)
+    assert sum(1 for _ in feed.records()) == 300
+    path = flip(recorder)
+    assert sum(1 for _ in feed.records()) < 300
+    assert looked(check, recorder).damaged == (path,)
+    known = set(check._read)
+    list(feed.records())
+    assert check._read == known, "it is known"
+
+
+def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
+    lacking = Lacking()
+    lacking.note_stepped(100, 200)
+    for end_ns, lacks in ((90, False), (210, False), (150, True), (210, True)):
+        lacking.note_mended(end_ns)
+        assert lacking.is_so is lacks
+        assert bool(lacking.problems()) is lacks
+
+
+def test_a_station_that_lacks_something_starts_again_when_it_can_be_spared() -> None:
+    lacking = Lacking()
+    assert not lacking.can_be_made_good(leads=False, spared=True, in_incident=False)
+    lacking.note_stepped(100, 200)
+    lacking.note_mended(150)
+    assert lacking.can_be_made_good(leads=False, spared=False, in_incident=True)
+    assert lacking.can_be_made_good(leads=True, spared=True, in_incident=False)
+    assert not lacking.can_be_made_good(leads=True, spared=True, in_incident=True)
+    assert not lacking.can_be_made_good(leads=True, spared=False, in_incident=False)
