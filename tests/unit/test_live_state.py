@@ -209,6 +209,10 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
     place, last = (after.north_m, after.east_m), unit(script).trail[-1]
     assert place == pytest.approx((before.east_m, -111.3 - before.north_m), abs=1.0)
     assert place == pytest.approx((last.north_m, last.east_m), abs=0.5)
+    assert place == pytest.approx(script.pipeline.state.paths[U].shown_m, abs=1.0)
+    plain_trail = unit(script).plain_trail
+    assert plain_trail is not None, "the pin is of use"
+    assert place == pytest.approx((plain_trail[-1].north_m, plain_trail[-1].east_m), abs=1.0)
     assert after.t_meas_ns == before.t_meas_ns
     assert after.floor == 3
     pin = script.pipeline.state.pins["p1"]

@@ -314,7 +314,8 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     walk.go(5)
     walk.script.act(OpenIncident("i2", "Another"))
     state = walk.script.pipeline.state
-    assert state.pins == state.pin_verdicts == {}
+    assert not state.pins
+    assert not state.pin_verdicts
     assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
     walk.go(5)
     assert len(walk.trail("FF-01")) <= 6

@@ -11,6 +11,8 @@ import pytest
 from base_station.bench.rig import said
 from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.port import FixVerdict, PlaceFix
+from shared.channels import GPS, backfilled_key
+from shared.codec import encode
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix, Header
 from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
@@ -113,6 +115,28 @@ def test_bad_fixes_are_counted_by_reason_and_nobody_jumps(script: Script) -> Non
     after = script.fused[-1]
     assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 0.1
     assert sorted(not_used(script).values()) == [1, 1, 1, 1]
+
+
+def test_a_fix_of_an_earlier_run_is_of_no_path(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.position(U, 0.0, 0.0)
+    late = said.gps_fix(script.header(U), 52.0, 4.0)
+    script.boot_ids[U] = 8
+    script.wait(3, lambda: script.position(U, 0.0, 0.0))
+    script.record(backfilled_key(U, GPS.suffix), encode(late))
+    assert not_used(script) == {"from an earlier run of the unit": 1}
+    assert script.fused[-1].since_gps_s is None
+
+
+@pytest.mark.parametrize("said_by_hand", [SetPlan(PLAN), SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0)])
+def test_where_somebody_gave_the_frame_a_meaning_no_fix_does(
+    script: Script, said_by_hand: SetPlan | SetStart
+) -> None:
+    script.act(said_by_hand)
+    script.position(U, 0.0, 0.0)
+    script.gps(U, 52.0, 4.0)
+    assert script.pipeline.state.anchor is None
+    assert not_used(script) == {"the site has no anchor": 1}
 
 
 def test_without_an_anchor_everything_works_in_metres(script: Script) -> None:
