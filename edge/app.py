@@ -10,12 +10,12 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Timer
 
 from edge.black_box import BlackBox
-from edge.calibration import Calibration, identity, read_calibration, write_calibration
+from edge.calibration import Calibration, identity
+from edge.calibration_in_use import calibration_in_use
 from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
@@ -47,7 +47,7 @@ from shared.channels import NO_TRACKER, tracked_unit, tracker_id
 from shared.clock import SystemClock
 from shared.envelope import Stamper
 from shared.errors import ConfigError
-from shared.messages import EventKind, UnitEvent
+from shared.messages import EventKind, UnitDescription, UnitEvent
 from shared.service_manager import ServiceManager
 
 logger = logging.getLogger(__name__)
@@ -163,26 +163,11 @@ def compose_agent(
     raw = RawStream(unit_id, spool.boot_id)
     stamper = Stamper(unit_id, spool.boot_id, clock, clock.utc_std_s)
     worn = tracked_unit(unit_id) or unit_id
-    calibration = _calibration(config, worn, source.description, folder.calibrations)
-    description = raw.description(
-        clock.monotonic_ns(),
-        _as_set(source.description, config),
-        source=config.source,
-        tracker=config.tracker,
-        calibration="" if calibration is None else identity(calibration),
-    )
+    calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
+    description = _description(config, raw, source, calibration, clock)
     pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
-    black_box = BlackBox(
-        folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
-    )
     commands: SimpleQueue[bytes] = SimpleQueue()
-    servers = JournalServer(unit_id, spool), RecordingServer(unit_id, folder, clock)
-    link = Link(
-        unit_id,
-        station,
-        lambda _key, payload: commands.put(payload),
-        [(server.key_expression, server.replies) for server in servers],
-    )
+    link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
     outbox = Outbox(unit_id, spool, link.publish)
     if damaged is not None:
         detail = f"the journal was damaged and is set aside as {damaged.name}"
@@ -196,13 +181,48 @@ def compose_agent(
             desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
             stamper=stamper,
             clock=clock,
-            black_box=black_box,
+            black_box=BlackBox(
+                folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
+            ),
             spool=spool,
             outbox=outbox,
             link=link,
             commands=commands,
             manager=ServiceManager(os.environ),
         )
+    )
+
+
+def _description(
+    config: EdgeConfig,
+    raw: RawStream,
+    source: Source,
+    calibration: Calibration | None,
+    clock: StationClock,
+) -> UnitDescription:
+    return raw.description(
+        clock.monotonic_ns(),
+        _as_set(source.description, config),
+        source=config.source,
+        tracker=config.tracker,
+        calibration="" if calibration is None else identity(calibration),
+    )
+
+
+def _link(
+    unit_id: str,
+    station: OtherEnd,
+    commands: SimpleQueue[bytes],
+    spool: Spool,
+    recordings: RecordingServer,
+) -> Link:
+    """Over which commands come, and the station asks for what it lacks."""
+    servers = JournalServer(unit_id, spool), recordings
+    return Link(
+        unit_id,
+        station,
+        lambda _key, payload: commands.put(payload),
+        [(server.key_expression, server.replies) for server in servers],
     )
 
 
@@ -258,33 +278,6 @@ class ZenohStation:
 def _as_set(sensor: SensorDescription, config: EdgeConfig) -> SensorDescription:
     """What the settings say of a sensor goes before what its source does."""
     return sensor if config.gain_std is None else replace(sensor, gain_std=config.gain_std)
-
-
-def _calibration(
-    config: EdgeConfig, unit_id: str, sensor: SensorDescription, used: Path
-) -> Calibration | None:
-    """The calibration that was set, if it is of this unit and this sensor; a copy is kept with
-    those that were ``used``.
-    """
-    if config.calibration is None:
-        return None
-    calibration = read_calibration(config.calibration)
-    for what, made_for, this in (
-        ("unit", calibration.unit, unit_id),
-        ("sensor", calibration.sensor, sensor.name),
-    ):
-        if made_for and made_for != this:
-            raise ConfigError(
-                f"{config.calibration} is for {what} {made_for!r}, and this is {this!r}; give "
-                "its own calibration, or none"
-            )
-    if calibration.is_old(datetime.now(UTC)):
-        logger.warning("the calibration is old (%s); make a new one", calibration.made.date())
-    for fault in calibration.faults():
-        logger.warning("the calibration is poor: %s; make a new one", fault)
-    used.mkdir(exist_ok=True)
-    write_calibration(calibration, used / f"{identity(calibration)}.toml")
-    return calibration
 
 
 def _new_boot_id() -> int:

@@ -59,8 +59,7 @@ def run_replay_station(
         incident = records.require_incident(incident_id)
         announce_first_login(accounts, scratch / "first-login.txt", announce)
 
-        saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
-        archive = Archive(LogFeed(folder.log).records, Checkpoints(saved), new_pipeline)
+        archive = _archive(folder, scratch)
         replays = Replays(replay_starter(archive, roster, clock))
         services = Services(
             accounts=accounts,
@@ -81,6 +80,12 @@ def run_replay_station(
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         asyncio.run(serve_until_stopped(server, announce))
+
+
+def _archive(folder: DataFolder, scratch: Path) -> Archive:
+    """Begins at what the station saved, where it did; nothing is saved beside it."""
+    saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
+    return Archive(LogFeed(folder.log).records, Checkpoints(saved), new_pipeline)
 
 
 def _ignore(_: object) -> None:

@@ -1,0 +1,41 @@
+"""The calibration that a unit was given: whether it is its own, and how good it still is."""
+
+from __future__ import annotations
+
+import logging
+from datetime import UTC, datetime
+from pathlib import Path
+
+from edge.calibration import Calibration, identity, read_calibration, write_calibration
+from edge.config import EdgeConfig
+from edge.samples import SensorDescription
+from shared.errors import ConfigError
+
+_log = logging.getLogger(__name__)
+
+
+def calibration_in_use(
+    config: EdgeConfig, unit_id: str, sensor: SensorDescription, used: Path
+) -> Calibration | None:
+    """The calibration that was set, if it is of this unit and this sensor; a copy is kept with
+    those that were ``used``.
+    """
+    if config.calibration is None:
+        return None
+    calibration = read_calibration(config.calibration)
+    for what, made_for, this in (
+        ("unit", calibration.unit, unit_id),
+        ("sensor", calibration.sensor, sensor.name),
+    ):
+        if made_for and made_for != this:
+            raise ConfigError(
+                f"{config.calibration} is for {what} {made_for!r}, and this is {this!r}; give "
+                "its own calibration, or none"
+            )
+    if calibration.is_old(datetime.now(UTC)):
+        _log.warning("the calibration is old (%s); make a new one", calibration.made.date())
+    for fault in calibration.faults():
+        _log.warning("the calibration is poor: %s; make a new one", fault)
+    used.mkdir(exist_ok=True)
+    write_calibration(calibration, used / f"{identity(calibration)}.toml")
+    return calibration
