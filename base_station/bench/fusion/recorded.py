@@ -2,8 +2,9 @@
 
 Recipe: a trial is tracked as it is (``muster track WALKS/TRIAL --out TRACKS/TRIAL.csv``).  Its
 measured truth, turned by a drawn angle, gets a fix a second during the first 60 per cent of the
-walk and none after, with the receiver errors of ``walks``.  The tracker's own frame has
-whatever heading it came to.  Every trial is fused with several draws of angle and errors.
+walk and none after, with the receiver errors of ``walks`` and a part that all receivers share.
+The tracker's own frame has whatever heading it came to.  Every trial is fused with many draws
+of angle and errors.
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from base_station.bench.fusion.walks import RATE_HZ, Floats, Receiver, Walk, run
+from base_station.bench.fusion.walks import RATE_HZ, Errors, Floats, Receiver, Walk, run
 from base_station.bench.incident.scores import CHI2_95_2DOF
 from base_station.fusion.port import FuserKind
 from shared.errors import UserError
 
 WITH_GPS = 0.6  # of a walk
-DRAWS = 6
+DRAWS = 24  # what all receivers share hardly changes during a walk: each draw has one
 SETTLED_S = 20.0
+ERRORS = Errors(common_m=1.5)  # orbits, clocks and the air, where nobody takes them off
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ def fuse_recorded(kind: FuserKind, tracked: list[Tracked], draws: int = DRAWS) -
             cut = round(WITH_GPS * len(walk))
             begin = round(SETTLED_S * RATE_HZ)
             until_s = float(recorded.t_s[cut])
-            receiver = Receiver(rng)
+            receiver = Receiver(rng, ERRORS)
             fused = run(kind.new(), walk, receiver, (-math.inf, until_s))
             errors_m = np.array(fused.error_m)
             scores.note("fused", errors_m[begin:cut], errors_m[cut:])
@@ -80,7 +82,7 @@ def fuse_recorded(kind: FuserKind, tracked: list[Tracked], draws: int = DRAWS) -
             scores.held_after += held[cut:].tolist()
             again = np.random.default_rng(100 * number + draw)
             turned(recorded, again)  # so that the receiver errs for the peers as for the fuser
-            alone_m, switching_m = _peers(walk, Receiver(again), cut, rng)
+            alone_m, switching_m = _peers(walk, Receiver(again, ERRORS), cut, rng)
             scores.note("fixes alone", alone_m[begin:cut], alone_m[cut:])
             scores.note("switching", switching_m[begin:cut], switching_m[cut:])
     return scores

@@ -2,7 +2,8 @@
 
 The errors are drawn by models of their own, not by the fuser's: the path's heading wanders by
 distance and turning, its scale is a little wrong, each step adds a little; a fix's error is part
-white and part slow, and its receiver is as wrong as it says.
+white and part slow, part of it common to all receivers where that is said, and its receiver is as
+wrong as it says.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.bench.incident.scores import CHI2_95_2DOF, normalised2
+from base_station.bench.incident.sensors import COMMON_S
 from base_station.bench.rig import said
 from base_station.fusion.port import FixVerdict, Fuser, PlaceFix
 from shared.messages import Header, Position
@@ -31,7 +33,8 @@ class Errors:
     scale_std: float = 0.02
     step_m_per_sqrt_m: float = 0.04
     fix_std_m: float = 3.0
-    slow_part: float = 0.6
+    common_m: float = 0.0  # of that, what all receivers of the site share; the rest is its own
+    slow_part: float = 0.6  # of its own
     slow_s: float = 25.0
 
 
@@ -104,21 +107,25 @@ class Walk:
 
 @dataclass
 class Receiver:
-    """Gives fixes whose error is part slow and part white."""
+    """Gives fixes whose error is part common, part slow and part white."""
 
     rng: np.random.Generator
     errors: Errors = field(default_factory=Errors)
     slow: Floats = field(default_factory=lambda: np.zeros(2))
+    common: Floats = field(default_factory=lambda: np.zeros(2))
     before_s: float | None = None
 
     def fix(self, t_s: float, place_m: Floats) -> PlaceFix:
-        errors = self.errors
-        keep = 0.0 if self.before_s is None else math.exp(-(t_s - self.before_s) / errors.slow_s)
+        errors, since_s = self.errors, math.inf if self.before_s is None else t_s - self.before_s
         self.before_s = t_s
-        self.slow = keep * self.slow + math.sqrt(1.0 - keep**2) * self.rng.normal(size=2)
+        self.slow = self._went_on(self.slow, since_s / errors.slow_s)
         error = math.sqrt(errors.slow_part) * self.slow
         error = error + math.sqrt(1.0 - errors.slow_part) * self.rng.normal(size=2)
-        north_m, east_m = place_m + errors.fix_std_m * error
+        error_m = math.sqrt(errors.fix_std_m**2 - errors.common_m**2) * error
+        if errors.common_m > 0.0:
+            self.common = self._went_on(self.common, since_s / COMMON_S)
+            error_m = error_m + errors.common_m * self.common
+        north_m, east_m = place_m + error_m
         return PlaceFix(
             t_mono_ns=said.mono_ns(t_s),
             north_m=float(north_m),
@@ -127,6 +134,11 @@ class Receiver:
             horizontal_std_m=errors.fix_std_m,
             vertical_std_m=None,
         )
+
+    def _went_on(self, error: Floats, since: float) -> Floats:
+        """An error of unit variance after so many of its correlation times."""
+        keep = math.exp(-since)
+        return keep * error + math.sqrt(1.0 - keep**2) * self.rng.normal(size=2)
 
 
 @dataclass
