@@ -61,49 +61,45 @@ the stated 95 % ellipse, the track fitted to the truth, or held at its start"""
 WIDTH = 110  # that the tables need
 
 
+SimulatedOption = Annotated[
+    bool, typer.Option("--simulated", help="Also score the thesis's walks, simulated.")
+]
+SpeedOption = Annotated[
+    bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
+]
+PerturbedOption = Annotated[
+    bool, typer.Option("--perturbed", help="Also track every trial with worse sensors (a minute).")
+]
+HonestyOption = Annotated[
+    bool,
+    typer.Option("--honesty", help="Also compare what is stated of simulated walks (minutes)."),
+]
+WearersOption = Annotated[
+    bool,
+    typer.Option("--wearers", help="Also track simulated wearers that nobody recorded (minutes)."),
+]
+LeftOutOption = Annotated[
+    bool, typer.Option("--cross-validate", help="Also leave each dataset out once (a minute).")
+]
+
+
 def bench_track(
     data: Annotated[Path, typer.Argument(help="A folder of trials, such as shared/data/walks.")],
     json_file: FiguresFile = None,
     tracker: Annotated[
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
-    simulated: Annotated[
-        bool, typer.Option("--simulated", help="Also score the thesis's walks, simulated.")
-    ] = False,
-    speed: Annotated[
-        bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
-    ] = False,
-    perturbed: Annotated[
-        bool,
-        typer.Option("--perturbed", help="Also track every trial with worse sensors (a minute)."),
-    ] = False,
-    honesty: Annotated[
-        bool,
-        typer.Option("--honesty", help="Also compare what is stated of simulated walks (minutes)."),
-    ] = False,
-    wearers: Annotated[
-        bool,
-        typer.Option(
-            "--wearers", help="Also track simulated wearers that nobody recorded (minutes)."
-        ),
-    ] = False,
-    cross_validation: Annotated[
-        bool,
-        typer.Option("--cross-validate", help="Also leave each dataset out once (a minute)."),
-    ] = False,
+    simulated: SimulatedOption = False,
+    speed: SpeedOption = False,
+    perturbed: PerturbedOption = False,
+    honesty: HonestyOption = False,
+    wearers: WearersOption = False,
+    cross_validation: LeftOutOption = False,
 ) -> None:
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
     console = Console(width=max(Console().width, WIDTH))
     trials = find_trials(data)
-    scorings = [partial(score_trial, path, tracker) for path in trials]
-    if simulated:
-        scorings += [partial(score_simulation, walk, tracker) for walk in simulated_walks()]
-    scores = [
-        scoring()
-        for scoring in progress_bar(
-            scorings, description="Scoring", console=Console(stderr=True), transient=True
-        )
-    ]
+    scores = _scores(trials, tracker, simulated)
     console.print(trial_table(scores))
     console.print(summary_table(scores))
     report: dict[str, object] = {
@@ -112,19 +108,9 @@ def bench_track(
         "datasets": summarise(scores),
     }
     if speed:
-        figures = measure_speed(RecordingSource(trials[0]), tracker)
-        print_speed(console, figures)
-        report["speed"] = asdict(figures)
+        report["speed"] = _speed(trials[0], tracker, console)
     if perturbed:
-        outcomes = score_perturbed(trials, tracker)
-        console.print(perturbed_table(outcomes))
-        for outcome in outcomes:
-            if outcome.silent:
-                console.print(
-                    f"silent: {outcome.perturbation}, {outcome.dataset} {outcome.trial}, "
-                    f"{outcome.error_m:.2f} m"
-                )
-        report["perturbed"] = [asdict(outcome) for outcome in outcomes]
+        report["perturbed"] = _perturbed(trials, tracker, console)
     if honesty:
         results = measure_honesty()
         console.print(honesty_table(results))
@@ -138,6 +124,36 @@ def bench_track(
         console.print(left_out_table(left_out))
         report["cross_validation"] = [asdict(entry) for entry in left_out]
     write_figures(json_file, report)
+
+
+def _scores(trials: Sequence[Path], tracker: str, simulated: bool) -> list[TrialScore]:
+    scorings = [partial(score_trial, path, tracker) for path in trials]
+    if simulated:
+        scorings += [partial(score_simulation, walk, tracker) for walk in simulated_walks()]
+    return [
+        scoring()
+        for scoring in progress_bar(
+            scorings, description="Scoring", console=Console(stderr=True), transient=True
+        )
+    ]
+
+
+def _speed(trial: Path, tracker: str, console: Console) -> dict[str, object]:
+    figures = measure_speed(RecordingSource(trial), tracker)
+    print_speed(console, figures)
+    return asdict(figures)
+
+
+def _perturbed(trials: Sequence[Path], tracker: str, console: Console) -> list[dict[str, object]]:
+    outcomes = score_perturbed(trials, tracker)
+    console.print(perturbed_table(outcomes))
+    for outcome in outcomes:
+        if outcome.silent:
+            console.print(
+                f"silent: {outcome.perturbation}, {outcome.dataset} {outcome.trial}, "
+                f"{outcome.error_m:.2f} m"
+            )
+    return [asdict(outcome) for outcome in outcomes]
 
 
 def find_trials(data: Path) -> list[Path]:
