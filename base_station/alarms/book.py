@@ -172,7 +172,8 @@ def _move_level(
     alarm.clear_since_ns = None
     rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
     if rank == standing and _happened_again(alarm, finding):
-        alarm.state, alarm.by, alarm.changed_ns = AlarmState.RAISED, "", state.t_ns
+        alarm.state, alarm.by, alarm.text = AlarmState.RAISED, "", finding.text
+        alarm.changed_ns = state.t_ns
         return alarm
     if rank == standing or (rank < standing and alarm.latched):
         alarm.lower_since_ns = None
@@ -192,12 +193,13 @@ def _move_level(
 
 
 def _happened_again(alarm: Alarm, finding: Finding) -> bool:
-    """Somebody has acknowledged the mayday, the fall, the silence; and now there is another one."""
-    return (
-        alarm.state is AlarmState.ACKNOWLEDGED
-        and finding.priority == IMMEDIATE
-        and finding.onset_ns > alarm.changed_ns
-    )
+    """Somebody has acknowledged the mayday, the fall, the silence; and now there is another one.
+    Or it is another fault than the one that stands there.
+    """
+    if finding.onset_ns <= alarm.changed_ns:
+        return False
+    is_known = alarm.state is AlarmState.ACKNOWLEDGED and finding.priority == IMMEDIATE
+    return is_known or (finding.latched and finding.text != alarm.text)
 
 
 def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:

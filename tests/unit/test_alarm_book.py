@@ -236,6 +236,23 @@ def test_a_sensor_that_fails_is_told_in_the_unit_s_words_until_a_person_has_seen
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED", "RAISED"]
 
 
+def test_another_fault_is_told_while_the_first_one_stands(script: Script) -> None:
+    script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
+    script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
+    for detail in (
+        "the accelerometer is stuck",
+        "the gyroscope is stuck",
+        "the gyroscope is stuck",
+    ):
+        script.wait(1)
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+    assert [(one.state.name, "gyroscope" in one.text) for one in script.alarms] == [
+        ("RAISED", False),
+        ("ACKNOWLEDGED", False),
+        ("RAISED", True),
+    ]
+
+
 def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     script.wait(2, lambda: script.status(U, battery=0.09))
     script.wait(60, lambda: script.status(U, battery=0.12))
