@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 import os
 import secrets
 from collections.abc import Callable
@@ -15,29 +14,28 @@ from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.services import Services
 from base_station.app.early import early_console
+from base_station.app.facts import facts_of
 from base_station.app.folder import cut_log
 from base_station.app.opened import Opened, open_station
 from base_station.app.parts import (
     Announce,
     announce_first_login,
-    new_pipeline,
     replay_starter,
 )
+from base_station.app.start_drive import start_drive
 from base_station.clock_server import ClockServer
 from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig
 from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
-from base_station.drive import StationDrive
 from base_station.fair_share import FairShare
-from base_station.feed import LogFeed
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
-from base_station.past.checkpoints import Checkpoints, SavedState
+from base_station.past.checkpoints import Checkpoints
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
@@ -50,8 +48,6 @@ from shared.envelope import Stamper
 from shared.messages import STATION_ID
 from shared.messages.station import Action
 from shared.service_manager import ServiceManager
-
-_log = logging.getLogger(__name__)
 
 
 class _Again(NamedTuple):
@@ -116,7 +112,7 @@ class _LiveStation:
         )
         saved = self._disk.checkpoints.latest()
         self._stepped_from_ns = saved.t_ns if saved else 0
-        self._drive = _start_drive(
+        self._drive = start_drive(
             self._disk.log, saved, self._surroundings(), self._begin, self._recovering()
         )
         self._gate = self._side.gate_to(self._drive)
@@ -293,50 +289,10 @@ class _LiveStation:
         not, and the service manager hears of it.
         """
         self._manager.working()
-        opened, side = self._opened, self._side
-        problems = [
-            *opened.config.standing_problems(),
-            *self._disk.clock.problems(),
-            *opened.expiry.problems(),
-            *side.problems(),
-            *self._forgettings.problems(),
-            *self._disk.check.problems(),
-            *self._lacking.problems(),
-        ]
-        if not opened.router.is_open:
-            problems.append("The bus's router is away and is started again; no unit is linked")
-        if opened.feed.overflowed:
-            lost = opened.feed.overflowed
-            problems.append(f"{lost} messages came faster than this machine can take them")
-        return StationFacts(
-            problems=tuple(problems),
-            log_bytes=opened.recorder.log_bytes,
-            disk_free_bytes=opened.recorder.disk_free_bytes,
-            insecure=bool(opened.config.plain_endpoints()),
-            standby=None if side.standing is None else side.standing.view(),
-            recordings=opened.recordings.views(),
-        )
+        others = (self._forgettings, self._disk.check, self._lacking)
+        return facts_of(self._opened, self._disk.clock, self._side, others)
 
     def _ready(self, line: str) -> None:
         """Consoles can connect."""
         self._announce(line)
         self._manager.ready()
-
-
-def _start_drive(
-    log: LogFeed,
-    saved: SavedState | None,
-    surroundings: Surroundings,
-    begin: Callable[[tuple[int, int], StationState], None],
-    recovery: AbstractContextManager[Watch],
-) -> StationDrive:
-    """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
-    pipeline = new_pipeline(saved.pipeline if saved else None)
-    drive = StationDrive(pipeline, surroundings)
-    place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
-    with recovery as watched:
-        stepped = drive.rebuild(watched(log.records(place[0])), place)
-    _log.info("live state from the log: %d events after the checkpoint", stepped)
-    begin(drive.place, pipeline.state)
-    drive.start()
-    return drive

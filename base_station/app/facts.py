@@ -1,0 +1,40 @@
+"""What consoles are told of the station's surroundings, beside what its log says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+from base_station.app.opened import Opened
+from base_station.standby.side import Side
+from base_station.steady_clock import SteadyClock
+from base_station.views import StationFacts
+
+
+class Troubled(Protocol):
+    """A part that may have something to say."""
+
+    def problems(self) -> Iterable[str]: ...
+
+
+def facts_of(
+    opened: Opened, clock: SteadyClock, side: Side, others: Sequence[Troubled]
+) -> StationFacts:
+    parts: tuple[Troubled, ...] = (clock, opened.expiry, side, *others)
+    problems = [
+        *opened.config.standing_problems(),
+        *(problem for part in parts for problem in part.problems()),
+    ]
+    if not opened.router.is_open:
+        problems.append("The bus's router is away and is started again; no unit is linked")
+    if opened.feed.overflowed:
+        lost = opened.feed.overflowed
+        problems.append(f"{lost} messages came faster than this machine can take them")
+    return StationFacts(
+        problems=tuple(problems),
+        log_bytes=opened.recorder.log_bytes,
+        disk_free_bytes=opened.recorder.disk_free_bytes,
+        insecure=bool(opened.config.plain_endpoints()),
+        standby=None if side.standing is None else side.standing.view(),
+        recordings=opened.recordings.views(),
+    )
