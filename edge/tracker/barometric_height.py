@@ -25,7 +25,7 @@ from edge.tracker.error_model import POSITION
 from edge.tracker.measuring import begin_updates, end_updates, measure
 from edge.tracker.side_filter import agree, handed_over, project
 from edge.tracker.side_filter import measure as measure_aside
-from edge.tracker.state import Aid, FilterState, Progress, Ring
+from edge.tracker.state import Aid, FilterState, Progress, Ring, Step
 
 DOWN = POSITION + 2
 OFFSET = 1  # the barometer's own error, after that of the tracker's height
@@ -35,7 +35,13 @@ THINNEST_PA, DENSEST_PA = 3e4, 1.2e5  # what is said beyond these is no pressure
 
 @njit()
 def heed_pressure(
-    ring: Ring, progress: Progress, state: FilterState, slot: int, still: bool, config: EskfConfig
+    ring: Ring,
+    step: Step,
+    progress: Progress,
+    state: FilterState,
+    slot: int,
+    still: bool,
+    config: EskfConfig,
 ) -> None:
     """Gather the pressure of a stance; look at it when the stance ends, or once a second."""
     barometer = state.barometer
@@ -48,7 +54,7 @@ def heed_pressure(
     if still and lasted_s < look_s:
         return
     if lasted_s >= config.aid_stance_s:
-        _look(ring, progress, state, slot, lasted_s, config)
+        _look(ring, step, progress, state, slot, lasted_s, config)
     barometer.samples = 0
 
 
@@ -92,6 +98,7 @@ def _start(barometer: Aid, pressure_pa: float, t_s: float) -> None:
 @njit()
 def _look(
     ring: Ring,
+    step: Step,
     progress: Progress,
     state: FilterState,
     slot: int,
@@ -126,7 +133,7 @@ def _look(
             noise,
             barometer.column,
         )
-        _hand_over(ring, progress, state, slot, prior, config)
+        _hand_over(step, progress, state, ring[slot].t_s, prior, config)
     if barometer.riding:
         # Until the next look.
         state.covariance[DOWN, DOWN] += (config.ride_speed_mps * config.ride_look_s) ** 2
@@ -135,7 +142,7 @@ def _look(
 
 @njit()
 def _hand_over(
-    ring: Ring, progress: Progress, state: FilterState, slot: int, prior: float, config: EskfConfig
+    step: Step, progress: Progress, state: FilterState, t_s: float, prior: float, config: EskfConfig
 ) -> None:
     """Bring the height to what is known now, and the floor that is walked on with it."""
     barometer = state.barometer
@@ -144,11 +151,11 @@ def _hand_over(
         return
     before_m = state.position_n_m[2]
     begin_updates(state)
-    measure(ring, state, slot, DOWN, residual_m, variance)
+    measure(step, state, DOWN, residual_m, variance)
     end_updates(state)
     moved_m = state.position_n_m[2] - before_m
     if barometer.riding and abs(moved_m) > config.ride_going_m:
-        barometer.felt_s = ring[slot].t_s
+        barometer.felt_s = t_s
     progress.level_m += moved_m
     progress.footfall_n_m[2] += moved_m
     progress.level_variance_m2 = min(progress.level_variance_m2, state.covariance[DOWN, DOWN])

@@ -142,8 +142,6 @@ def admit(
     """
     mask = len(ring) - 1
     for i in range(len(t_ns)):
-        slot = (received + i) & mask
-        ring[slot].t_ns = t_ns[i]
         flags = _reading_flags(gate, limits, accel_mps2[i], gyro_radps[i])
         if flags & BAD_SAMPLES == 0:
             flags |= _time_flags(gate, t_ns[i], gap_s)
@@ -152,24 +150,32 @@ def admit(
             for j in range(3):
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
+        sample = ring[(received + i) & mask]
+        sample.t_ns = t_ns[i]
+        _write_good(sample, gate[0], limits, flags)
         for j in range(3):
-            rate_radps = abs(gate[0].gyro_radps[j])
-            clipped = rate_radps >= limits.gyro_clip_radps or rate_radps >= gate[0].clip_radps[j]
-            ring[slot].clipped[j] = clipped
-            if clipped and flags & BAD_SAMPLES == 0:
-                flags |= GYRO_SATURATED
-            ring[slot].force_clipped[j] = abs(gate[0].accel_mps2[j]) >= limits.accel_clip_mps2
-            ring[slot].accel_mps2[j] = gate[0].accel_mps2[j]
-            ring[slot].gyro_radps[j] = gate[0].gyro_radps[j]
-            ring[slot].hidden_noise[j] = 0.0
-            ring[slot].hidden_force_noise[j] = 0.0
-        for j in range(3):
-            ring[slot].mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
-        ring[slot].pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan
-        ring[slot].temperature_degc = temperature_degc[i] if len(temperature_degc) else np.nan
-        ring[slot].arrival_s = gate[0].arrival_s
-        ring[slot].period_s = gate[0].period_s
-        ring[slot].flags = flags
+            sample.mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
+        sample.pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan
+        sample.temperature_degc = temperature_degc[i] if len(temperature_degc) else np.nan
+
+
+@njit()
+def _write_good(sample: Any, gate: Any, limits: Limits, flags: int) -> None:
+    """Write the last good readings and their time into a record of the ring."""
+    for j in range(3):
+        rate_radps = abs(gate.gyro_radps[j])
+        clipped = rate_radps >= limits.gyro_clip_radps or rate_radps >= gate.clip_radps[j]
+        if clipped and flags & BAD_SAMPLES == 0:
+            flags |= GYRO_SATURATED
+        sample.clipped[j] = clipped
+        sample.force_clipped[j] = abs(gate.accel_mps2[j]) >= limits.accel_clip_mps2
+        sample.accel_mps2[j] = gate.accel_mps2[j]
+        sample.gyro_radps[j] = gate.gyro_radps[j]
+        sample.hidden_noise[j] = 0.0
+        sample.hidden_force_noise[j] = 0.0
+    sample.arrival_s = gate.arrival_s
+    sample.period_s = gate.period_s
+    sample.flags = flags
 
 
 @njit()

@@ -22,7 +22,16 @@ from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
-from edge.tracker.state import RING, Progress, Ring, new_filter_state, new_progress, reach
+from edge.tracker.state import (
+    RING,
+    STEP,
+    Progress,
+    Ring,
+    Trail,
+    new_filter_state,
+    new_progress,
+    reach,
+)
 from edge.tracker.zero_velocity import measure_motion, stride_minimum
 from shared.earth_field import EarthField
 
@@ -41,6 +50,7 @@ class EskfTracker:
         rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = np.zeros(slots, RING)
+        self._trail = np.zeros(slots // 4, STEP)
         self._progress = new_progress()
         self._limits = limits_of(description, self.config.saturation_ratio)
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
@@ -84,7 +94,7 @@ class EskfTracker:
 
     def _work(self, *, final: bool) -> TrackBatch:
         first = int(self._progress["released"][0])
-        stop = work(self._ring, self._progress, self._state, self._parameters, final)
+        stop = work(self._ring, self._trail, self._progress, self._state, self._parameters, final)
         return rows_of(self._ring, first, stop)
 
 
@@ -108,6 +118,7 @@ def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:
 @njit(cache=True)
 def work(
     ring: Ring,
+    trail: Trail,
     progress: NDArray[Any],
     state: NDArray[Any],
     parameters: NDArray[Any],
@@ -136,11 +147,11 @@ def work(
             break
         slot = k & (len(ring) - 1)
         ring[slot].stride_minimum_m2ps4 = stride_minimum(ring, memory, k, config)
-        filter_sample(ring, memory, state[0], k, config)
+        filter_sample(ring, trail, memory, state[0], k, config)
         memory.filtered = k + 1
-        _release(ring, memory, k, config)
+        _release(ring, trail, memory, k, config)
     if final and memory.released < memory.filtered:
-        smooth(ring, memory.released, memory.filtered, memory.filtered - 1)
+        smooth(ring, trail, memory.released, memory.filtered, memory.filtered - 1)
         memory.released = memory.filtered
     return int(memory.released)
 
@@ -161,7 +172,7 @@ def _is_past(ring: Ring, count: int, k: int, wait_s: float) -> bool:
 
 
 @njit()
-def _release(ring: Ring, memory: Progress, k: int, config: EskfConfig) -> None:
+def _release(ring: Ring, trail: Trail, memory: Progress, k: int, config: EskfConfig) -> None:
     """Smooth and release rows once sample ``k`` is filtered.
 
     Firm stance adds little to what is known of the rows before it, so they go at
@@ -174,10 +185,10 @@ def _release(ring: Ring, memory: Progress, k: int, config: EskfConfig) -> None:
     if memory.in_stance and now_s - memory.stance_since_s >= config.stance_release_s:
         memory.stance_since_s = now_s
         stop = k + 1
-    elif now_s - ring[first & mask].t_s >= config.lag_s or k - first >= len(ring) // 4:
+    elif now_s - ring[first & mask].t_s >= config.lag_s or k - first >= len(trail) - 1:
         while stop <= k and now_s - ring[stop & mask].t_s >= KEEP_OF_LAG * config.lag_s:
             stop += 1
         stop = max(stop, first + 1)
     if stop > first:
-        smooth(ring, first, stop, k)
+        smooth(ring, trail, first, stop, k)
         memory.released = stop

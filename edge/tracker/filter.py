@@ -30,7 +30,7 @@ from edge.tracker.landing import land, lift_off
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import glides, stand
-from edge.tracker.state import FilterState, Progress, Ring, reach
+from edge.tracker.state import FilterState, Progress, Ring, Step, Trail, reach
 from edge.tracker.stated import bend_way, state_position
 from edge.tracker.strapdown import advance, dot, rotation_matrix
 from edge.tracker.verdict import judge, note_faults
@@ -42,10 +42,12 @@ MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
 
 @njit()
 def filter_sample(
-    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+    ring: Ring, trail: Trail, progress: Progress, state: FilterState, k: int, config: EskfConfig
 ) -> None:
-    """Take sample ``k`` of the ring into ``state`` and write its row and the smoother's."""
+    """Take sample ``k`` of the ring into ``state``; write its row and its step of the trail."""
     slot = k & (len(ring) - 1)
+    step = trail[k & (len(trail) - 1)]
+    step.updates = 0
     if ring[slot].flags & GYRO_SATURATED:
         stop = min(progress.measured, reach(ring, k))
         bridge_clipping(ring, k, stop, config)
@@ -55,9 +57,8 @@ def filter_sample(
     if k == 0:
         _start(ring, progress, state, config)
     else:
-        _predict(ring, progress, state, k, config)
-    follow_warmth(ring, progress, state, k, config)
-    ring[slot].updates = 0
+        _predict(ring, step, progress, state, k, config)
+    follow_warmth(ring, step, progress, state, slot, config)
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
     still = still and not glides(ring, state, slot, config)
@@ -65,21 +66,22 @@ def filter_sample(
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         believe_rest(state, config)
         if not progress.in_stance:
-            land(ring, state, slot, config)
-        stand(ring, state, slot, config)
+            land(ring, step, state, slot, config)
+        stand(ring, step, state, slot, config)
         state.swing_rad = 0.0
         state.swing_speed_mps = 0.0
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
-            settle(ring, progress, state, slot, config)
+            settle(ring, step, progress, state, slot, config)
     elif progress.in_stance:
         lift_off(state, config)
     doubt_bias(state, config)
-    heed_field(ring, state, slot, still, config)
-    heed_pressure(ring, progress, state, slot, still, config)
+    heed_field(ring, step, state, slot, still, config)
+    heed_pressure(ring, step, progress, state, slot, still, config)
     if note_faults(ring, progress, slot):
         state.faulty_stride = True
     _count_steps(progress, state, still, ring[slot].t_s)
-    _write_row(ring, progress, state, slot, still, config)
+    _write_row(ring, progress, state, slot, still)
+    state_position(ring, step, state, slot, config)
     judge(ring, progress, state, slot, config)
 
 
@@ -115,7 +117,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
 
 @njit()
 def _predict(
-    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+    ring: Ring, step: Step, progress: Progress, state: FilterState, k: int, config: EskfConfig
 ) -> None:
     mask = len(ring) - 1
     slot = k & mask
@@ -150,9 +152,9 @@ def _predict(
     _add_noise(ring, progress, state, k, dt_s, config)
     ring[slot].interval_s = dt_s
     for i in range(3):
-        ring[slot].force_n_mps2[i] = state.force_n_mps2[i]
+        step.force_n_mps2[i] = state.force_n_mps2[i]
         for j in range(3):
-            ring[slot].rotation_nb[i, j] = state.rotation_nb[i, j]
+            step.rotation_nb[i, j] = state.rotation_nb[i, j]
 
 
 @njit()
@@ -249,20 +251,12 @@ def _count_steps(progress: Progress, state: FilterState, still: bool, t_s: float
 
 
 @njit()
-def _write_row(
-    ring: Ring,
-    progress: Progress,
-    state: FilterState,
-    slot: int,
-    still: bool,
-    config: EskfConfig,
-) -> None:
+def _write_row(ring: Ring, progress: Progress, state: FilterState, slot: int, still: bool) -> None:
     for i in range(3):
         ring[slot].position_n_m[i] = state.position_n_m[i]
         ring[slot].velocity_n_mps[i] = state.velocity_n_mps[i]
     for i in range(4):
         ring[slot].quaternion_nb[i] = state.quaternion_nb[i]
-    state_position(ring, state, slot, config)
     ring[slot].stationary = still
     ring[slot].distance_m = progress.distance_m
     ring[slot].steps = progress.steps

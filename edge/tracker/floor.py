@@ -23,14 +23,14 @@ from numba import njit
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION, SIZE
 from edge.tracker.measuring import remember
-from edge.tracker.state import FilterState, Progress, Ring
+from edge.tracker.state import FilterState, Progress, Ring, Step
 
 DOWN = POSITION + 2
 
 
 @njit()
 def settle(
-    ring: Ring, progress: Progress, state: FilterState, slot: int, config: EskfConfig
+    ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
     """Look at the floor once a stance, at its stillest sample."""
     if not progress.on_floor:
@@ -39,7 +39,7 @@ def settle(
     elif ring[slot].t_s - progress.footfall_s < config.floor_pause_s:
         return
     elif _is_flat(progress, state, config):
-        _hold_level(ring, progress, state, slot, config)
+        _hold_level(step, progress, state, config)
     else:
         _climb(progress, state, config)
     for i in range(3):
@@ -74,12 +74,10 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
 
 
 @njit()
-def _hold_level(
-    ring: Ring, progress: Progress, state: FilterState, slot: int, config: EskfConfig
-) -> None:
+def _hold_level(step: Step, progress: Progress, state: FilterState, config: EskfConfig) -> None:
     off_m = progress.level_m - state.position_n_m[2]
     variance_m2 = config.floor_std_m**2 + progress.level_variance_m2
-    taken_m = _measure_height_only(ring, state, slot, off_m, variance_m2)
+    taken_m = _measure_height_only(step, state, off_m, variance_m2)
     if off_m * progress.withheld_m < 0.0:
         progress.past_ramps_m2 += _ramp_variance(progress, config)
         progress.withheld_m = 0.0
@@ -115,9 +113,7 @@ def _enter_level(progress: Progress, state: FilterState) -> None:
 
 
 @njit()
-def _measure_height_only(
-    ring: Ring, state: FilterState, slot: int, off_m: float, variance_m2: float
-) -> float:
+def _measure_height_only(step: Step, state: FilterState, off_m: float, variance_m2: float) -> float:
     """Correct the height and nothing else (Schmidt's consider filter); return by how much.
 
     Were a gentle ramp allowed to teach the biases that it is flat, it would never show.
@@ -131,9 +127,9 @@ def _measure_height_only(
         p[j, DOWN] = p[DOWN, j]
     p[DOWN, DOWN] = kept
     state.position_n_m[2] += gain * off_m
-    u = ring[slot].updates
+    u = step.updates
     for j in range(SIZE):
-        ring[slot].update_gain[u, j] = 0.0
-    ring[slot].update_gain[u, DOWN] = gain
-    remember(ring, slot, DOWN, weight * off_m)
+        step.update_gain[u, j] = 0.0
+    step.update_gain[u, DOWN] = gain
+    remember(step, DOWN, weight * off_m)
     return float(gain * off_m)

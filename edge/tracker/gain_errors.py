@@ -12,6 +12,8 @@ covariance is the unit matrix.
 
 from __future__ import annotations
 
+from typing import Any
+
 from numba import njit
 
 from edge.samples import Floats
@@ -41,25 +43,35 @@ def follow_gain_errors(state: FilterState, dt_s: float, config: EskfConfig) -> f
     for g in range(GAIN_ERRORS):
         gains.carried_m[0, g] -= gains.turned_rad[g] * east_m
         gains.carried_m[1, g] += gains.turned_rad[g] * north_m
-    state.covariance[TURN, TURN] = spread(state, gains.turned_rad, gains.turned_rad)
+    project(gains, gains.turned_rad, gains.turned_column)
+    state.covariance[TURN, TURN] = along(gains.turned_rad, gains.turned_column)
     return known_rad
 
 
 @njit()
-def spread(state: FilterState, a: Floats, b: Floats) -> float:
-    """Return the covariance of ``a`` and ``b`` (18,) times the errors."""
-    gains = state.gains
-    total = 0.0
+def project(gains: Any, vector: Floats, column: Floats) -> None:
+    """Write the gains' covariance times ``vector`` (18,) into ``column`` (18,).
+
+    Its product with another vector is the covariance of both times the errors.
+    """
     if not gains.heard:
         for g in range(GAIN_ERRORS):
-            total += a[g] * b[g]
-        return total
+            column[g] = vector[g]
+        return
     for g in range(GAIN_ERRORS):
-        row = gains.covariance[g]
-        inner = 0.0
-        for h in range(GAIN_ERRORS):
-            inner += row[h] * b[h]
-        total += a[g] * inner
+        column[g] = 0.0
+    for h in range(GAIN_ERRORS):
+        share = vector[h]
+        for g in range(GAIN_ERRORS):
+            column[g] += gains.covariance[h, g] * share
+
+
+@njit()
+def along(vector: Floats, column: Floats) -> float:
+    """Return the product of ``vector`` (18,) and ``column`` (18,)."""
+    total = 0.0
+    for g in range(GAIN_ERRORS):
+        total += vector[g] * column[g]
     return total
 
 
@@ -76,20 +88,18 @@ def learn_gain_errors(state: FilterState) -> None:
         state.covariance[TURN, j] = 0.0
         state.covariance[j, TURN] = 0.0
     gains.heard = True
-    before = spread(state, gains.turned_rad, gains.turned_rad)
+    column = gains.turned_column
+    before = along(gains.turned_rad, column)
     if before <= 0.0:
         return
-    for g in range(GAIN_ERRORS):
-        gains.column[g] = 0.0
-        for h in range(GAIN_ERRORS):
-            gains.column[g] += gains.covariance[g, h] * gains.turned_rad[h]
     taken = max(before - kept, 0.0) / (before * before)
     for g in range(GAIN_ERRORS):
-        learned = gains.column[g] * state.error[TURN] / before
+        learned = column[g] * state.error[TURN] / before
         gains.estimate[g] += learned
         for i in range(2):
             state.position_n_m[i] += gains.carried_m[i, g] * learned
     for g in range(GAIN_ERRORS):
         for h in range(GAIN_ERRORS):
-            gains.covariance[g, h] -= taken * gains.column[g] * gains.column[h]
+            gains.covariance[h, g] -= taken * column[g] * column[h]
+    project(gains, gains.turned_rad, column)
     state.covariance[TURN, TURN] = kept

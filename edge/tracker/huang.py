@@ -135,7 +135,7 @@ def _write(ring: Ring, state: HuangState, slot: int, config: HuangConfig) -> Non
     std_m = 0.05 + config.error_per_distance * state.distance_m
     for i in range(3):
         for j in range(3):
-            row.covariance[i, j] = std_m**2 if i == j else 0.0
+            row.position_cov_m2[i, j] = std_m**2 if i == j else 0.0
     row.heading_std_rad = config.heading_std_rad
     row.magnetic_north_rad = state.declination_rad
     row.magnetic_north_std_rad = np.inf  # believed as it is, and never judged

@@ -16,20 +16,20 @@ from numba import njit
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, POSITION
 from edge.tracker.stance import lever_velocity_row
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
 
 SWING_RAD = 0.3  # that a foot turns at least in a stride; a crawling one hardly more
 
 
 @njit()
-def land(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+def land(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Learn from the first still sample after a swing, before the stance corrects it."""
     if state.swing_rad < SWING_RAD:
         return
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
-    row = ring[slot].lever_row[0]
+    row = step.lever_row[0]
     squares = 0.0
     for i in range(2):
         lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)

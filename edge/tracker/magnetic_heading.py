@@ -27,13 +27,15 @@ from edge.tracker.magnetic_field import (
 )
 from edge.tracker.measuring import begin_updates, end_updates, measure_heading
 from edge.tracker.side_filter import agree, noise_to_tell, told_residual
-from edge.tracker.state import Aid, FilterState, Ring
+from edge.tracker.state import Aid, FilterState, Ring, Step
 
 ABSURD_UT = 1000.0  # twenty times the earth's field
 
 
 @njit()
-def heed_field(ring: Ring, state: FilterState, slot: int, still: bool, config: EskfConfig) -> None:
+def heed_field(
+    ring: Ring, step: Step, state: FilterState, slot: int, still: bool, config: EskfConfig
+) -> None:
     """Gather the field of a stance; look at it when the stance ends, or once a second."""
     compass = state.compass
     _write_north(ring, state, slot)
@@ -45,7 +47,7 @@ def heed_field(ring: Ring, state: FilterState, slot: int, still: bool, config: E
     if still and lasted_s < config.aid_look_s:
         return
     if lasted_s >= config.aid_stance_s:
-        _look(ring, state, slot, config)
+        _look(ring, step, state, slot, config)
     compass.samples = 0
 
 
@@ -73,7 +75,7 @@ def _gather(ring: Ring, state: FilterState, slot: int) -> None:
 
 
 @njit()
-def _look(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+def _look(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Learn from the mean of a stance, and tell the main filter of the heading."""
     compass = state.compass
     beliefs = compass.beliefs
@@ -93,7 +95,7 @@ def _look(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     noise = noise_to_tell(prior, variance)
     if noise < math.inf:
         begin_updates(state)
-        measure_heading(ring, state, slot, told_residual(mean, prior, noise), noise)
+        measure_heading(step, state, told_residual(mean, prior, noise), noise)
         end_updates(state)
         for j in range(len(beliefs)):
             beliefs[j].estimate[0] -= mean

@@ -25,7 +25,7 @@ from edge.tracker.error_model import (
     update_with_lever,
 )
 from edge.tracker.gain_errors import learn_gain_errors
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Step
 from edge.tracker.strapdown import rotate_navigation, rotation_matrix
 
 
@@ -36,9 +36,7 @@ def begin_updates(state: FilterState) -> None:
 
 
 @njit()
-def measure(
-    ring: Ring, state: FilterState, slot: int, index: int, residual: float, variance: float
-) -> None:
+def measure(step: Step, state: FilterState, index: int, residual: float, variance: float) -> None:
     """Use one scalar measurement of error ``index``."""
     innovation, weight = update_one(
         state.covariance,
@@ -47,15 +45,13 @@ def measure(
         residual,
         variance,
         state.column,
-        ring[slot].update_gain[ring[slot].updates],
+        step.update_gain[step.updates],
     )
-    remember(ring, slot, index, innovation * weight)
+    remember(step, index, innovation * weight)
 
 
 @njit()
-def measure_heading(
-    ring: Ring, state: FilterState, slot: int, residual_rad: float, variance: float
-) -> None:
+def measure_heading(step: Step, state: FilterState, residual_rad: float, variance: float) -> None:
     """Use a measurement of the heading, clockwise seen from above."""
     innovation, weight = update_heading(
         state.covariance,
@@ -63,16 +59,15 @@ def measure_heading(
         residual_rad,
         variance,
         state.column,
-        ring[slot].update_gain[ring[slot].updates],
+        step.update_gain[step.updates],
     )
-    remember(ring, slot, HEADING, innovation * weight)
+    remember(step, HEADING, innovation * weight)
 
 
 @njit()
 def measure_with_lever(
-    ring: Ring,
+    step: Step,
     state: FilterState,
-    slot: int,
     axis: int,
     lever_row: Floats,
     residual_mps: float,
@@ -87,18 +82,18 @@ def measure_with_lever(
         residual_mps,
         variance,
         state.column,
-        ring[slot].update_gain[ring[slot].updates],
+        step.update_gain[step.updates],
     )
-    remember(ring, slot, VELOCITY + axis, innovation * weight)
+    remember(step, VELOCITY + axis, innovation * weight)
 
 
 @njit()
-def remember(ring: Ring, slot: int, index: int, pull: float) -> None:
-    """Count the update whose gain is in the ring, for the smoother."""
-    u = ring[slot].updates
-    ring[slot].update_index[u] = index
-    ring[slot].update_pull[u] = pull
-    ring[slot].updates = u + 1
+def remember(step: Step, index: int, pull: float) -> None:
+    """Count the update whose gain is in ``step``, for the smoother."""
+    u = step.updates
+    step.update_index[u] = index
+    step.update_pull[u] = pull
+    step.updates = u + 1
 
 
 @njit()

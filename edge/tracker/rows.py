@@ -10,6 +10,8 @@ import numpy as np
 from edge.tracker.port import TrackBatch
 from edge.tracker.state import Ring
 
+_COLUMNS = tuple(field.name for field in fields(TrackBatch))
+
 
 def empty_rows() -> TrackBatch:
     return TrackBatch(
@@ -31,22 +33,13 @@ def empty_rows() -> TrackBatch:
 
 def rows_of(ring: Ring, first: int, stop: int) -> TrackBatch:
     """Return copies of the rows of samples ``first`` to ``stop - 1``."""
-    slots = np.arange(first, stop) & (len(ring) - 1)
-    return TrackBatch(
-        t_ns=ring["t_ns"][slots],
-        position_n_m=ring["position_n_m"][slots],
-        velocity_n_mps=ring["velocity_n_mps"][slots],
-        quaternion_nb=ring["quaternion_nb"][slots],
-        position_cov_m2=ring["position_cov_m2"][slots],
-        heading_std_rad=ring["heading_std_rad"][slots],
-        stationary=ring["stationary"][slots],
-        distance_m=ring["distance_m"][slots],
-        steps=ring["steps"][slots],
-        quality=ring["quality"][slots],
-        reasons=ring["reasons"][slots],
-        magnetic_north_rad=ring["magnetic_north_rad"][slots],
-        magnetic_north_std_rad=ring["magnetic_north_std_rad"][slots],
-    )
+    begin = first & (len(ring) - 1)
+    end = begin + stop - first
+    if end > len(ring):
+        wrap = first + len(ring) - begin
+        return join_rows([rows_of(ring, first, wrap), rows_of(ring, wrap, stop)])
+    rows = ring[begin:end]
+    return TrackBatch(**{name: rows[name].copy() for name in _COLUMNS})
 
 
 def join_rows(batches: Sequence[TrackBatch]) -> TrackBatch:
@@ -56,8 +49,5 @@ def join_rows(batches: Sequence[TrackBatch]) -> TrackBatch:
     if not batches:
         return empty_rows()
     return TrackBatch(
-        **{
-            field.name: np.concatenate([getattr(batch, field.name) for batch in batches])
-            for field in fields(TrackBatch)
-        }
+        **{name: np.concatenate([getattr(batch, name) for batch in batches]) for name in _COLUMNS}
     )

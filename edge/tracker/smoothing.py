@@ -23,26 +23,26 @@ from edge.tracker.error_model import (
     TURN,
     VELOCITY,
 )
-from edge.tracker.state import Ring
+from edge.tracker.state import Ring, Step, Trail
 from edge.tracker.strapdown import rotate_navigation
 
 
 @njit()
-def smooth(ring: Ring, first: int, stop: int, last: int) -> None:
+def smooth(ring: Ring, trail: Trail, first: int, stop: int, last: int) -> None:
     """Correct the rows ``first`` to ``stop - 1`` by all that was measured up to ``last``."""
-    mask = len(ring) - 1
     adjoint = np.zeros(SIZE)
     for k in range(last, first - 1, -1):
-        slot = k & mask
+        slot = k & (len(ring) - 1)
+        step = trail[k & (len(trail) - 1)]
         if k < stop:
-            _correct_row(ring, slot, adjoint)
-        _back_over_updates(ring, slot, adjoint)
-        _back_over_interval(ring, slot, adjoint)
+            _correct_row(ring, step, slot, adjoint)
+        _back_over_updates(step, adjoint)
+        _back_over_interval(step, ring[slot].interval_s, adjoint)
 
 
 @njit()
-def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
-    covariance = ring[slot].covariance
+def _correct_row(ring: Ring, step: Step, slot: int, adjoint: Floats) -> None:
+    covariance = step.covariance
     for i in range(3):
         position = 0.0
         velocity = 0.0
@@ -62,13 +62,13 @@ def _correct_row(ring: Ring, slot: int, adjoint: Floats) -> None:
 
 
 @njit()
-def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
-    for u in range(ring[slot].updates - 1, -1, -1):
-        gain = ring[slot].update_gain[u]
-        pull = ring[slot].update_pull[u]
+def _back_over_updates(step: Step, adjoint: Floats) -> None:
+    for u in range(step.updates - 1, -1, -1):
+        gain = step.update_gain[u]
+        pull = step.update_pull[u]
         for j in range(SIZE):
             pull += gain[j] * adjoint[j]
-        index = ring[slot].update_index[u]
+        index = step.update_index[u]
         if index == HEADING:
             adjoint[ATTITUDE + 2] -= pull
             adjoint[TURN] -= pull
@@ -76,23 +76,22 @@ def _back_over_updates(ring: Ring, slot: int, adjoint: Floats) -> None:
         adjoint[index] -= pull
         if VELOCITY <= index < VELOCITY + 3:
             for j in range(3):
-                adjoint[LEVER + j] += ring[slot].lever_row[index - VELOCITY, j] * pull
+                adjoint[LEVER + j] += step.lever_row[index - VELOCITY, j] * pull
 
 
 @njit()
-def _back_over_interval(ring: Ring, slot: int, adjoint: Floats) -> None:
+def _back_over_interval(step: Step, dt_s: float, adjoint: Floats) -> None:
     """Multiply by the transposed transition (error_model.transition_matrix)."""
     for i in range(3):
-        adjoint[GYRO_WARMTH + i] += ring[slot].warmed_k * adjoint[GYRO_BIAS + i]
-    dt_s = ring[slot].interval_s
+        adjoint[GYRO_WARMTH + i] += step.warmed_k * adjoint[GYRO_BIAS + i]
     if dt_s < 0.0:  # across a gap velocity and tilt do not carry over
         for i in range(VELOCITY, ATTITUDE + 2):
             adjoint[i] = 0.0
         return
-    fx = dt_s * ring[slot].force_n_mps2[0]
-    fy = dt_s * ring[slot].force_n_mps2[1]
-    fz = dt_s * ring[slot].force_n_mps2[2]
-    rotation = ring[slot].rotation_nb
+    fx = dt_s * step.force_n_mps2[0]
+    fy = dt_s * step.force_n_mps2[1]
+    fz = dt_s * step.force_n_mps2[2]
+    rotation = step.rotation_nb
     vx, vy, vz = adjoint[3], adjoint[4], adjoint[5]
     ax, ay, az = adjoint[6], adjoint[7], adjoint[8]
     for i in range(3):

@@ -15,14 +15,14 @@ from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, VELOCITY
 from edge.tracker.measuring import begin_updates, end_updates, measure, measure_with_lever
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
 
 MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 
 
 @njit()
-def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+def stand(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Use the pseudo-measurements of one still sample."""
     interval_s = max(ring[slot].interval_s, MIN_INTERVAL_S)
     motion = ring[slot].motion_m2ps4
@@ -31,14 +31,14 @@ def stand(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None
     begin_updates(state)
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
-        _measure_velocity(ring, state, slot, i, velocity_variance)
+        _measure_velocity(step, state, i, velocity_variance)
     rate_noise = config.stance_rate_radps_rthz**2
     rate_noise += config.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
     if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
         for i in range(3):
-            measure(ring, state, slot, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
-            gain = ring[slot].update_gain[ring[slot].updates - 1, GYRO_BIAS + i]
+            measure(step, state, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
+            gain = step.update_gain[step.updates - 1, GYRO_BIAS + i]
             off_mps2 = ring[slot].accel_mps2[i] - state.rest_force_mps2[i]
             state.rest_force_mps2[i] += gain * off_mps2
     end_updates(state)
@@ -79,10 +79,8 @@ def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row
 
 
 @njit()
-def _measure_velocity(
-    ring: Ring, state: FilterState, slot: int, axis: int, variance: float
-) -> None:
-    row = ring[slot].lever_row[axis]
+def _measure_velocity(step: Step, state: FilterState, axis: int, variance: float) -> None:
+    row = step.lever_row[axis]
     lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
     residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[axis]
-    measure_with_lever(ring, state, slot, axis, row, residual_mps, variance)
+    measure_with_lever(step, state, axis, row, residual_mps, variance)

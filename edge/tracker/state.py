@@ -1,8 +1,9 @@
-"""What the default tracker remembers: a ring of recent samples and the filter's state.
+"""What the default tracker remembers: a ring of recent samples, the way back, and the state.
 
 Everything is fixed in size, so a day of samples takes no more memory than a
-second.  Sample ``k`` (counted from 0) lives in slot ``k & mask`` of the ring.
-All three are record arrays, because the compiled kernels hand a record on as one
+second.  Sample ``k`` (counted from 0) lives in slot ``k & mask`` of the ring; what the smoother
+needs of it, which is most of the memory and is wanted for the lag only, in a slot of the shorter
+``trail``.  All are record arrays, because the compiled kernels hand a record on as one
 pointer, and because what belongs to a sample then lies together.
 """
 
@@ -23,6 +24,8 @@ GAIN_ERRORS = 18  # see gain_errors
 BELIEFS = 5
 
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
+Trail: TypeAlias = NDArray[Any]  # (slots,) of STEP, for a quarter of the ring's samples
+Step: TypeAlias = Any  # one record of STEP
 Progress: TypeAlias = Any  # one record of PROGRESS
 FilterState: TypeAlias = Any  # one record of FILTER
 Aid: TypeAlias = Any  # one record of COMPASS, BELIEF or BAROMETER
@@ -62,9 +65,15 @@ RING = np.dtype(
         ("rate_sum_radps", np.float64, 3),  # the same
         ("rate_square_sum_rad2ps2", np.float64),  # the same
         ("unrest_m2ps4", np.float64),  # the same over a longer time, whatever the bias
-        # What the smoother needs to go back over this sample.
         ("interval_s", np.float64),  # since the sample before; negative after a gap
-        ("force_n_mps2", np.float64, 3),  # over that interval
+    ],
+    align=True,
+)
+
+# What the smoother needs to go back over a sample.
+STEP = np.dtype(
+    [
+        ("force_n_mps2", np.float64, 3),  # over the interval since the sample before
         ("warmed_k", np.float64),  # step of the temperature that the biases took
         ("rotation_nb", np.float64, (3, 3)),  # at its end
         ("lever_row", np.float64, (3, 3)),  # how the lever enters the velocity updates
@@ -156,6 +165,7 @@ GAINS = np.dtype(
     [
         ("std", np.float64),  # of scale and axes
         ("turned_rad", np.float64, GAIN_ERRORS),  # heading by each error so far
+        ("turned_column", np.float64, GAIN_ERRORS),  # the covariance times that
         ("carried_m", np.float64, (2, GAIN_ERRORS)),  # position north and east
         ("estimate", np.float64, GAIN_ERRORS),
         ("covariance", np.float64, (GAIN_ERRORS, GAIN_ERRORS)),

@@ -16,9 +16,9 @@ from numba import njit
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import SIZE, TURN, heading_variance
 from edge.tracker.first_rest import unshown_heading_variance
-from edge.tracker.gain_errors import spread
+from edge.tracker.gain_errors import along, project
 from edge.tracker.landing import gain_scale, noise_scale
-from edge.tracker.state import FilterState, Ring
+from edge.tracker.state import FilterState, Ring, Step
 
 
 @njit()
@@ -34,25 +34,28 @@ def bend_way(state: FilterState, dt_s: float) -> None:
 
 
 @njit()
-def state_position(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> None:
+def state_position(
+    ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig
+) -> None:
     """Write the stated covariance of a row's position, and the rows that the smoother needs."""
     for i in range(10):
         for j in range(SIZE):
-            ring[slot].covariance[i, j] = state.covariance[i, j]
+            step.covariance[i, j] = state.covariance[i, j]
     stated_m2 = ring[slot].position_cov_m2
     for i in range(3):
         for j in range(3):
             stated_m2[i, j] = state.covariance[i, j]
     gains = state.gains
+    for i in range(2):
+        step.covariance[i, TURN] = along(gains.carried_m[i], gains.turned_column)
     stated_m2[2, 2] += (gains.std * state.position_n_m[2]) ** 2 + state.ramp_var_m2
     less = noise_scale(state, config) - 1.0
     worse = gain_scale(state, config)
-    for i in range(2):
-        carried_m = gains.carried_m[i]
-        ring[slot].covariance[i, TURN] = spread(state, carried_m, gains.turned_rad)
-        for j in range(i + 1):
+    for j in range(2):
+        project(gains, gains.carried_m[j], gains.column)
+        for i in range(j, 2):
             more_m2 = less * state.covariance[i, j]
-            more_m2 += worse * spread(state, carried_m, gains.carried_m[j])
+            more_m2 += worse * along(gains.carried_m[i], gains.column)
             more_m2 += worse * gains.std**2 * state.position_n_m[i] * state.position_n_m[j]
             more_m2 += state.unshown[i] * state.unshown[j]
             # A normal error's fourth moment is three times its variance squared.

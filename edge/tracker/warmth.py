@@ -12,7 +12,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import warm
-from edge.tracker.state import FilterState, Progress, Ring
+from edge.tracker.state import FilterState, Progress, Ring, Step
 
 COLDEST_DEGC = -60.0  # what is said beyond these is no temperature
 WARMEST_DEGC = 150.0
@@ -20,11 +20,10 @@ WARMEST_DEGC = 150.0
 
 @njit()
 def follow_warmth(
-    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+    ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
-    """Move the gyroscope bias by what the warming up to sample ``k`` adds."""
-    slot = k & (len(ring) - 1)
-    ring[slot].warmed_k = 0.0
+    """Move the gyroscope bias by what the warming up to the sample in ``slot`` adds."""
+    step.warmed_k = 0.0
     said_degc = ring[slot].temperature_degc
     if not COLDEST_DEGC < said_degc < WARMEST_DEGC:
         return
@@ -39,7 +38,7 @@ def follow_warmth(
     if abs(step_k) < config.temperature_step_k:
         return
     progress.warmed_degc = progress.temperature_degc
-    ring[slot].warmed_k = step_k
+    step.warmed_k = step_k
     for i in range(3):
         state.gyro_bias_radps[i] += step_k * state.gyro_bias_per_k[i]
     warm(state.covariance, step_k)
