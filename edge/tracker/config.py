@@ -111,6 +111,7 @@ class EskfConfig(NamedTuple):
     # Process noise.
     accel_noise_mps2_rthz: float = 0.105
     gyro_noise_radps_rthz: float = 1.75e-3
+    unseen_per_strike: float = 400.0  # doubt of a force between samples, by that off and a quintic
     gyro_bias_per_k_std_radps: float = 1.7e-4  # 0.01 deg/s/K
     temperature_smoothing_s: float = 1.0
     temperature_step_k: float = 0.2  # from so much on the bias follows
@@ -123,6 +124,8 @@ class EskfConfig(NamedTuple):
     landing_worth: float = 8.0  # that is worth so many landings
     landing_memory: float = 40.0  # landings
     landing_off_most: float = 0.06  # of one
+    strike_off: float = 0.01  # the same of the vertical velocity, of strides without a fault
+    strike_worth: float = 2.0
     landing_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
     landing_off_usual: float = 0.02  # more than this, and the gains are worse than was told
     landing_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond

@@ -112,6 +112,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
         state.doubted_b[i] = state.rotation_nb[2, i]
     state.landing_off = config.landing_off
     state.gain_off = config.landing_off
+    state.strike_off = config.strike_off
     progress.last_stance_s = ring[0].t_s
 
 
@@ -169,7 +170,8 @@ def _add_noise(
         for axis in range(3):
             hidden = ring[slot].hidden_force_noise[axis] + ring[before].hidden_force_noise[axis]
             _doubt_axis(state, VELOCITY, axis, 0.5 * dt_s * hidden)
-    accel_noise += dt_s * state.accel_bend_var
+    unseen = config.unseen_per_strike * state.strike_off
+    accel_noise += dt_s * unseen**2 * state.force_unseen_var
     gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
         for axis in range(3):

@@ -4,8 +4,12 @@ A foot turns by several degrees within an interval of a slow sensor.  Two effect
 count there: readings bend between samples (so the means are taken over the cubic
 through two samples before and two after) and the axis of rotation moves (coning and
 sculling, for readings that change evenly; Savage, "Strapdown inertial navigation
-integration algorithm design", 1998).  What the cubic adds to the straight line says how
-much may have happened unseen between the samples.
+integration algorithm design", 1998).
+
+What the cubic adds to the straight line says how much the foot may have turned unseen between
+the samples.  Of the force it is what a quintic through three samples before and three after would
+add to the cubic: next to nothing where the samples follow the motion, and much at a heel strike
+that is over within some milliseconds.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.state import FilterState, Progress, Ring
 
 BEND = 1.0 / 12.0  # of the cubic through four evenly spaced samples
+UNSEEN = 11.0 / 1440.0  # of the quintic through six
 
 
 @njit()
@@ -25,7 +30,8 @@ def mean_readings(
 ) -> None:
     """Write mean rate and force, sensor axes, free of bias, of the interval ending at ``k``.
 
-    ``accel_bend_var`` and ``gyro_bend_var`` become what the cubic has added, squared.
+    ``gyro_bend_var`` becomes what the cubic has added, squared, and ``force_unseen_var`` what a
+    quintic would add to that.
     """
     mask = len(ring) - 1
     last, first = k & mask, (k - 1) & mask
@@ -34,7 +40,7 @@ def mean_readings(
     scale = _scale(ring[last].rest_norm_mps2, config)
     before, after = (k - 2) & mask, (k + 1) & mask
     state.gyro_bend_var = 0.0
-    state.accel_bend_var = 0.0
+    state.force_unseen_var = _force_unseen_var(ring, progress, k) if bend > 0.0 else 0.0
     for i in range(3):
         mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
         outer = 0.5 * (ring[before].gyro_radps[i] + ring[after].gyro_radps[i])
@@ -43,9 +49,7 @@ def mean_readings(
         state.gyro_radps[i] = mean + added - state.gyro_bias_radps[i]
         mean = 0.5 * (ring[first].accel_mps2[i] + ring[last].accel_mps2[i])
         outer = 0.5 * (ring[before].accel_mps2[i] + ring[after].accel_mps2[i])
-        added = bend * (mean - outer)
-        state.accel_bend_var += added * added
-        state.accel_mps2[i] = scale * (mean + added) - state.accel_bias_mps2[i]
+        state.accel_mps2[i] = scale * (mean + bend * (mean - outer)) - state.accel_bias_mps2[i]
     rate, rate_after = ring[first].gyro_radps, ring[last].gyro_radps
     force, force_after = ring[first].accel_mps2, ring[last].accel_mps2
     _add_cross(state.gyro_radps, rate, rate_after, dt_s / 12.0)
@@ -73,6 +77,22 @@ def _bend(ring: Ring, progress: Progress, k: int, dt_s: float) -> float:
     after_s = ring[(k + 1) & mask].t_s - ring[k & mask].t_s
     even = 0.7 * dt_s < before_s < 1.4 * dt_s and 0.7 * dt_s < after_s < 1.4 * dt_s
     return BEND if even else 0.0
+
+
+@njit()
+def _force_unseen_var(ring: Ring, progress: Progress, k: int) -> float:
+    """Return the square of what a quintic adds to the cubic's mean force; 0 at either end."""
+    if k < 3 or k + 2 >= progress.measured:
+        return 0.0
+    mask = len(ring) - 1
+    squares = 0.0
+    for i in range(3):
+        inner = ring[(k - 1) & mask].accel_mps2[i] + ring[k & mask].accel_mps2[i]
+        middle = ring[(k - 2) & mask].accel_mps2[i] + ring[(k + 1) & mask].accel_mps2[i]
+        outer = ring[(k - 3) & mask].accel_mps2[i] + ring[(k + 2) & mask].accel_mps2[i]
+        added = UNSEEN * (2.0 * inner - 3.0 * middle + outer)
+        squares += added * added
+    return squares
 
 
 @njit()

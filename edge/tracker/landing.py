@@ -5,6 +5,11 @@ each radian that the foot has turned, tells an ordinary stride's noise: the filt
 measurements as if every stride were a hard one on a poor sensor, which finds the best path, and
 what is stated is scaled by the landings.  What came with a fault (a gap, clipping, a start on the
 move) or before a rest has shown the gyroscope's bias is stated in full.
+
+How far the vertical velocity is off tells what heel strikes have left.  A strike is over before
+many a sensor has followed it.  The worse it leaves the landings, the more is the force doubted
+where samples do not follow the motion (see intervals): then a landing puts the strike right, and
+not the swing before it, which would end too high and too far.
 """
 
 from __future__ import annotations
@@ -36,9 +41,14 @@ def land(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConf
         off_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
         squares += off_mps * off_mps
     off = min(math.sqrt(squares) / state.swing_rad, config.landing_off_most)
+    lever_velocity_row(state.rotation_nb, state.gyro_radps, 2, row)
+    down_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[2]
+    struck = min(abs(down_mps) / state.swing_rad, config.landing_off_most)
     state.landings = min(state.landings + 1.0, config.landing_memory)
     weight = 1.0 / (config.landing_worth + state.landings)
     state.landing_off += weight * (off - state.landing_off)
+    if not state.faulty_stride:
+        state.strike_off += (struck - state.strike_off) / (config.strike_worth + state.landings)
     if state.swing_speed_mps > config.landing_slow_mps:
         off *= min(config.landing_speed_mps / state.swing_speed_mps, 1.0)
         state.gain_off += weight * (off - state.gain_off)

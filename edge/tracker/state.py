@@ -201,6 +201,7 @@ FILTER = np.dtype(
         # How an ordinary stride's noise is stated; see landing.
         ("swing_rad", np.float64),  # that the foot has turned since it stood
         ("landing_off", np.float64),  # mean velocity that a landing is off, m/s for each radian
+        ("strike_off", np.float64),  # ... of the vertical velocity: what heel strikes have left
         ("landings", np.float64),  # from which that is known
         ("swing_speed_mps", np.float64),  # the foot's highest since it stood
         ("gain_off", np.float64),  # mean of landings that tell of the gains, at an ordinary speed
@@ -217,8 +218,8 @@ FILTER = np.dtype(
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
         ("angle_rad", np.float64, 3),
-        ("accel_bend_var", np.float64),  # see intervals
-        ("gyro_bend_var", np.float64),
+        ("gyro_bend_var", np.float64),  # see intervals
+        ("force_unseen_var", np.float64),
     ],
     align=True,
 )

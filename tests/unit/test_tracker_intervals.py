@@ -11,7 +11,7 @@ from edge.tracker.intervals import mean_readings
 from edge.tracker.state import RING, new_filter_state, new_progress
 
 
-def means_of(t_s, gyro, accel, k):
+def state_at(t_s, gyro, accel, k):
     ring = np.zeros(8, RING)
     ring["t_s"][: len(t_s)] = t_s
     ring["rest_norm_mps2"] = EskfConfig().gravity_mps2
@@ -21,6 +21,11 @@ def means_of(t_s, gyro, accel, k):
     progress["measured"] = len(t_s)
     state = new_filter_state()[0]
     mean_readings(ring, progress[0], state, k, EskfConfig())
+    return state
+
+
+def means_of(t_s, gyro, accel, k):
+    state = state_at(t_s, gyro, accel, k)
     return state["gyro_radps"], state["accel_mps2"]
 
 
@@ -32,6 +37,25 @@ def test_a_cubic_is_averaged_exactly():
     expected = (cubic.integ()(0.2) - cubic.integ()(0.1)) / 0.1
     assert gyro[0] == pytest.approx(expected)
     assert accel[0] == pytest.approx(expected)
+
+
+def test_only_what_bends_more_than_a_cubic_is_unseen():
+    t_s = 0.1 * np.arange(6)
+    quiet = np.zeros((6, 3))
+
+    def unseen_var(readings, k=3):
+        force = np.column_stack((readings, np.zeros((len(readings), 2))))
+        return state_at(t_s[: len(readings)], quiet[: len(readings)], force, k)["force_unseen_var"]
+
+    cubic = np.poly1d([40.0, -9.0, 3.0, 1.0])(t_s)
+    strike = cubic + np.array([0.0, 0.0, 0.0, 50.0, 0.0, 0.0])
+    assert unseen_var(cubic) == pytest.approx(0.0, abs=1e-20)
+    quintic = np.poly1d(np.polyfit(t_s, strike, 5))
+    mean = (quintic.integ()(0.3) - quintic.integ()(0.2)) / 0.1
+    _, by_cubic = means_of(t_s, quiet, np.column_stack((strike, np.zeros((6, 2)))), 3)
+    assert unseen_var(strike) == pytest.approx((mean - by_cubic[0]) ** 2)
+    assert unseen_var(strike[:5]) == 0.0
+    assert unseen_var(strike, k=2) == 0.0
 
 
 def test_uneven_or_missing_neighbours_leave_the_trapezoid():

@@ -1,0 +1,56 @@
+"""Heel strikes that are over before the sensor's samples have followed them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from edge.bench.honesty import inertial
+from edge.simulation import Simulation
+from edge.simulation.legs import Stand, Walk
+from edge.simulation.scenario import Scenario
+from edge.tracker.config import EskfConfig
+from edge.tracker.eskf import EskfTracker
+from edge.tracker.rows import join_rows
+
+LEGS = (Stand(4.0), Walk(((50.0, 0.0), (0.0, 0.0))), Stand(2.0))
+STRIKE_MPS = 0.2  # of velocity, up or down, that a strike leaves in the samples
+
+
+def track(simulation, imu, config):
+    tracker = EskfTracker(simulation.description, config)
+    return join_rows([tracker.push(imu), tracker.finish()])
+
+
+def struck(imu, rows, rng):
+    """The same with a sample too high or too low just before each stance, along gravity."""
+    landings = np.flatnonzero(np.diff(rows.stationary.astype(int)) > 0) - 2
+    landings = landings[imu.t_ns[landings] > imu.t_ns[0] + 4_000_000_000]
+    period_s = float(np.median(np.diff(imu.t_ns))) * 1e-9
+    resting = imu.accel_mps2[:200].mean(axis=0)
+    accel_mps2 = imu.accel_mps2.copy()
+    pushes_mps2 = rng.normal(STRIKE_MPS / 2, STRIKE_MPS, len(landings)) / period_s
+    accel_mps2[landings] += pushes_mps2[:, None] * resting / np.linalg.norm(resting)
+    return replace(imu, accel_mps2=accel_mps2)
+
+
+def rms_rise_m(rows):
+    """Of one foothold above the one before, on a flat floor."""
+    footfalls = np.flatnonzero(np.diff(rows.steps) > 0)
+    return float(np.sqrt(np.mean(np.diff(rows.position_n_m[footfalls, 2]) ** 2)))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_strike_is_put_right_and_not_the_swing_before_it(seed):
+    simulation = Simulation(Scenario("strikes", "heel strikes", LEGS), seed)
+    imu = inertial(simulation)
+    no_floor = EskfConfig(floor_gate_m=0.0, floor_gate_slope=0.0)
+    hard = struck(imu, track(simulation, imu, no_floor), np.random.default_rng(seed))
+    by_swing_m, by_strike_m = (
+        rms_rise_m(track(simulation, hard, no_floor._replace(unseen_per_strike=doubt)))
+        for doubt in (0.0, no_floor.unseen_per_strike)
+    )
+    assert by_swing_m > 0.08
+    assert by_strike_m < 0.6 * by_swing_m
