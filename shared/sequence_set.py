@@ -90,6 +90,16 @@ class SequenceSet(msgspec.Struct, array_like=True):
         if first <= last:
             yield Run(first, last)
 
+    def newest_missing(self, first: int, last: int) -> Run | None:
+        """The last of the runs that ``missing`` gives, however many there are."""
+        place = bisect_right(self.firsts, last) - 1
+        if place >= 0 and self.lasts[place] >= last:
+            last = self.firsts[place] - 1
+            place -= 1
+        if last < first:
+            return None
+        return Run(max(first, self.lasts[place] + 1) if place >= 0 else first, last)
+
     def complete_to(self, first: int) -> int:
         """The last number up to which nothing is missing from ``first`` on; ``first - 1``: none."""
         place = bisect_right(self.firsts, first) - 1

@@ -13,11 +13,13 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
+import msgspec
+
 from base_station.journals.pace import LEAST_BYTES, Pace
 from base_station.sender import BOOTS
 from shared.clock import NS_PER_S
 from shared.errors import WireError
-from shared.messages import JournalChunk, JournalIndex
+from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
 _INDEX_EVERY_NS = 30 * NS_PER_S
@@ -27,6 +29,7 @@ _ENTRY_BYTES = 100.0  # of a message, as long as none has come
 _OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
 _PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
 _LEARN_SHARE = 0.02
+_BRIDGED = 4  # messages that are there between two holes: a question more costs as much
 
 
 class Held(NamedTuple):
@@ -53,39 +56,71 @@ class _Boot:
 
     def __init__(self) -> None:
         self.held = SequenceSet()  # by the last report
-        self.fetched = SequenceSet()  # or gone for ever
-        self.urgent_known = SequenceSet()  # whatever alerts are among them were fetched
+        self._fetched = SequenceSet()  # or gone for ever
+        self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
+        self._have = SequenceSet()  # held or fetched
+        self._known = SequenceSet()  # held, fetched or without an alert
         self.first = 1  # the oldest that the journal has
         self.newest = 0  # that is known of
-        self.settled_to = 0  # a number up to here that is missing is lost, not under way
+        self._settled_to = 0  # a number up to here that is missing is lost, not under way
         self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
         self.acknowledged = 0
 
     def report(self, runs: tuple[Run, ...]) -> None:
         self.held = SequenceSet([run.first for run in runs], [run.last for run in runs])
-        self.settled_to = self.newest
+        self._have = _union(self.held, self._fetched)
+        self._known = _union(self._have, self._without_alert)
+        self._settled_to = self.newest
         self.newest = max(self.newest, runs[-1].last if runs else 0)
-        self.complete.append(_union(self.held, self.fetched).complete_to(1))
+        self.complete.append(self._have.complete_to(1))
 
-    def lost(self) -> list[Run]:
-        """What is missing and not under way."""
-        have = _union(self.held, self.fetched)
-        return list(have.missing(self.first, self.settled_to))
+    def note_fetched(self, run: Run) -> None:
+        """What the journal has of it came."""
+        for one in (self._fetched, self._have, self._known):
+            one.add_run(run)
+
+    def new(self, entries: tuple[JournalEntry, ...]) -> tuple[JournalEntry, ...]:
+        """Those that are not there yet."""
+        return tuple(one for one in entries if one.seq not in self._have)
+
+    def note_without_alert(self, run: Run) -> None:
+        """What alerts the journal has in it came."""
+        for one in (self._without_alert, self._known):
+            one.add_run(run)
+
+    def piece(self, count: int) -> Run | None:
+        """The newest of what is missing and not under way, so many numbers at most; across a few
+        that are there, rather than to ask again for each of many holes.
+        """
+        lost = self._have.newest_missing(self.first, self._settled_to)
+        if lost is None:
+            return None
+        last, least = lost.last, lost.last - count + 1
+        first = max(lost.first, least)
+        while first > least:
+            lost = self._have.newest_missing(self.first, first - 1)
+            if lost is None or lost.last < max(first - 1 - _BRIDGED, least):
+                break
+            first = max(lost.first, least)
+        return Run(first, last)
 
     def start_over(self) -> None:
         """What was fetched has not all come into the log."""
-        self.fetched = SequenceSet()
-        self.urgent_known = SequenceSet()
+        self._fetched = SequenceSet()
+        self._without_alert = SequenceSet()
+        self._have = _union(self.held, self._fetched)
+        self._known = _union(self.held, self._fetched)
         self.complete.clear()
 
-    def without_alerts(self) -> list[Run]:
+    def may_have_alerts(self) -> Run | None:
         """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
         is missing before any number that came is lost.
         """
-        have = _union(_union(self.held, self.fetched), self.urgent_known)
-        return list(
-            have.missing(self.first, self.held.lasts[-1] if self.held.lasts else self.newest)
-        )
+        last = self.held.lasts[-1] if self.held.lasts else self.newest
+        newest = self._known.newest_missing(self.first, last)
+        if newest is None:
+            return None
+        return Run(self._known.complete_to(self.first) + 1, newest.last)
 
 
 class UnitJournal:
@@ -141,17 +176,18 @@ class UnitJournal:
         if not _answers(question, chunk):
             raise WireError(f"boot {chunk.boot_id:x} from {chunk.from_seq} was not asked for")
         boot = self._boots.setdefault(chunk.boot_id, _Boot())
+        run, new = Run(chunk.from_seq, chunk.to_seq), boot.new(chunk.entries)
         if chunk.urgent_only:
-            boot.urgent_known.add_run(Run(chunk.from_seq, chunk.to_seq))
+            boot.note_without_alert(run)
             for entry in chunk.entries:
-                boot.fetched.add(entry.seq)
+                boot.note_fetched(Run(entry.seq, entry.seq))
         else:
-            boot.fetched.add_run(Run(chunk.from_seq, chunk.to_seq))
+            boot.note_fetched(run)
             self.gone += chunk.to_seq - chunk.from_seq + 1 - len(chunk.entries)
         for entry in chunk.entries:
             entry_bytes = len(entry.payload) + _OVERHEAD_BYTES
             self._entry_bytes += _LEARN_SHARE * (entry_bytes - self._entry_bytes)
-        return chunk
+        return msgspec.structs.replace(chunk, entries=new)
 
     def end(self, question: Question, took_ns: int) -> None:
         """No more replies come to this question."""
@@ -183,21 +219,19 @@ class UnitJournal:
 
     def _ask_alerts(self) -> Question | None:
         for boot_id, boot in self._newest_first():
-            missing = boot.without_alerts()
-            if missing:
-                span = Run(missing[0].first, missing[-1].last)
+            span = boot.may_have_alerts()
+            if span is not None:
                 return _range("urgent", boot_id, span, LEAST_BYTES, urgent=True)
         return None
 
     def _ask_piece(self) -> Question | None:
         """What the wearer did last matters most, so the newest piece of the newest boot."""
+        total = self._pace.answer_bytes
+        count = max(1, int(_PIECE_SHARE * total / self._entry_bytes))
         for boot_id, boot in self._newest_first():
-            lost = boot.lost()
-            if lost:
-                first, last = lost[-1]
-                total = self._pace.answer_bytes
-                count = max(1, int(_PIECE_SHARE * total / self._entry_bytes))
-                return _range("range", boot_id, Run(max(first, last - count + 1), last), total)
+            piece = boot.piece(count)
+            if piece is not None:
+                return _range("range", boot_id, piece, total)
         return None
 
     def _acknowledge(self) -> Question | None:

@@ -56,6 +56,12 @@ def test_what_is_missing_is_the_rest(numbers, first, last):
     assert missing == [n for n in range(first, last + 1) if n not in set(numbers)]
 
 
+@given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
+def test_the_newest_that_is_missing_is_the_last_of_all(numbers, first, last):
+    held = filled(numbers)
+    assert held.newest_missing(first, last) == ([None, *held.missing(first, last)][-1])
+
+
 @given(NUMBERS, st.integers(0, 60))
 def test_complete_to_is_where_the_first_gap_begins(numbers, first):
     expected = first - 1

@@ -84,13 +84,16 @@ def bench(tmp_path):
     bench.spool.close()
 
 
-def test_what_is_missing_comes_newest_gap_first_and_once(bench):
+def test_what_is_missing_comes_newest_gap_first_and_once(tmp_path):
+    bench = Bench(tmp_path, range(1, 21))
     for _ in range(4):
-        bench.report(Run(1, 2), Run(6, 7))
+        bench.report(Run(1, 2), Run(6, 17))
     until(lambda: len(bench.delivered) == 6)
     for _ in range(3):
-        bench.report(Run(1, 2), Run(6, 7))
-    assert bench.numbers == [8, 9, 10, 3, 4, 5]
+        bench.report(Run(1, 2), Run(6, 17))
+    bench.backfill.close()
+    bench.spool.close()
+    assert bench.numbers == [18, 19, 20, 3, 4, 5]
     assert bench.backfill.fetched == 6
 
 

@@ -8,7 +8,7 @@ from base_station.journals.unit_journal import Held, Question, UnitJournal
 from base_station.sender import BOOTS
 from shared.errors import WireError
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
-from shared.sequence_set import Run
+from shared.sequence_set import Run, SequenceSet
 
 BOOT = 7
 
@@ -209,3 +209,60 @@ def test_of_any_number_of_runs_the_newest_are_asked_for() -> None:
         asked.append(epoch)
         answer(journal, question, JournalChunk(epoch, 1, 3, (), urgent_only=True))
     assert asked == [BOOTS + 4 - number for number in range(5)]
+
+
+def asked_in_turn(journal: UnitJournal, held: Held, most: int) -> list[tuple[int, int]]:
+    """The pieces that are asked for until nothing is missing; nobody has any of them."""
+    pieces: list[tuple[int, int]] = []
+    for number in range(most):
+        question = journal.next_question()
+        if question is None or question.what == "acknowledge":
+            journal.report((held,), number)
+            continue
+        asked = dict(question.parameters)
+        if question.what == "range":
+            pieces.append((asked["from"], asked["to"]))
+        chunk = JournalChunk(
+            BOOT, asked["from"], asked["to"], (), urgent_only=question.what == "urgent"
+        )
+        answer(journal, question, chunk)
+    return pieces
+
+
+def test_many_small_holes_are_asked_about_together() -> None:
+    """As a journal has them that gave up what was of least worth: after a restart of the station
+    they are all missing again.
+    """
+    held = Held(BOOT, tuple(Run(5 * n + 1, 5 * n + 3) for n in range(10_000)))
+    journal = UnitJournal()
+    journal.report((held,), 0)
+    indexed(journal, JournalBoot(BOOT, 1, 49_998, 0, 0))
+    pieces = asked_in_turn(journal, held, 100)
+    assert len(pieces) < 50
+    missing = SequenceSet()
+    for first, last in pieces:
+        missing.add_run(Run(first, last))
+    assert all(number in missing for number in range(4, 49_998, 5))
+
+
+def test_what_is_there_between_two_holes_is_not_asked_for_again_unless_it_is_little() -> None:
+    held = Held(BOOT, (Run(1, 10), Run(13, 40), Run(43, 46), Run(49, 60)))
+    journal = UnitJournal()
+    journal.report((held,), 0)
+    indexed(journal, JournalBoot(BOOT, 1, 60, 0, 0))
+    assert asked_in_turn(journal, held, 20) == [(41, 48), (11, 12)]
+
+
+def test_of_an_answer_only_what_is_missing_is_kept() -> None:
+    journal = journal_of(Run(1, 10), Run(13, 14), Run(17, 30), last=30)
+    held = Held(BOOT, (Run(1, 10), Run(13, 14), Run(17, 30)))
+    question = journal.next_question()
+    assert question is not None
+    answer(journal, question, JournalChunk(BOOT, 11, 16, (), urgent_only=True))
+    journal.report((held,), 1)
+    question = journal.next_question()
+    assert question is not None
+    entries = tuple(JournalEntry(seq, "up/position", b"") for seq in range(11, 17))
+    chunk = journal.take(question, JournalChunk(BOOT, 11, 16, entries).to_bytes(), 1)
+    assert chunk is not None
+    assert [one.seq for one in chunk.entries] == [11, 12, 15, 16]
