@@ -217,7 +217,6 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
     alarm.state, alarm.by, alarm.changed_ns = AlarmState.RESOLVED, by, state.t_ns
-    alarm.clear_since_ns = alarm.lower_since_ns = None
     state.history = [*state.history[1 - HISTORY :], alarm]
     return alarm
 

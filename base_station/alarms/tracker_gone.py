@@ -26,7 +26,7 @@ class TrackerGone:
     heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.heard_ns is None or unit.description is None:
+        if unit.heard_ns is None:
             return None
         if not unit.is_tracked_remotely:
             return Clear(unit.heard_ns, "the unit tracks itself")

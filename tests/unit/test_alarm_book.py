@@ -96,6 +96,17 @@ def test_pressing_again_is_another_mayday(script: Script) -> None:
     assert script.alarms[0].alarm_id != script.alarms[-1].alarm_id
 
 
+def test_who_presses_again_after_taking_it_back_is_heard(script: Script) -> None:
+    script.event(U, EventKind.MAYDAY)
+    script.wait(1)
+    script.event(U, EventKind.MAYDAY_CANCELLED)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, "spoke to him"))
+    script.wait(5, lambda: script.status(U))
+    assert changes(script, "mayday")[-1] == ("RESOLVED", "mayday")
+    script.event(U, EventKind.MAYDAY)
+    assert changes(script, "mayday")[-1] == ("RAISED", "mayday")
+
+
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
 def test_another_one_is_to_be_acknowledged_again(script: Script, kind: EventKind) -> None:
     script.event(U, kind)

@@ -112,7 +112,11 @@ def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) ->
     agent = UnitState("FF-01@tracker", heard_ns=NOW_NS - ns(silent_s))
     tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=agent)
     tracked.description = said.description(HEADER, tracker=NO_TRACKER)
-    assert judged(TrackerGone(), tracked) == ("gone" if found == "lost" else found)
+    told = "gone" if found == "lost" else found
+    assert judged(TrackerGone(), tracked) == told
+    tracked.tracker = UnitState("FF-01@tracker")  # what it said came out of its journal
+    tracked.boots = [BootState(1, there_from_ns=NOW_NS - ns(silent_s), there_to_ns=NOW_NS)]
+    assert judged(TrackerGone(), tracked) == told
 
 
 @pytest.mark.parametrize(("silent_s", "found"), [(29.9, "cloned"), (30.0, "over")])

@@ -15,7 +15,7 @@ from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
 from base_station.views import StationFacts, health_view, snapshot
 from shared.messages import EventKind, Heartbeat
-from shared.messages.pins import SetPin
+from shared.messages.pins import SetMeeting, SetPin
 from shared.messages.station import (
     Assign,
     OpenIncident,
@@ -199,6 +199,8 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
         script.position(U, float(second), 0.0)
         script.gps(U, 52.0 + second * 9e-6, 4.0, horizontal_std_m=2.0)
     script.act(SetPin("p1", U, script.t_ns, 19.0, 0.0, 1.0, None, 0.1, 0.5, ""))
+    script.register("FF-02")
+    script.act(SetMeeting("m", U, "FF-02", script.t_ns, 1.0, ""))
     script.wait(60)
     before = unit(script).fused
     assert before is not None

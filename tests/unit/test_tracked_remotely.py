@@ -141,6 +141,14 @@ def test_a_unit_that_tracks_itself_again_is_not_shown_by_its_agent_s_last_words(
     assert script.unit.shown_status == script.unit.status
 
 
+def test_a_message_that_cannot_be_read_is_there_for_who_said_it(script: Remote) -> None:
+    script.status(AGENT)
+    state = script.pipeline.state
+    assert state.sender(AGENT) is script.unit.tracker
+    assert state.sender(U) is script.unit
+    assert state.sender("FF-09") is None
+
+
 def gone(script: Remote) -> list[AlarmState]:
     return [alarm.state for alarm in script.alarms if alarm.rule == "tracker-gone"]
 
