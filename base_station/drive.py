@@ -46,6 +46,7 @@ DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling cons
 CHECKPOINT_NS = 15 * NS_PER_S  # what a restart steps at most; at 1,000 events/s a second's work
 CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
 REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
+MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
 FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
@@ -128,6 +129,8 @@ class StationDrive:
         """
         stepped = self._keeping.rebuild(self._saving_on_the_way(records), after)
         self._settle()
+        if stepped >= MANY_STEPPED:  # killed sooner than it saves, it would step more every time
+            self._due.checkpoint_ns = 0
         return stepped
 
     def _saving_on_the_way(self, records: Iterable[Record]) -> Iterator[Record]:

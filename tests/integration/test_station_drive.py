@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.drive import REBUILT_NS
+from base_station.drive import MANY_STEPPED, REBUILT_NS
 from base_station.past.playback import compare
 from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
 from shared.clock import NS_PER_S
@@ -261,3 +261,20 @@ def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: 
     assert stepped // 4 < second.rebuilt < stepped * 3 // 4
     assert second.pipeline.checkpoint() == whole.pipeline.checkpoint()
     second.close()
+
+
+def test_what_many_events_cost_at_a_start_they_do_not_cost_at_the_next(tmp_path: Path) -> None:
+    """However soon a station is killed after it has started."""
+    script = Script()
+    script.register(U)
+    while len(script.records) < 2 * MANY_STEPPED:
+        script.now_s += 0.01
+        script.position(U, 0.0, 0.0)
+    first = LiveStation(tmp_path)
+    for record in script.records:
+        first.recorder.write(*record)
+    first.recorder.flush()
+    first.close()
+    with LiveStation(tmp_path) as second:
+        assert second.rebuilt >= 2 * MANY_STEPPED
+        until(lambda: second.checkpoints.latest() is not None, "the state is saved")
