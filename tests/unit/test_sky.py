@@ -81,19 +81,19 @@ def test_a_bad_fix_never_becomes_a_good_one() -> None:
     assert fix.horizontal_std_m > 19.0
 
 
-def a_site(*, station_has_a_receiver: bool) -> Script:
-    """FF-01 stands at the anchor; all receivers err by 3 m north."""
+def a_site(*, station_has_a_receiver: bool, walked_m: float = 0.0) -> Script:
+    """FF-01 stands at the anchor and FF-09 50 m north of it; all receivers err by 3 m north."""
     script = Script()
     script.register("FF-01", "FF-09")
     script.act(SetAnchor(53.5, 10.0, 0.0, 0.0))
     if station_has_a_receiver:
         script.act(SetReference("FF-09", 0.0))
-        script.act(SetStart("FF-09", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
+        script.act(SetStart("FF-09", 50.0, 0.0, 0.0, 0.0, 0.3, math.pi))
     for _ in range(120):
         script.now_s += 1.0
-        for unit_id in ("FF-09", "FF-01"):
-            script.position(unit_id, 0.0, 0.0)
-            script.gps(unit_id, 53.5 + 3.0 / 111_200.0, 10.0)
+        for unit_id, north_m in (("FF-09", 50.0), ("FF-01", 0.0)):
+            script.position(unit_id, 0.0, 0.0, distance_m=walked_m)
+            script.gps(unit_id, 53.5 + (3.0 + north_m) / 111_200.0, 10.0)
     return script
 
 
@@ -107,6 +107,12 @@ def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
     assert north_m(alone) == pytest.approx(3.0, abs=0.1)
     assert 0.5 < north_m(helped) < 2.2
+
+
+def test_a_reference_that_somebody_carries_about_tells_nothing() -> None:
+    alone = a_site(station_has_a_receiver=False, walked_m=50.0)
+    helped = a_site(station_has_a_receiver=True, walked_m=50.0)
+    assert north_m(helped) == pytest.approx(north_m(alone), abs=0.01)
 
 
 def test_a_past_that_is_solved_again_hears_the_reference_too_and_each_fix_once() -> None:
