@@ -14,13 +14,13 @@ import msgspec
 import numpy as np
 
 from base_station.fusion.fixes.taking import FixTaker
-from base_station.fusion.kernels import Placed
+from base_station.fusion.kernels import Placed, Stretch
 from base_station.fusion.knowledge import quality_of
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path.memory import PathMemory
-from base_station.fusion.path.own_path import OwnPath, Stretch
+from base_station.fusion.path.own_path import OwnPath
 from base_station.fusion.plane.compassed import CompassedFilter
 from base_station.fusion.plane.walled import WalledFilter
 from base_station.fusion.port import (
@@ -67,6 +67,7 @@ class GpsInertialFuser:
         )
         self._horizontal.expect_drift(kind.drift_radps)
         self._height = HeightFilter(kind)
+        self._own = OwnPath(kind, memory.own)
         self._fixes = FixTaker(kind, memory, self._horizontal, self._height)
         if memory.horizontal is not None and memory.height is not None:
             self._horizontal.load(memory.horizontal)
@@ -75,6 +76,7 @@ class GpsInertialFuser:
     def save(self) -> bytes:
         self._memory.horizontal = self._horizontal.save()
         self._memory.height = self._height.save()
+        self._memory.own = self._own.save()
         return msgspec.msgpack.encode(self._memory)
 
     def start(self, start: Start) -> None:
@@ -88,7 +90,7 @@ class GpsInertialFuser:
         memory.recognition.forget()
         memory.recognition.shared_m2 = start.std_m**2
         if memory.last is not None:
-            self._walk(OwnPath().stretch(self._kind, None, memory.last), memory.last.std_down_m)
+            self._walk(OwnPath(self._kind).stretch(memory.last, 0.0), memory.last.std_down_m)
 
     def settle(self, present: Present) -> None:
         self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
@@ -108,6 +110,7 @@ class GpsInertialFuser:
         if last is not None and last.header.boot_id != position.header.boot_id:
             self._restart()
             last = None
+        duration_s = 0.0
         if last is not None:
             duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
             if duration_s < 0.0 and position.header.seq < last.header.seq:
@@ -121,9 +124,11 @@ class GpsInertialFuser:
                 self._horizontal.spread(min(strayed_m, jumped_m) ** 2)
                 memory.last, memory.path = position, PathMemory()
                 memory.path.note(position)
+                self._own.jump(position)
                 return "the unit's own path jumped"
-        self._walk(memory.own.stretch(self._kind, last, position), position.std_down_m)
-        self._horizontal.expect_drift(memory.own.drift_radps(self._kind, position))
+        stretch = self._own.stretch(position, max(duration_s, 0.0))
+        self._walk(stretch, position.std_down_m)
+        self._horizontal.expect_drift(stretch.drift_radps)
         memory.last = position
         memory.path.note(position)
         return ""
@@ -203,21 +208,21 @@ class GpsInertialFuser:
         memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
         tracker = memory.last.quality if memory.last is not None else Quality.GOOD
         quality, reason = quality_of(self._kind, placed, tracker, assumed=memory.assumed)
-        return Estimate(
-            t_mono_ns=t_mono_ns,
-            north_m=placed.north_m,
-            east_m=placed.east_m,
-            down_m=height[0],
-            std_north_m=placed.std_north_m,
-            std_east_m=placed.std_east_m,
-            std_down_m=math.sqrt(height[1]),
-            correlation_ne=placed.correlation_ne,
-            heading_rad=(placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
-            heading_std_rad=placed.turn_std_rad,
-            quality=quality,
-            quality_reason=reason,
-            since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
-            height_assumed=memory.height_assumed,
+        return Estimate(  # by place: every position comes through here
+            t_mono_ns,
+            placed.north_m,
+            placed.east_m,
+            height[0],
+            placed.std_north_m,
+            placed.std_east_m,
+            math.sqrt(height[1]),
+            placed.correlation_ne,
+            (placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
+            placed.turn_std_rad,
+            quality,
+            reason,
+            None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
+            memory.height_assumed,
         )
 
     def _walk(self, stretch: Stretch, own_std_m: float) -> None:
@@ -247,5 +252,6 @@ class GpsInertialFuser:
         self._horizontal.spread(self._kind.restart_m**2)
         self._horizontal.forget_heading()
         self._memory.path = PathMemory()
+        self._own = OwnPath(self._kind)
         self._memory.recognition = Recognition(shared_m2=self._memory.recognition.shared_m2)
         self._horizontal.hear_anew()

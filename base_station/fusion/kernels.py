@@ -1,9 +1,10 @@
 """The arithmetic that every position of every unit goes through, compiled.
 
-The filters are ``filterpy``'s, and whatever is fused into the path (fixes, their heights, storeys)
-goes through its update.  What happens five times a second a unit is done here, in place, on the
-arrays of those filters: ``mean`` (n, 1) and ``covariance`` (n, n).  Each of these equals filterpy's
-``predict`` or ``update`` with the matrices that its text names.
+What a unit's filters hold lies together, in one record each, so that a position finds it in a few
+pieces of memory.  Whatever is fused into the path (fixes, their heights, storeys) goes through
+``filterpy``'s update.  What happens five times a second a unit is done here, in place, on the
+records' ``mean`` (n,) and ``covariance`` (n, n).  Each of these equals filterpy's ``predict`` or
+``update`` with the matrices that its text names.
 
 The types stand with the functions, so that nothing is ever compiled while the station is live: it
 is done when this is first imported, and kept on the disk (``muster base compile``).
@@ -13,16 +14,18 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import from_dtype, njit
 from numba.core.types import UniTuple, boolean, float64, void
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from base_station.fusion.plane.state import DRIFT, STATES
 
-_DRIFT = 8
+Floats = NDArray[np.float64]
+Record = NDArray[Any]  # (1,): a record of one of the types below
+
 _LEAST_SCALE2 = 0.05  # of a state whose turn means anything
 
 # What ``climb`` remembers of the own path.
@@ -32,6 +35,43 @@ SETTLED_M2 = 2  # the unit's own variance of its height when its wearer last wal
 DOUBT_M2 = 3  # by how much it is larger now
 RODE_M = 4  # climbed while the wearer rests
 PATH = 5
+
+PLANE = np.dtype([("mean", np.float64, STATES), ("covariance", np.float64, (STATES, STATES))])
+HEIGHT = np.dtype(
+    [("mean", np.float64, 3), ("covariance", np.float64, (3, 3)), ("path", np.float64, PATH)]
+)
+OWN = np.dtype(  # what has to be remembered of an own path to judge its next stretch
+    [
+        ("north_m", np.float64),  # where it was last
+        ("east_m", np.float64),
+        ("down_m", np.float64),
+        ("std_m", np.float64),  # as stated, along the worse axis
+        ("heading_std_rad", np.float64),
+        ("step_rad", np.float64),  # direction of the last increment; NaN: there was none
+        ("first_heading_std_rad", np.float64),  # NaN: at the frame's origin, nothing was said yet
+        ("moving_s", np.float64),
+        ("drift_radps", np.float64),  # how fast its heading may drift
+    ]
+)
+HOW = np.dtype(  # of ``Parameters``
+    [
+        (name, np.float64)
+        for name in (
+            "walk_m_per_sqrt_m",
+            "turn_rad_per_sqrt_m",
+            "turn_part",
+            "drift_radps",
+            "drift_least_radps",
+            "drift_most_radps",
+            "drift_doubt",
+            "fastest_mps",
+        )
+    ]
+)
+MOVING_MPS = 0.1
+TURN_SEEN_M = 0.1  # of way that has a direction
+LEARNT_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
+SUDDEN = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 
 
 class Placed(NamedTuple):
@@ -58,9 +98,24 @@ class Placed(NamedTuple):
         )
 
 
-_VECTOR, _MATRIX = float64[:], float64[:, :]  # of any layout: filterpy makes new ones
+class Stretch(NamedTuple):
+    """From one position to the next, in the unit's own frame."""
+
+    north_m: float
+    east_m: float
+    down_m: float
+    length_m: float
+    moving_s: float
+    place_var_m2: float  # what it added, each axis
+    turn_var: float
+    drift_radps: float  # how fast the own heading may drift, by what the unit itself says
+
+
+_VECTOR, _MATRIX = float64[:], float64[:, :]  # of any layout
+_PLANE, _HEIGHT, _OWN, _HOW = (from_dtype(one)[::1] for one in (PLANE, HEIGHT, OWN, HOW))
 _THREE = UniTuple(float64, 3)  # type: ignore[no-untyped-call]
 _PLACED = UniTuple(float64, len(Placed._fields))  # type: ignore[no-untyped-call]
+_STRETCH = UniTuple(float64, len(Stretch._fields))  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 
@@ -74,10 +129,58 @@ def _between(one: Floats, covariance: Floats, other: Floats) -> float:
     return total
 
 
-@_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64, float64, float64))
+@_compiled(_STRETCH(_OWN, _HOW, _THREE, _THREE, float64, boolean))
+def stretch(
+    own: Record,
+    how: Record,
+    to_m: tuple[float, float, float],
+    stds: tuple[float, float, float],
+    duration_s: float,
+    sure: bool,
+) -> tuple[float, ...]:
+    """What ``Stretch`` holds: the own path went on ``to_m`` (north, east, down), from where it was
+    last or from the frame's origin.  ``stds``: as the unit states them, north, east and of its
+    heading; ``sure``: it has no doubt of its path.
+    """
+    last, kind = own[0], how[0]
+    std_m, heading_std_rad = max(stds[0], stds[1]), stds[2]
+    drift_var = doubt_m2 = turned_rad = 0.0
+    if math.isnan(last.first_heading_std_rad):
+        last.first_heading_std_rad, duration_s = heading_std_rad, 0.0
+    else:
+        if heading_std_rad > last.heading_std_rad:  # by more than it drifts
+            usual_rad = SUDDEN * last.drift_radps * duration_s
+            grown = heading_std_rad**2 - last.heading_std_rad**2
+            drift_var = max(0.0, grown - 2.0 * heading_std_rad * usual_rad)
+        if not sure:
+            added_m2 = max(0.0, std_m**2 - last.std_m**2)
+            doubt_m2 = min(added_m2, (kind.fastest_mps * duration_s) ** 2)
+    north_m, east_m, down_m = to_m[0] - last.north_m, to_m[1] - last.east_m, to_m[2] - last.down_m
+    length_m = math.hypot(north_m, east_m)
+    moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
+    if length_m >= TURN_SEEN_M:
+        step_rad = math.atan2(east_m, north_m)
+        if not math.isnan(last.step_rad):
+            turned_rad = (step_rad - last.step_rad + math.pi) % (2.0 * math.pi) - math.pi
+        last.step_rad = step_rad
+    last.north_m, last.east_m, last.down_m = to_m
+    last.std_m, last.heading_std_rad = std_m, heading_std_rad
+    last.moving_s += moving_s
+    last.drift_radps = kind.drift_radps
+    if last.moving_s >= LEARNT_S:
+        grown_rad = max(0.0, heading_std_rad - last.first_heading_std_rad)
+        stated_radps = kind.drift_doubt * grown_rad / last.moving_s
+        last.drift_radps = min(max(stated_radps, kind.drift_least_radps), kind.drift_most_radps)
+    place_var_m2 = kind.walk_m_per_sqrt_m**2 * length_m + doubt_m2
+    turn_var = (
+        kind.turn_rad_per_sqrt_m**2 * length_m + drift_var + (kind.turn_part * turned_rad) ** 2
+    )
+    return (north_m, east_m, down_m, length_m, moving_s, place_var_m2, turn_var, last.drift_radps)
+
+
+@_compiled(void(_PLANE, float64, float64, float64, float64, float64, float64))
 def walk(
-    mean: Floats,
-    covariance: Floats,
+    plane: Record,
     north_m: float,
     east_m: float,
     moving_s: float,
@@ -95,21 +198,22 @@ def walk(
 
     and the noise is that of the place, of the turn across ``(c, s)``, and of the drift rate.
     """
-    drifted_rad = mean[_DRIFT, 0] * moving_s
+    mean, covariance = plane[0].mean, plane[0].covariance
+    drifted_rad = mean[DRIFT] * moving_s
     cosine, sine = math.cos(drifted_rad), math.sin(drifted_rad)
-    c = cosine * mean[2, 0] - sine * mean[3, 0]
-    s = sine * mean[2, 0] + cosine * mean[3, 0]
+    c = cosine * mean[2] - sine * mean[3]
+    s = sine * mean[2] + cosine * mean[3]
     by_drift_c, by_drift_s = -s * moving_s, c * moving_s
-    for column in range(_DRIFT + 1):
+    for column in range(DRIFT + 1):
         of_c, of_s = covariance[2, column], covariance[3, column]
-        of_drift = covariance[_DRIFT, column]
+        of_drift = covariance[DRIFT, column]
         covariance[0, column] += north_m * of_c - east_m * of_s
         covariance[1, column] += east_m * of_c + north_m * of_s
         covariance[2, column] = cosine * of_c - sine * of_s + by_drift_c * of_drift
         covariance[3, column] = sine * of_c + cosine * of_s + by_drift_s * of_drift
-    for row in range(_DRIFT + 1):
+    for row in range(DRIFT + 1):
         of_c, of_s = covariance[row, 2], covariance[row, 3]
-        of_drift = covariance[row, _DRIFT]
+        of_drift = covariance[row, DRIFT]
         covariance[row, 0] += north_m * of_c - east_m * of_s
         covariance[row, 1] += east_m * of_c + north_m * of_s
         covariance[row, 2] = cosine * of_c - sine * of_s + by_drift_c * of_drift
@@ -120,17 +224,15 @@ def walk(
     covariance[3, 3] += turn_var * c * c
     covariance[2, 3] -= turn_var * c * s
     covariance[3, 2] -= turn_var * c * s
-    covariance[_DRIFT, _DRIFT] += drift_var
-    mean[0, 0] += c * north_m - s * east_m
-    mean[1, 0] += s * north_m + c * east_m
-    mean[2, 0], mean[3, 0] = c, s
+    covariance[DRIFT, DRIFT] += drift_var
+    mean[0] += c * north_m - s * east_m
+    mean[1] += s * north_m + c * east_m
+    mean[2], mean[3] = c, s
 
 
-@_compiled(void(_MATRIX, _MATRIX, _VECTOR, _THREE, boolean, _THREE))
+@_compiled(void(_HEIGHT, _THREE, boolean, _THREE))
 def climb(
-    mean: Floats,
-    covariance: Floats,
-    path: Floats,
+    height: Record,
     stretch: tuple[float, float, float],
     moves: bool,
     how: tuple[float, float, float],
@@ -139,9 +241,10 @@ def climb(
 
     ``stretch``: metres down, metres walked, and how sure the unit is of its height; ``moves``:
     whether its wearer goes anywhere; ``how``: the variance by metre climbed and by metre walked,
-    and the climb that changes floor.  ``path`` (PATH,) is what is remembered of stretches before:
-    a unit that rests and grows less sure of its height may be riding a lift.
+    and the climb that changes floor.  ``path`` is what is remembered of stretches before: a unit
+    that rests and grows less sure of its height may be riding a lift.
     """
+    mean, covariance, path = height[0].mean, height[0].covariance, height[0].path
     down_m, walked_m, own_std_m = stretch
     per_climb_m2, per_walk_m2, level_m = how
     grown_m2 = max(0.0, own_std_m * own_std_m - path[SETTLED_M2])
@@ -154,7 +257,7 @@ def climb(
         path[DOUBT_M2] = grown_m2
         path[RODE_M] += down_m
     stairs_m2 = per_climb_m2 * abs(down_m) + per_walk_m2 * walked_m
-    mean[0, 0] += down_m
+    mean[0] += down_m
     if path[DOUBT_M2] < stairs_m2:  # else the unit knows of the ride, and how well
         covariance[0, 0] += max(stairs_m2, ridden_m2)
     path[LEVEL_M] += walked_m
@@ -163,10 +266,9 @@ def climb(
         path[LEVEL_M] = path[CLIMBED_M] = 0.0
 
 
-@_compiled(void(_MATRIX, _MATRIX, float64, float64, float64, float64))
+@_compiled(void(_HEIGHT, float64, float64, float64, float64))
 def feel_air(
-    mean: Floats,
-    covariance: Floats,
+    height: Record,
     down_m: float,
     wander_m2: float,
     noise_m2: float,
@@ -177,8 +279,9 @@ def feel_air(
     Measured is ``[1, 0, 1]`` of the state with ``noise_m2``.  What lies farther off than
     ``gate2`` (squared standard deviations) is a step of pressure and widens the shift first.
     """
+    mean, covariance = height[0].mean, height[0].covariance
     covariance[2, 2] += wander_m2
-    innovation_m = down_m - mean[0, 0] - mean[2, 0]
+    innovation_m = down_m - mean[0] - mean[2]
     spread_m2 = covariance[0, 0] + covariance[0, 2] + covariance[2, 0] + covariance[2, 2] + noise_m2
     if innovation_m * innovation_m > gate2 * spread_m2:
         covariance[2, 2] += innovation_m * innovation_m
@@ -186,7 +289,7 @@ def feel_air(
     gain = np.empty(3)
     for i in range(3):
         gain[i] = (covariance[i, 0] + covariance[i, 2]) / spread_m2
-        mean[i, 0] += gain[i] * innovation_m
+        mean[i] += gain[i] * innovation_m
     for column in range(3):  # (1 - K H) P
         seen = covariance[0, column] + covariance[2, column]
         for i in range(3):
@@ -197,14 +300,14 @@ def feel_air(
             covariance[row, j] += gain[j] * (noise_m2 * gain[row] - seen)
 
 
-@_compiled(_PLACED(_MATRIX, _MATRIX, float64, float64))
+@_compiled(_PLACED(_VECTOR, _MATRIX, float64, float64))
 def placed_before(
     mean: Floats, covariance: Floats, north_m: float, east_m: float
 ) -> tuple[float, ...]:
     """What ``Placed`` holds, by a state of ``HorizontalFilter``.  The place is that before so much
     of own path was walked: ``[1, 0, -dn, de, 0 ...]`` and ``[0, 1, -de, -dn, 0 ...]`` of it.
     """
-    c, s = mean[2, 0], mean[3, 0]
+    c, s = mean[2], mean[3]
     north = np.array([1.0, 0.0, -north_m, east_m])
     east = np.array([0.0, 1.0, -east_m, -north_m])
     across = np.array([0.0, 0.0, -s, c])
@@ -218,8 +321,8 @@ def placed_before(
         turn_var = max(_between(across, covariance, across), 0.0) / (scale2 * scale2)
         turn_std_rad = min(math.sqrt(turn_var), math.pi)
     return (
-        mean[0, 0] - c * north_m + s * east_m,
-        mean[1, 0] - s * north_m - c * east_m,
+        mean[0] - c * north_m + s * east_m,
+        mean[1] - s * north_m - c * east_m,
         std_north_m,
         std_east_m,
         _between(north, covariance, east) / product if product > 0.0 else 0.0,

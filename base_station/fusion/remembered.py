@@ -7,7 +7,6 @@ import msgspec
 from base_station.fusion.fixes.trust import FixTrust
 from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.path.memory import PathMemory
-from base_station.fusion.path.own_path import OwnPath
 from base_station.fusion.plane.walled import SavedWalled
 from base_station.fusion.vertical.height import SavedHeight
 from shared.messages import Position
@@ -18,10 +17,10 @@ class Memory(msgspec.Struct):
 
     horizontal: SavedWalled | None = None
     height: SavedHeight | None = None
+    own: bytes = b""  # the own path
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
     height_assumed: bool = True  # and nothing told yet that it did not begin upstairs
     last: Position | None = None
-    own: OwnPath = msgspec.field(default_factory=OwnPath)
     path: PathMemory = msgspec.field(default_factory=PathMemory)
     fix_t_mono_ns: int | None = None  # the newest accepted fix
     wander_t_mono_ns: int | None = None

@@ -10,7 +10,7 @@ from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
-from base_station.fusion.kernels import Placed
+from base_station.fusion.kernels import HEIGHT, PLANE, Placed, Record
 
 STATES, DRIFT = 9, 8  # of ``HorizontalFilter``
 
@@ -30,14 +30,21 @@ def filter_of(states: int, seed: int) -> KalmanFilter:
     return found
 
 
+def record_of(kind: np.dtype[np.void], state: KalmanFilter) -> Record:
+    """The same state as the kernels have it."""
+    record = np.zeros(1, kind)
+    record["mean"], record["covariance"] = state.x[:, 0], state.P
+    return record
+
+
 def placed_before(mean: Floats, covariance: Floats, north_m: float, east_m: float) -> Placed:
-    return Placed(*kernels.placed_before(mean, covariance, north_m, east_m))
+    return Placed(*kernels.placed_before(mean[:, 0], covariance, north_m, east_m))
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
     expected = filter_of(STATES, seed)
-    mean, covariance = expected.x.copy(), expected.P.copy()
+    plane = record_of(PLANE, expected)
     north_m, east_m, moving_s, place_var_m2, turn_var, drift_var = 0.7, -0.4, 0.5, 0.02, 0.03, 0.04
     drifted_rad = float(expected.x[DRIFT, 0]) * moving_s
     a, b = math.cos(drifted_rad), math.sin(drifted_rad)
@@ -53,34 +60,35 @@ def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
     noise[2:4, 2:4] = turn_var * np.outer(across, across)
     noise[DRIFT, DRIFT] = drift_var
 
-    kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
+    kernels.walk(plane, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
     expected.predict(F=jacobian, Q=noise)
 
-    same(covariance, expected.P)
+    mean = plane["mean"][0]
+    same(plane["covariance"][0], expected.P)
     moved = (c * north_m - s * east_m, s * north_m + c * east_m)
-    same(mean[:2, 0] - filter_of(STATES, seed).x[:2, 0], moved)
-    same(mean[2:4, 0], (c, s))
+    same(mean[:2] - filter_of(STATES, seed).x[:2, 0], moved)
+    same(mean[2:4], (c, s))
 
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("step_m", [0.0, 40.0], ids=["steady", "a step of pressure"])
 def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
     expected = filter_of(3, seed)
-    mean, covariance = expected.x.copy(), expected.P.copy()
+    height = record_of(HEIGHT, expected)
     down_m, wander_m2, noise_m2, gate2 = (
-        float(mean[0, 0] + mean[2, 0]) + 0.1 + step_m,
+        float(expected.x[0, 0] + expected.x[2, 0]) + 0.1 + step_m,
         0.01,
         0.09,
         9.0,
     )
     expected.P[2, 2] += wander_m2 + ((0.1 + step_m) ** 2 if step_m else 0.0)
 
-    kernels.feel_air(mean, covariance, down_m, wander_m2, noise_m2, gate2)
+    kernels.feel_air(height, down_m, wander_m2, noise_m2, gate2)
     observe = np.array([[1.0, 0.0, 1.0]])
     expected.update(np.array([[down_m]]), R=np.array([[noise_m2]]), H=observe)
 
-    same(mean, expected.x)
-    same(covariance, expected.P)
+    same(height["mean"][0], expected.x[:, 0])
+    same(height["covariance"][0], expected.P)
 
 
 def test_the_place_before_is_the_present_one_less_the_path() -> None:
@@ -109,56 +117,48 @@ def test_a_place_is_less_sure_by_what_is_added() -> None:
     assert placed.widened(16.0).std_north_m == pytest.approx(5.0)
 
 
-def test_arrays_of_any_layout_will_do() -> None:
-    """``filterpy`` makes new ones, and nothing must be compiled while the station is live."""
-    one, other = filter_of(STATES, 2), filter_of(STATES, 2)
-    kernels.walk(one.x, one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
-    kernels.walk(other.x, np.asfortranarray(other.P), 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
-    assert np.array_equal(one.x, other.x)
+def test_nothing_is_compiled_while_a_station_is_live() -> None:
+    """What a kernel was not compiled for it refuses."""
+    state = filter_of(STATES, 2)
     with pytest.raises(TypeError):
-        kernels.walk(one.x[:, 0], one.P, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
+        kernels.walk(state.x, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
 
 
-def climb(
-    mean: Floats,
-    covariance: Floats,
-    path: Floats,
-    stretch: tuple[float, float, float],
-    *,
-    moves: bool = True,
-) -> None:
+def climb(height: Record, stretch: tuple[float, float, float], *, moves: bool = True) -> None:
     """0.05 m2 a metre climbed, 0.005 a metre walked, storeys change by half a metre."""
-    kernels.climb(mean, covariance, path, stretch, moves, (0.05, 0.005, 0.5))
+    kernels.climb(height, stretch, moves, (0.05, 0.005, 0.5))
 
 
 def test_a_climb_is_filterpy_s_prediction() -> None:
     expected = filter_of(3, 4)
-    mean, covariance = expected.x.copy(), expected.P.copy()
-    climb(mean, covariance, np.zeros(kernels.PATH), (-0.3, 1.0, 0.0))
+    height = record_of(HEIGHT, expected)
+    climb(height, (-0.3, 1.0, 0.0))
     expected.predict(
         u=np.array([[-0.3]]), B=np.eye(3)[:, :1], F=np.eye(3), Q=np.diag([0.02, 0.0, 0.0])
     )
-    same(mean, expected.x)
-    same(covariance, expected.P)
+    same(height["mean"][0], expected.x[:, 0])
+    same(height["covariance"][0], expected.P)
 
 
 def test_a_ride_that_the_unit_feels_is_doubt_until_its_wearer_walks() -> None:
-    mean, covariance, path = np.zeros((3, 1)), np.zeros((3, 3)), np.zeros(kernels.PATH)
-    climb(mean, covariance, path, (0.0, 1.0, 0.2))
-    climb(mean, covariance, path, (-3.0, 0.0, 0.7), moves=False)
+    height = np.zeros(1, HEIGHT)
+    path = height["path"][0]
+    climb(height, (0.0, 1.0, 0.2))
+    climb(height, (-3.0, 0.0, 0.7), moves=False)
     assert path[kernels.DOUBT_M2] == pytest.approx(0.7**2 - 0.2**2)
     assert path[kernels.RODE_M] == -3.0
-    assert covariance[0, 0] == pytest.approx(0.2**2)  # beside the doubt
-    climb(mean, covariance, path, (0.0, 1.0, 0.7))
+    assert height["covariance"][0, 0, 0] == pytest.approx(0.2**2)  # beside the doubt
+    climb(height, (0.0, 1.0, 0.7))
     assert path[kernels.DOUBT_M2] == path[kernels.RODE_M] == 0.0
-    assert covariance[0, 0] == pytest.approx(0.7**2)
-    assert mean[0, 0] == -3.0
+    assert height["covariance"][0, 0, 0] == pytest.approx(0.7**2)
+    assert height["mean"][0, 0] == -3.0
 
 
 def test_who_climbs_has_not_walked_on_the_level() -> None:
-    mean, covariance, path = np.zeros((3, 1)), np.zeros((3, 3)), np.zeros(kernels.PATH)
+    height = np.zeros(1, HEIGHT)
+    path = height["path"][0]
     for _ in range(4):
-        climb(mean, covariance, path, (-0.1, 2.0, 0.0))
+        climb(height, (-0.1, 2.0, 0.0))
     assert path[kernels.LEVEL_M] == pytest.approx(8.0)
-    climb(mean, covariance, path, (-0.2, 1.0, 0.0))
+    climb(height, (-0.2, 1.0, 0.0))
     assert path[kernels.LEVEL_M] == 0.0

@@ -72,12 +72,14 @@ def test_one_wrong_position_moves_nobody_and_stops_nothing(wrong: Wrong) -> None
 
 def test_doubt_grows_no_faster_than_people_run() -> None:
     """A unit in trouble says now that it knows all of its place, and now nothing."""
-    kind, own = Parameters(), OwnPath()
+    kind = Parameters()
+    own = OwnPath(kind)
     sure = said.position(Header(U, 1, 1, 0), quality=Quality.DEGRADED)
     lost = said.position(
         Header(U, 1, 2, 200_000_000), quality=Quality.DEGRADED, std_north_m=4e6, std_east_m=4e6
     )
-    stretch = own.stretch(kind, sure, lost)
+    own.stretch(sure, 0.0)
+    stretch = own.stretch(lost, 0.2)
     assert 1.0 < math.sqrt(stretch.place_var_m2) <= kind.fastest_mps * 0.2
 
 

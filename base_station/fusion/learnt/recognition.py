@@ -6,11 +6,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.kernels import Stretch
 from base_station.fusion.learnt.axes import AxisFilter
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.legs import Drift, Leg, LegWatch
 from base_station.fusion.learnt.stairs import SHARED_M2, STD_M, Climb, ClimbWatch, Stairs
-from base_station.fusion.path.own_path import Stretch
 from base_station.fusion.plane.state import DRIFT, turn_of
 from base_station.fusion.plane.walled import WalledFilter
 from base_station.fusion.told import taken_over

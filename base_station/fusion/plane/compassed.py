@@ -39,7 +39,7 @@ class CompassedFilter(HorizontalFilter):
     def save(self) -> SavedCompassed:
         own, deaf = super().save(), None if self._deaf is None else self._deaf.save()
         return SavedCompassed(
-            own.x, own.covariance, own.bank, own.drift_std_radps, deaf, self._compass
+            own.mean, own.covariance, own.bank, own.drift_std_radps, deaf, self._compass
         )
 
     def load(self, saved: SavedHorizontal) -> None:

@@ -22,11 +22,11 @@ import math
 
 import msgspec
 import numpy as np
-from filterpy.kalman import KalmanFilter
+from filterpy.kalman import update
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
-from base_station.fusion.kernels import Placed
+from base_station.fusion.kernels import PLANE, Placed
 from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting, slow_errors
 from base_station.fusion.plane.state import (
     DRIFT,
@@ -47,7 +47,7 @@ REOPEN = 1.5  # times the width at which one hypothesis was enough
 
 
 class SavedHorizontal(msgspec.Struct, frozen=True):
-    x: list[float]
+    mean: list[float]
     covariance: list[list[float]]
     bank: SavedBank | None
     drift_std_radps: float
@@ -64,21 +64,21 @@ class HorizontalFilter:
         self._linear_rad = linear_rad
         self._wander_var = wander_radps**2 / 60.0
         self._drift_std_radps = 0.0
-        self._filter = KalmanFilter(dim_x=STATES, dim_z=2)
-        self._filter.x = np.zeros((STATES, 1))
-        self._filter.x[2, 0] = 1.0
-        self._filter.P = np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0])
-        self._bank: HeadingBank | None = None  # where it is, the filter mirrors its moments
+        self._plane = np.zeros(1, PLANE)
+        self._mean: Floats = self._plane["mean"][0]
+        self._covariance: Floats = self._plane["covariance"][0]
+        self._mean[2] = 1.0
+        self._covariance[SLOW, SLOW] = np.eye(4)
+        self._bank: HeadingBank | None = None  # where it is, these mirror its moments
         self._stale = False  # and is behind it
 
     def save(self) -> SavedHorizontal:
         bank = None if self._bank is None else self._bank.save()
-        now = self._current()
-        return SavedHorizontal(now.x.ravel().tolist(), now.P.tolist(), bank, self._drift_std_radps)
+        mean, covariance = self._current()
+        return SavedHorizontal(mean.tolist(), covariance.tolist(), bank, self._drift_std_radps)
 
     def load(self, saved: SavedHorizontal) -> None:
-        self._filter.x = np.array(saved.x).reshape(STATES, 1)
-        self._filter.P = np.array(saved.covariance)
+        self._mean[:], self._covariance[:] = saved.mean, saved.covariance
         self._drift_std_radps = saved.drift_std_radps
         self._bank = None if saved.bank is None else HeadingBank.restore(saved.bank)
 
@@ -89,18 +89,17 @@ class HorizontalFilter:
 
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (9,) and covariance (9, 9) of the whole state."""
-        now = self._current()
-        return now.x[:, 0].copy(), now.P.copy()
+        mean, covariance = self._current()
+        return mean.copy(), covariance.copy()
 
     def placed_before(self, north_m: float, east_m: float) -> Placed:
         """Place before this much of own path was walked, and turn, as it looks now."""
-        now = self._current()
-        return Placed(*kernels.placed_before(now.x, now.P, north_m, east_m))
+        return Placed._make(kernels.placed_before(*self._current(), north_m, east_m))
 
     def adopt(self, mean: Floats, covariance: Floats) -> None:
         """Go on from what another filter of the same state came to."""
         self._bank = None
-        self._filter.x, self._filter.P = mean.reshape(STATES, 1).copy(), covariance.copy()
+        self._mean[:], self._covariance[:] = mean, covariance
 
     def settle(self, mean: Floats, covariance: Floats) -> None:
         """Begin again with ``[north, east, c, s, w]``; of fixes' slow errors nothing is known."""
@@ -112,7 +111,7 @@ class HorizontalFilter:
 
     def _open_heading(self, from_rad: float) -> None:
         """Past so wide a heading one hypothesis will not do."""
-        mean, covariance = self._filter.x[:DRIFT, 0], self._filter.P[:DRIFT, :DRIFT]
+        mean, covariance = self._mean[:DRIFT], self._covariance[:DRIFT, :DRIFT]
         if self._bank is None and turn_of(mean, covariance)[1] > from_rad:
             self._bank = HeadingBank.given(mean, covariance)
             self._stale = True
@@ -122,7 +121,7 @@ class HorizontalFilter:
         turns out worse than it was taken for has a drift that is less known.
         """
         if self._bank is None and std_radps > self._drift_std_radps:
-            self._filter.P[DRIFT, DRIFT] += std_radps**2 - self._drift_std_radps**2
+            self._covariance[DRIFT, DRIFT] += std_radps**2 - self._drift_std_radps**2
         self._drift_std_radps = std_radps
 
     def begin(
@@ -131,14 +130,14 @@ class HorizontalFilter:
         """The own frame's origin and the heading of its north."""
         self._current()
         self._bank = None
-        self._filter.x[:2, 0] = place_m
+        self._mean[:2] = place_m
         self._reset_place_var(std_m**2)
         if heading_std_rad > self._linear_rad:
             self.forget_heading(heading_rad, heading_std_rad)
             return
         along = np.array([math.cos(heading_rad), math.sin(heading_rad)])
         across = np.array([-along[1], along[0]])
-        self._filter.x[2:4, 0] = along
+        self._mean[2:4] = along
         self._reset_heading_var(
             self._scale_std**2 * np.outer(along, along)
             + heading_std_rad**2 * np.outer(across, across)
@@ -147,9 +146,9 @@ class HorizontalFilter:
 
     def forget_heading(self, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> None:
         own = np.ix_(PLACE_AND_SLOW, PLACE_AND_SLOW)
-        now = self._current()
+        mean, covariance = self._current()
         self._bank = HeadingBank.about(
-            now.x[PLACE_AND_SLOW, 0], now.P[own], heading_rad, heading_std_rad
+            mean[PLACE_AND_SLOW], covariance[own], heading_rad, heading_std_rad
         )
         self._stale = True
 
@@ -168,9 +167,8 @@ class HorizontalFilter:
             self._bank.walk(north_m, east_m, place_var_m2, turn_var)
             self._stale = True
             return
-        mean, covariance = self._filter.x, self._filter.P
         drift_var = self._wander_var * moving_s
-        kernels.walk(mean, covariance, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
+        kernels.walk(self._plane, north_m, east_m, moving_s, place_var_m2, turn_var, drift_var)
 
     def spread(self, variance_m2: float) -> None:
         """The wearer may have got away from the path by so much."""
@@ -178,8 +176,8 @@ class HorizontalFilter:
             self._bank.spread(variance_m2)
             self._stale = True
         else:
-            self._filter.P[0, 0] += variance_m2
-            self._filter.P[1, 1] += variance_m2
+            self._covariance[0, 0] += variance_m2
+            self._covariance[1, 1] += variance_m2
 
     def fade(self, keeps: Floats) -> None:
         """Time went by for the fixes' slow errors: (4,) of each what is left."""
@@ -187,25 +185,26 @@ class HorizontalFilter:
             self._bank.fade(keeps)
             self._stale = True
             return
-        self._filter.x[SLOW, 0] *= keeps
-        self._filter.P[SLOW, :] *= keeps[:, None]
-        self._filter.P[:, SLOW] *= keeps
-        self._filter.P[SLOW, SLOW] += np.diag(1.0 - keeps**2)
+        self._mean[SLOW] *= keeps
+        self._covariance[SLOW, :] *= keeps[:, None]
+        self._covariance[:, SLOW] *= keeps
+        self._covariance[SLOW, SLOW] += np.diag(1.0 - keeps**2)
 
     def distance2(self, sighting: Sighting) -> float:
         """How far a fix lies from what is believed, chi-square of two degrees of freedom."""
         if self._bank is not None:
             return self._bank.distance2(sighting)
         place, observe, noise = _linear(sighting)
-        innovation = place - observe @ self._filter.x
-        spread = observe @ self._filter.P @ observe.T + noise
-        return float((innovation.T @ np.linalg.solve(spread, innovation))[0, 0])
+        innovation = place - observe @ self._mean
+        spread = observe @ self._covariance @ observe.T + noise
+        return float(innovation @ np.linalg.solve(spread, innovation))
 
     def update(self, sighting: Sighting) -> None:
         self._open_heading(REOPEN * self._linear_rad)
         if self._bank is None:
             place, observe, noise = _linear(sighting)
-            self._filter.update(place, R=noise, H=observe)
+            told_now = update(self._mean, self._covariance, place, noise, observe)
+            self._mean[:], self._covariance[:] = told_now
             return
         self._bank.update(sighting)
         self._close_heading()
@@ -221,9 +220,9 @@ class HorizontalFilter:
         where one heading is left.
         """
         self.reframe(turn_rad, 0.0, 0.0)
-        north_m, east_m, c, s = self._filter.x[:4, 0]
+        north_m, east_m, c, s = self._mean[:4]
         by = np.array([-east_m, north_m, -s, c, *[0.0] * (STATES - 4)])
-        self._filter.P += std_rad**2 * np.outer(by, by)
+        self._covariance += std_rad**2 * np.outer(by, by)
 
     def face(self, turn_rad: float, variance: float) -> None:
         """The heading correction has come to be known as this; only where one heading is left."""
@@ -235,15 +234,15 @@ class HorizontalFilter:
         to = observe @ mean + wrap_pi(turn_rad - math.atan2(s, c))
         mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
         mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
-        self._filter.x, self._filter.P = mean.reshape(STATES, 1), covariance
+        self._mean[:], self._covariance[:] = mean, covariance
 
     def _close_heading(self) -> None:
         """Known so well, one hypothesis is enough."""
         self._stale = True
         if turn_of(*self.moments())[1] < self._linear_rad:
             self._bank = None
-            along = self._filter.x[2:4, 0] / np.linalg.norm(self._filter.x[2:4, 0])
-            self._filter.P[2:4, 2:4] += self._scale_std**2 * np.outer(along, along)
+            along = self._mean[2:4] / np.linalg.norm(self._mean[2:4])
+            self._covariance[2:4, 2:4] += self._scale_std**2 * np.outer(along, along)
             self._forget_drift()
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
@@ -255,41 +254,38 @@ class HorizontalFilter:
             return
         whole = np.eye(STATES)
         whole[:DRIFT, :DRIFT] = np.kron(np.eye(DRIFT // 2), turn)
-        self._filter.x = whole @ self._filter.x
-        self._filter.x[:2, 0] += north_m, east_m
-        self._filter.P = whole @ self._filter.P @ whole.T
+        self._mean[:] = whole @ self._mean
+        self._mean[:2] += north_m, east_m
+        self._covariance[:] = whole @ self._covariance @ whole.T
 
-    def _current(self) -> KalmanFilter:
-        """The filter, abreast of the bank."""
+    def _current(self) -> tuple[Floats, Floats]:
+        """Mean and covariance, abreast of the bank."""
         if self._stale and self._bank is not None:
-            mean, covariance = self._bank.moments()
-            self._filter.x[:DRIFT, 0] = mean
-            self._filter.P = np.zeros((STATES, STATES))
-            self._filter.P[:DRIFT, :DRIFT] = covariance
+            self._mean[:DRIFT], self._covariance[:DRIFT, :DRIFT] = self._bank.moments()
             self._forget_drift()
         self._stale = False
-        return self._filter
+        return self._mean, self._covariance
 
     def _forget_drift(self) -> None:
-        self._filter.x[DRIFT, 0] = 0.0
-        self._filter.P[DRIFT, :] = self._filter.P[:, DRIFT] = 0.0
-        self._filter.P[DRIFT, DRIFT] = self._drift_std_radps**2
+        self._mean[DRIFT] = 0.0
+        self._covariance[DRIFT, :] = self._covariance[:, DRIFT] = 0.0
+        self._covariance[DRIFT, DRIFT] = self._drift_std_radps**2
 
     def _reset_place_var(self, variance_m2: float) -> None:
-        covariance = self._filter.P
+        covariance = self._covariance
         covariance[:2, :] = 0.0
         covariance[:, :2] = 0.0
         covariance[0, 0] = covariance[1, 1] = variance_m2
 
     def _reset_heading_var(self, covariance: Floats) -> None:
-        self._filter.P[2:4, :] = 0.0
-        self._filter.P[:, 2:4] = 0.0
-        self._filter.P[2:4, 2:4] = covariance
+        self._covariance[2:4, :] = 0.0
+        self._covariance[:, 2:4] = 0.0
+        self._covariance[2:4, 2:4] = covariance
 
 
 def _linear(sighting: Sighting) -> tuple[Floats, Floats, Floats]:
-    """Measurement (2, 1), its matrix (2, 9) and its covariance (2, 2)."""
+    """Measurement (2,), its matrix (2, 9) and its covariance (2, 2)."""
     observe = place_then(sighting.since_north_m, sighting.since_east_m)
     observe[:, SLOW] = slow_errors(sighting)
-    place = np.array([[sighting.north_m], [sighting.east_m]])
+    place = np.array([sighting.north_m, sighting.east_m])
     return place, observe, sighting.white_m2 * np.eye(2)

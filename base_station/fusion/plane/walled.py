@@ -102,8 +102,7 @@ class WalledFilter:
         """As ``place_before``, in numbers, and how the own frame is turned."""
         if self._cloud is None:
             return self._plain.placed_before(north_m, east_m)
-        mean, covariance = self._cloud.moments()
-        return Placed(*placed_before(mean[:, None], covariance, north_m, east_m))
+        return Placed._make(placed_before(*self._cloud.moments(), north_m, east_m))
 
     def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
         """Place and covariance before this much of own path was walked, as it looks now."""

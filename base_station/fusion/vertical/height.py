@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import msgspec
 import numpy as np
-from filterpy.kalman import KalmanFilter
+from filterpy.kalman import update
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
@@ -29,14 +29,12 @@ Floats = NDArray[np.float64]
 _GATE_STD = 3.0
 _UNKNOWN_VAR_M2 = 1e4
 _EITHER = np.array([[1.0, 0.0, -1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 1.0]])
-_OBSERVE_LEVEL = np.array([[1.0, 0.0, 0.0]])
+_OBSERVE_LEVEL = np.array([1.0, 0.0, 0.0])
 
 
 class SavedHeight(msgspec.Struct, frozen=True):
-    x: list[float]
-    covariance: list[list[float]]
+    numbers: bytes  # ``kernels.HEIGHT``
     air_t_mono_ns: int | None
-    path: list[float]
     rides: Rides
 
 
@@ -48,35 +46,32 @@ class HeightFilter:
     def __init__(self, kind: Parameters) -> None:
         self._kind = kind
         self._air_t_mono_ns: int | None = None  # None: the shift is not known yet
-        self._path = np.zeros(kernels.PATH)  # how the own path climbed: ``kernels.climb``
         self._climbing = (
             kind.climb_m_per_sqrt_climb_m**2,
             kind.climb_m_per_sqrt_m**2,
             kind.level_m,
         )
         self._rides = Rides()
-        self._filter = KalmanFilter(dim_x=3, dim_z=1)
-        self._filter.x = np.zeros((3, 1))
-        self._filter.P = np.diag([1.0, 1.0, _UNKNOWN_VAR_M2])
+        self._height = np.zeros(1, kernels.HEIGHT)
+        self._mean: Floats = self._height["mean"][0]
+        self._covariance: Floats = self._height["covariance"][0]
+        self._path: Floats = self._height["path"][0]  # how the own path climbed: ``kernels.climb``
+        self._covariance[:] = np.diag([1.0, 1.0, _UNKNOWN_VAR_M2])
 
     def save(self) -> SavedHeight:
-        state, covariance = self._filter.x.ravel().tolist(), self._filter.P.tolist()
-        path = self._path.tolist()
-        return SavedHeight(state, covariance, self._air_t_mono_ns, path, self._rides)
+        return SavedHeight(self._height.tobytes(), self._air_t_mono_ns, self._rides)
 
     def load(self, saved: SavedHeight) -> None:
-        self._filter.x = np.array(saved.x).reshape(3, 1)
-        self._filter.P = np.array(saved.covariance)
-        self._air_t_mono_ns = saved.air_t_mono_ns
-        self._path, self._rides = np.array(saved.path), saved.rides
+        self._height[:] = np.frombuffer(saved.numbers, kernels.HEIGHT)
+        self._air_t_mono_ns, self._rides = saved.air_t_mono_ns, saved.rides
 
     @property
     def down_m(self) -> float:
-        return float(self._filter.x.item(0))
+        return float(self._mean.item(0))
 
     @property
     def variance_m2(self) -> float:
-        return float(self._filter.P.item(0)) + self._path.item(kernels.DOUBT_M2)
+        return float(self._covariance.item(0) + self._path.item(kernels.DOUBT_M2))
 
     @property
     def walked_level(self) -> bool:
@@ -84,14 +79,14 @@ class HeightFilter:
 
     def begin(self, down_m: float, std_m: float) -> None:
         """Known anew; the barometer's shift is to be found again."""
-        self._filter.x[0, 0] = down_m
-        self._filter.P[:] = np.diag([std_m**2, 1.0, _UNKNOWN_VAR_M2])
+        self._mean[0] = down_m
+        self._covariance[:] = np.diag([std_m**2, 1.0, _UNKNOWN_VAR_M2])
         self._air_t_mono_ns = None
 
     def shift(self, down_m: float) -> None:
         """The incident frame was moved."""
-        self._filter.x[0, 0] += down_m
-        self._filter.x[2, 0] -= down_m
+        self._mean[0] += down_m
+        self._mean[2] -= down_m
 
     def climb(
         self, down_m: float, walked_m: float, own_std_m: float = 0.0, *, moves: bool = True
@@ -99,27 +94,26 @@ class HeightFilter:
         """The own height went on by this much; ``own_std_m`` is how sure the unit is of it, and
         ``moves`` whether its wearer goes anywhere.
         """
-        now, stretch = self._filter, (down_m, walked_m, own_std_m)
-        kernels.climb(now.x, now.P, self._path, stretch, moves, self._climbing)
+        kernels.climb(self._height, (down_m, walked_m, own_std_m), moves, self._climbing)
         if moves:
             self._rides.felt.clear()
 
     def fade(self, keep: float) -> None:
         """Time went by for the fixes' slow error."""
-        self._filter.x[1] *= keep
-        self._filter.P[1, :] *= keep
-        self._filter.P[:, 1] *= keep
-        self._filter.P[1, 1] += 1.0 - keep**2
+        self._mean[1] *= keep
+        self._covariance[1, :] *= keep
+        self._covariance[:, 1] *= keep
+        self._covariance[1, 1] += 1.0 - keep**2
 
     def correct(self, down_m: float, std_m: float) -> None:
         """Take a fix's height, unless it cannot be true."""
         part = self._kind.height_slow_part
-        observe = np.array([[1.0, std_m * math.sqrt(part), 0.0]])
+        observe = np.array([1.0, std_m * math.sqrt(part), 0.0])
         noise_m2 = std_m**2 * (1.0 - part)
-        innovation_m = down_m - float((observe @ self._filter.x)[0, 0])
-        spread_m2 = float((observe @ self._filter.P @ observe.T)[0, 0]) + noise_m2
+        innovation_m = down_m - float(observe @ self._mean)
+        spread_m2 = float(observe @ self._covariance @ observe) + noise_m2
         if innovation_m**2 <= _GATE_STD**2 * spread_m2:
-            self._filter.update(np.array([[down_m]]), R=np.array([[noise_m2]]), H=observe)
+            self._take(down_m, noise_m2, observe)
 
     def feel(self, air: AirHeight) -> None:
         kind = self._kind
@@ -129,8 +123,7 @@ class HeightFilter:
         self._air_t_mono_ns = air.t_mono_ns
         wander_m = kind.air_m_per_sqrt_s if air.referenced else kind.weather_m_per_sqrt_s
         kernels.feel_air(
-            self._filter.x,
-            self._filter.P,
+            self._height,
             air.down_m,
             wander_m**2 * since_s,
             kind.air_std_m**2,
@@ -138,7 +131,7 @@ class HeightFilter:
         )
         lifted_m = self._rides.feel(air, self._path.item(kernels.RODE_M))
         if lifted_m:  # in the height or in the barometer's shift: their sum is known
-            self._filter.P += lifted_m**2 * _EITHER
+            self._covariance += lifted_m**2 * _EITHER
 
     def rest_on(self, storeys_down_m: Sequence[float]) -> None:
         """Somebody in the building who walked on the level is on a storey."""
@@ -151,9 +144,7 @@ class HeightFilter:
         weights = np.exp(-0.5 * (apart2 - apart2.min()) / spread_m2)
         best = int(apart2.argmin())
         if weights[best] / weights.sum() > kind.level_sure and apart2[best] < 9.0 * spread_m2:
-            noise_m2 = np.array([[kind.level_std_m**2]])
-            level_m = np.array([[storeys_down_m[best]]])
-            self._filter.update(level_m, R=noise_m2, H=_OBSERVE_LEVEL)
+            self._take(storeys_down_m[best], kind.level_std_m**2, _OBSERVE_LEVEL)
 
     def rest_near(self, storeys: Sequence[Storey]) -> None:
         """Somebody who walked on the level is on one of these.  A storey that was learnt from
@@ -174,8 +165,18 @@ class HeightFilter:
         sure = near / sum(weights) > kind.level_sure and apart2[best] < _GATE_STD**2
         if sure and variance_m2 > level_m2[best]:
             noise_m2 = 1.0 / (1.0 / level_m2[best] - 1.0 / variance_m2)
-            level_m = np.array([[storeys[best].down_m]])
-            self._filter.update(level_m, R=np.array([[noise_m2]]), H=_OBSERVE_LEVEL)
+            self._take(storeys[best].down_m, noise_m2, _OBSERVE_LEVEL)
+
+    def _take(self, down_m: float, noise_m2: float, observe: Floats) -> None:
+        """What ``observe`` (3,) sees of the state was measured."""
+        told = update(
+            self._mean,
+            self._covariance,
+            np.array([down_m]),
+            np.array([[noise_m2]]),
+            observe[np.newaxis],
+        )
+        self._mean[:], self._covariance[:] = told
 
 
 def _within(off_m: float, std_m: float, reach_m: float) -> float:
