@@ -145,7 +145,11 @@ def compile_() -> None:
     """
     from importlib import import_module  # noqa: PLC0415
 
-    for compiled in ("base_station.fusion.kernels", "base_station.fusion.smoother"):
+    for compiled in (
+        "base_station.fusion.kernels",
+        "base_station.fusion.smoother",
+        "base_station.site.storeys",
+    ):
         import_module(compiled)
 
 

@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache, partial
 
 import msgspec
+import numpy as np
+from numba import njit
+from numba.core.types import float64, int64
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
 FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
 _NOTHING = 12.0  # exp(-12): what is so improbable makes no difference
 
+_compiled = partial(njit, cache=True, error_model="numpy")
+_TABLE = float64[:, ::1]
 
-class Storey(msgspec.Struct, frozen=True):
+
+class Storey(msgspec.Struct, frozen=True, cache_hash=True):
     """One level of a building; down in the incident frame."""
 
     floor: int  # 0 is the ground floor
@@ -22,27 +32,47 @@ class Storey(msgspec.Struct, frozen=True):
     seen: bool = True  # on the plan, or somebody walked there; not: only to be expected
 
 
-def floor_at(storeys: Sequence[Storey], down_m: float, floor: int | None) -> int | None:
+def floor_at(storeys: tuple[Storey, ...], down_m: float, floor: int | None) -> int | None:
     """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
     if not storeys:
         return None
-    nearest, nearest_m, held_m = None, math.inf, math.inf
-    for storey in storeys:
-        apart_m = abs(storey.down_m - down_m)
-        if storey.floor == floor:
+    row = _nearest(_table(storeys), down_m, math.nan if floor is None else floor)
+    return floor if row < 0 else storeys[row].floor
+
+
+def sureness(storeys: tuple[Storey, ...], floor: int, down_m: float, std_down_m: float) -> float:
+    """The probability of a floor, of all the storeys that there are; 0 of one that is not."""
+    sure: float = _sureness(_table(storeys), floor, down_m, std_down_m)
+    return sure
+
+
+@lru_cache
+def _table(storeys: tuple[Storey, ...]) -> Floats:
+    """Number, height, its variance, and how sure the number is; a row each."""
+    rows = [(one.floor, one.down_m, one.std_m * one.std_m, one.numbered) for one in storeys]
+    return np.array(rows).reshape(-1, 4)
+
+
+@_compiled(int64(_TABLE, float64, float64))
+def _nearest(storeys: Floats, down_m: float, held: float) -> int:
+    """Its row; -1: the one that was held is."""
+    nearest, nearest_m, held_m = 0, math.inf, math.inf
+    for row in range(len(storeys)):
+        apart_m = abs(storeys[row, 1] - down_m)
+        if storeys[row, 0] == held:
             held_m = apart_m
         if apart_m < nearest_m:
-            nearest, nearest_m = storey.floor, apart_m
-    return floor if held_m - nearest_m <= 2.0 * FLOOR_HYSTERESIS_M else nearest
+            nearest, nearest_m = row, apart_m
+    return -1 if held_m - nearest_m <= 2.0 * FLOOR_HYSTERESIS_M else nearest
 
 
-def sureness(storeys: Sequence[Storey], floor: int, down_m: float, std_down_m: float) -> float:
-    """The probability of a floor, of all the storeys that there are; 0 of one that is not."""
+@_compiled(float64(_TABLE, float64, float64, float64))
+def _sureness(storeys: Floats, floor: float, down_m: float, std_down_m: float) -> float:
     own_var_m2 = std_down_m * std_down_m + FLOOR_STD_M * FLOOR_STD_M
     least, total, found = math.inf, 0.0, 0.0
-    for storey in storeys:
-        off_m = storey.down_m - down_m
-        var_m2 = own_var_m2 + storey.std_m * storey.std_m
+    for row in range(len(storeys)):
+        off_m = storeys[row, 1] - down_m
+        var_m2 = own_var_m2 + storeys[row, 2]
         exponent = 0.5 * off_m * off_m / var_m2
         if exponent < least:  # weights are told by how much less likely than the likeliest
             fading = math.exp(exponent - least)
@@ -50,9 +80,9 @@ def sureness(storeys: Sequence[Storey], floor: int, down_m: float, std_down_m: f
         if exponent - least < _NOTHING:
             weight = math.exp(least - exponent) / math.sqrt(var_m2)
             total += weight
-            if storey.floor == floor:
-                found = storey.numbered * weight
-    return found / total if found else 0.0
+            if storeys[row, 0] == floor:
+                found = storeys[row, 3] * weight
+    return found / total
 
 
 def storey_of(storeys: Sequence[Storey], floor: int | None) -> Storey | None:
