@@ -61,24 +61,24 @@ def _unit_view(
     status = unit.shown_status
     trust = trust_of(unit, conflicts)
     levels = {alarm.rule: alarm.level for alarm in open_alarms}
-    return UnitView(
-        unit_id=unit.unit_id,
-        label=unit.label,
-        registered=unit.registered,
-        person=person_view(unit.person, photo_urls) if unit.person else None,
-        link=unit.link,
-        last_heard_ms=to_ms_or_none(unit.heard_ns),
-        status=_status_view(unit, status) if status else None,
-        status_ms=to_ms_or_none(unit.status_ns) if unit.status else None,
-        ambient_degc=unit.temperature.ambient_degc if unit.temperature else None,
-        heat_level=levels.get("heat", ""),
-        position=_position_view(state, unit.fused, unit.reach) if unit.fused else None,
-        inside_since_ms=to_ms_or_none(unit.inside_since_ns),
-        duty=_duty_view(unit.duty) if unit.duty else None,
-        alarms=tuple([alarm.alarm_id for alarm in open_alarms]),
-        trust=TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
-        clock=_clock_view(unit.heartbeat),
-        cloned="cloned-unit" in levels,
+    return UnitView(  # by place: there are thousands a second
+        unit.unit_id,
+        unit.label,
+        unit.registered,
+        person_view(unit.person, photo_urls) if unit.person else None,
+        unit.link,
+        to_ms_or_none(unit.heard_ns),
+        _status_view(unit, status) if status else None,
+        to_ms_or_none(unit.status_ns) if unit.status else None,
+        unit.temperature.ambient_degc if unit.temperature else None,
+        levels.get("heat", ""),
+        _position_view(state, unit.fused, unit.reach) if unit.fused else None,
+        to_ms_or_none(unit.inside_since_ns),
+        _duty_view(unit.duty) if unit.duty else None,
+        tuple([alarm.alarm_id for alarm in open_alarms]),
+        TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
+        _clock_view(unit.heartbeat),
+        "cloned-unit" in levels,
     )
 
 
@@ -127,25 +127,25 @@ def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> Po
         lat_deg, lon_deg, _ = state.anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
     silent_m = roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
-    return PositionView(
-        t_ms=fused.t_meas_ns // NS_PER_MS,
-        north_m=fused.north_m,
-        east_m=fused.east_m,
-        down_m=fused.down_m,
-        floor=fused.floor,
-        ellipse_major_m=major_m + silent_m,
-        ellipse_minor_m=minor_m + silent_m,
-        ellipse_heading_rad=heading_rad,
-        std_down_m=fused.std_down_m,
-        heading_rad=fused.heading_rad,
-        heading_std_rad=fused.heading_std_rad,
-        quality=_QUALITY_WORDS[fused.quality],
-        quality_reason=fused.quality_reason,
-        since_gps_s=fused.since_gps_s,
-        lat_deg=lat_deg,
-        lon_deg=lon_deg,
-        floor_probability=fused.floor_probability,
-        reach=tuple([(round(east_m, 1), round(north_m, 1)) for east_m, north_m in reach]),
+    return PositionView(  # by place: there are thousands a second
+        fused.t_meas_ns // NS_PER_MS,
+        fused.north_m,
+        fused.east_m,
+        fused.down_m,
+        fused.floor,
+        major_m + silent_m,
+        minor_m + silent_m,
+        heading_rad,
+        fused.std_down_m,
+        fused.heading_rad,
+        fused.heading_std_rad,
+        _QUALITY_WORDS[fused.quality],
+        fused.quality_reason,
+        fused.since_gps_s,
+        lat_deg,
+        lon_deg,
+        fused.floor_probability,
+        tuple([(round(east_m, 1), round(north_m, 1)) for east_m, north_m in reach]),
     )
 
 

@@ -37,12 +37,12 @@ class Header(msgspec.Struct, frozen=True):
 
     @staticmethod
     def from_wire(wire: header_pb2.Header) -> Header:
-        return Header(
-            unit_id=wire.unit_id,
-            boot_id=wire.boot_id,
-            seq=wire.seq,
-            t_mono_ns=wire.t_mono_ns,
-            t_utc_ns=wire.t_utc_ns,
-            utc_std_s=wire.utc_std_ms * 1e-3,
-            schema=wire.schema,
+        return Header(  # by place, which takes half as long
+            wire.unit_id,
+            wire.boot_id,
+            wire.seq,
+            wire.t_mono_ns,
+            wire.t_utc_ns,
+            wire.utc_std_ms * 1e-3,
+            wire.schema,
         )

@@ -81,26 +81,26 @@ class Position(msgspec.Struct, frozen=True):
 
     @staticmethod
     def from_wire(wire: position_pb2.Position) -> Position:
-        return Position(
-            header=Header.from_wire(wire.header),
-            north_m=wire.north_mm * 1e-3,
-            east_m=wire.east_mm * 1e-3,
-            down_m=wire.down_mm * 1e-3,
-            velocity_north_mps=wire.velocity_north_mmps * 1e-3,
-            velocity_east_mps=wire.velocity_east_mmps * 1e-3,
-            velocity_down_mps=wire.velocity_down_mmps * 1e-3,
-            std_north_m=wire.std_north_mm * 1e-3,
-            std_east_m=wire.std_east_mm * 1e-3,
-            std_down_m=wire.std_down_mm * 1e-3,
-            correlation_ne=wire.correlation_ne_permille * 1e-3,
-            heading_rad=cdeg_to_heading(wire.heading_cdeg),
-            heading_std_rad=cdeg_to_heading(wire.heading_std_cdeg),
-            distance_m=wire.distance_cm * 1e-2,
-            pressure_pa=wire.pressure_dpa * 0.1 if wire.pressure_dpa else None,
-            stationary=wire.stationary,
-            quality=known(Quality, wire.quality),
-            reasons=_reasons(wire.reasons & _ALL_REASONS),
-            magnetic_north=_magnetic_north(wire),
+        return Position(  # by place, which takes two thirds of the time
+            Header.from_wire(wire.header),
+            wire.north_mm * 1e-3,
+            wire.east_mm * 1e-3,
+            wire.down_mm * 1e-3,
+            wire.velocity_north_mmps * 1e-3,
+            wire.velocity_east_mmps * 1e-3,
+            wire.velocity_down_mmps * 1e-3,
+            wire.std_north_mm * 1e-3,
+            wire.std_east_mm * 1e-3,
+            wire.std_down_mm * 1e-3,
+            wire.correlation_ne_permille * 1e-3,
+            cdeg_to_heading(wire.heading_cdeg),
+            cdeg_to_heading(wire.heading_std_cdeg),
+            wire.distance_cm * 1e-2,
+            wire.pressure_dpa * 0.1 if wire.pressure_dpa else None,
+            wire.stationary,
+            known(Quality, wire.quality),
+            _reasons(wire.reasons & _ALL_REASONS),
+            _magnetic_north(wire),
         )
 
 
