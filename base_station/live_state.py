@@ -239,9 +239,11 @@ class StationState(msgspec.Struct):
 
     def sender(self, unit_id: str) -> UnitState | None:
         """A unit, or the agent that tracks for one; None: it was never heard."""
-        tracked = tracked_unit(unit_id)
-        unit = self.units.get(tracked or unit_id)
-        return unit if unit is None or tracked is None else unit.tracker
+        unit = self.units.get(unit_id)
+        if unit is not None:  # nearly always
+            return unit
+        unit = self.units.get(tracked_unit(unit_id) or unit_id)
+        return None if unit is None else unit.tracker
 
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
         """Of the building there, lowest first: the plan's, or else those that were learnt."""

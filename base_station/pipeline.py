@@ -161,22 +161,24 @@ class StationPipeline:
     def _hear(self, event: Received, channel: Channel) -> list[Output]:
         state, unit_id, message = self.state, event.unit_id, event.message
         state.counts.messages += 1
-        tracked = tracked_unit(unit_id)
-        unit = state.units.get(tracked or unit_id) or self._stranger(tracked or unit_id)
+        unit = state.units.get(unit_id)
         if unit is None:
-            state.counts.units_left_out += 1
-            return []
-        if tracked is not None:
-            return self._hear_tracker(unit, event, channel)
+            tracked = tracked_unit(unit_id)
+            unit = state.units.get(tracked or unit_id) or self._stranger(tracked or unit_id)
+            if unit is None:
+                state.counts.units_left_out += 1
+                return []
+            if tracked is not None:
+                return self._hear_tracker(unit, event, channel)
         news = _news(unit, event, channel, state.t_ns)
         if news == "repeat":
             return []
         link, unit.link = unit.link, unit.link_at(state.t_ns)
         outputs: list[Output] = []
         if news == "new" or isinstance(message, _COUNTS_LATE):
-            outputs.extend(self._observe(unit, message))
+            outputs = self._observe(unit, message)
         elif isinstance(message, Position) and unit.registered:
-            outputs.extend(self._recall(unit, message))
+            outputs = self._recall(unit, message)
         kind = type(message)
         outputs.append(UnitTouched(unit_id, soon=kind not in _CAN_WAIT or link != unit.link))
         if self._book.heeds(kind):
@@ -221,7 +223,8 @@ class StationPipeline:
         match message:
             case Position() if unit.registered:
                 solved = self._positioning.follow(self.state, unit, message)
-                return [*self._fuse(unit), *self._solved(solved, unit)]
+                outputs = self._fuse(unit)
+                return [*outputs, *self._solved(solved, unit)] if solved else outputs
             case GpsFix() if unit.registered:
                 if self._positioning.fix(self.state, unit, message).accepted:
                     return self._fuse(unit)

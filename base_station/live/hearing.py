@@ -28,16 +28,13 @@ def judge(key: str, event: StationEvent, state: StationState) -> Heard:
     try:
         channel = parse_key(key)[1]
     except UnknownChannelError:
-        return Heard.REPEATED if _is_kept(event, state) else Heard.KEEP
+        return _doubt(event, state) or Heard.KEEP
     if not channel.logged:
         return Heard.LEAVE
     if channel.direction is Direction.STATION:
         return Heard.FORGED
-    if channel.direction is Direction.UP and _is_kept(event, state):
-        return Heard.REPEATED
-    if channel.direction is Direction.UP and _is_wild(event, state):
-        return Heard.WILD
-    return Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP
+    doubt = _doubt(event, state) if channel.direction is Direction.UP else None
+    return doubt or (Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP)
 
 
 def take_back(event: StationEvent, state: StationState) -> None:
@@ -49,18 +46,18 @@ def take_back(event: StationEvent, state: StationState) -> None:
         sender.take_back(*number[1:])
 
 
-def _is_kept(event: StationEvent, state: StationState) -> bool:
-    """Whether the message came before: on two ways, sent again by the network, or replayed."""
+def _doubt(event: StationEvent, state: StationState) -> Heard | None:
+    """``REPEATED`` where the message came before: on two ways, sent again by the network, or
+    replayed; ``WILD`` where there are more starts of its sender than can be.
+    """
     number = number_of(event)
     if number is None:
-        return False
-    sender = state.sender(number[0])
-    return sender is not None and sender.has(*number[1:])
-
-
-def _is_wild(event: StationEvent, state: StationState) -> bool:
-    if not isinstance(event, Received) or event.backfilled:
-        return False
-    header = event.message.header
-    sender = state.sender(header.unit_id)
-    return sender is not None and sender.starts_wildly(header.boot_id, event.t_ns)
+        return None
+    unit_id, boot_id, seq = number
+    sender = state.sender(unit_id)
+    if sender is None:
+        return None
+    if sender.has(boot_id, seq):
+        return Heard.REPEATED
+    is_live = isinstance(event, Received) and not event.backfilled
+    return Heard.WILD if is_live and sender.starts_wildly(boot_id, event.t_ns) else None
