@@ -38,13 +38,7 @@ def trust_of(unit: UnitState, conflicts: int) -> Trust:
     """The worst of what speaks against believing where the unit is shown; so many pins contradict
     its trail.
     """
-    worst = _SURE
-    for doubt in _doubts(unit, conflicts):
-        if doubt.level == "red":
-            return doubt
-        if worst is _SURE:
-            worst = doubt
-    return worst
+    return next(_reds(unit), None) or next(_ambers(unit, conflicts), _SURE)
 
 
 def note_trust(state: StationState) -> None:
@@ -70,23 +64,31 @@ def conflicts_of(state: StationState) -> Counter[str]:
     )
 
 
-def _doubts(unit: UnitState, conflicts: int) -> Iterator[Trust]:
+def _reds(unit: UnitState) -> Iterator[Trust]:
     if not unit.registered:
         yield Trust("red", "not a registered unit: not believed", "not a registered unit")
     fused = unit.fused
     if fused is None:
         yield Trust("red", "no position yet", "no position yet")
         return
-    if unit.link in {"lost", "stale"}:
-        level: Level = "red" if unit.link == "lost" else "amber"
-        yield Trust(level, "not heard: shown where it last was", "not heard")
+    if unit.link == "lost":
+        yield _not_heard("red")
     if fused.quality is Quality.LOST:
         yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
-    if fused.std_north_m**2 + fused.std_east_m**2 > _AMBER_M2:  # else no axis is longer
-        within_m = RADII_95 * math.sqrt(_largest_var_m2(fused))
-        if within_m > AMBER_M:
-            level = "red" if within_m > RED_M else "amber"
-            yield Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
+    within_m = _within_m(fused)
+    if within_m > RED_M:
+        yield _only_within("red", within_m)
+
+
+def _ambers(unit: UnitState, conflicts: int) -> Iterator[Trust]:
+    """Of a unit that has a position."""
+    fused = unit.fused
+    assert fused is not None
+    if unit.link == "stale":
+        yield _not_heard("amber")
+    within_m = _within_m(fused)
+    if within_m > AMBER_M:
+        yield _only_within("amber", within_m)
     if conflicts:
         which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
         yield Trust("amber", f"{which} the trail", "a pin contradicts the trail")
@@ -98,6 +100,21 @@ def _doubts(unit: UnitState, conflicts: int) -> Iterator[Trust]:
     if fused.std_down_m > AMBER_DOWN_M:
         text = f"height only known to {2.0 * fused.std_down_m:.0f} m"
         yield Trust("amber", text, "height only roughly known")
+
+
+def _not_heard(level: Level) -> Trust:
+    return Trust(level, "not heard: shown where it last was", "not heard")
+
+
+def _only_within(level: Level, within_m: float) -> Trust:
+    return Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
+
+
+def _within_m(fused: FusedPosition) -> float:
+    """The radius that holds the wearer; 0 where that is near enough along any axis."""
+    if fused.std_north_m**2 + fused.std_east_m**2 <= _AMBER_M2:
+        return 0.0
+    return RADII_95 * math.sqrt(_largest_var_m2(fused))
 
 
 def _cause_of(reason: str) -> str:
