@@ -34,7 +34,7 @@ class EskfConfig(NamedTuple):
     rest_bias_mps2: float = 0.2  # a rest norm further off is the scale's, not a bias
     stride_past_s: float = 0.65
     threshold_ratio: float = 4.0
-    threshold_min_m2ps4: float = 1.0
+    threshold_min_m2ps4: float = 0.3  # what a sensor's noise and a standing body's sway may make
     threshold_max_m2ps4: float = 400.0
 
     # Pseudo-measurements in stance.
@@ -101,6 +101,7 @@ class EskfConfig(NamedTuple):
     air_floor_sink_m: float = 0.008  # mean sink of a stride that is none
     ride_push_mps2: float = 0.15  # mean over a look at somebody who stands
     ride_rest_weight: float = 0.1  # of one look without a push
+    ride_motion_m2ps4: float = 1.0  # of somebody who stands in a lift, at most
     ride_speed_mps: float = 2.5
     ride_going_m: float = 0.15  # in one look
     ride_calm_s: float = 2.0  # without a push or a rise, before a stride ends it

@@ -60,7 +60,7 @@ def filter_sample(
         _predict(ring, step, progress, state, k, config)
     follow_warmth(ring, step, progress, state, slot, config)
     motion = ring[slot].motion_m2ps4
-    still = good and motion <= stance_threshold(ring[slot].stride_minimum_m2ps4, config)
+    still = good and motion <= stance_threshold(ring, state, slot, config)
     still = still and not glides(ring, state, slot, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)

@@ -182,7 +182,14 @@ def steady_rate(ring: Ring, first: int, stop: int, ahead_s: float, config: EskfC
 
 
 @njit()
-def stance_threshold(stride_minimum_m2ps4: float, config: EskfConfig) -> float:
-    """Return the statistic up to which a sample counts as standing."""
-    threshold = config.threshold_ratio * stride_minimum_m2ps4
-    return min(max(threshold, config.threshold_min_m2ps4), config.threshold_max_m2ps4)
+def stance_threshold(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> float:
+    """Return the statistic up to which a sample counts as standing.
+
+    A lift pushes like a small step.  Where a barometer tells of the ride, who is pushed stands.
+    """
+    threshold = config.threshold_ratio * ring[slot].stride_minimum_m2ps4
+    least = config.threshold_min_m2ps4
+    heard_s = ring[slot].t_s - state.barometer.changed_s
+    if state.barometer.started and heard_s < config.ride_longest_s:
+        least = config.ride_motion_m2ps4
+    return float(min(max(threshold, least), config.threshold_max_m2ps4))

@@ -1,0 +1,42 @@
+"""Whoever stands about, kneels or sits for a while is found where he is, and gets up there."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.bench.wearers import KINDS, Wearer, Wore, stray, wearers_table
+from edge.simulation.legs import Kneel, Sit, Stand, Wait
+
+
+@pytest.mark.parametrize("seed", [103, 104])
+def test_small_slow_steps_on_one_spot_add_up(seed):
+    """Taken for sway, steps of some centimetres were lost, and the place was stated as known."""
+    one = stray(Wearer("waits", (Stand(4.0), Wait(150.0))), seed, calibrated=True)
+    assert one.error_m < 0.03
+    assert one.inside > 0.95
+    assert abs(one.height_m) < 0.03
+
+
+@pytest.mark.parametrize("leg", [Kneel(20.0), Sit(60.0)], ids=["kneels", "sits"])
+def test_whoever_gets_up_again_is_on_his_floor(leg):
+    for calibrated in (True, False):
+        one = stray(Wearer("lingers", (Stand(4.0), leg, Stand(3.0))), 101, calibrated)
+        assert one.error_m < 0.15
+        assert abs(one.height_m) < max(0.1, 2.0 * one.height_std_m)
+        assert one.silent == 0.0
+
+
+def test_the_table_says_who_and_with_which_sensors():
+    assert len({kind.does for kind in KINDS}) == len(KINDS)
+    one = Wore("waits", False, 0.012, 0.5, 2.0, 3.0, 0.1, 0.2, 0.95, 0.0)
+    assert [next(iter(column.cells)) for column in wearers_table([one]).columns] == [
+        "waits", "data sheet", "1.2", "0.50", "2.0 / 3.0", "0.10 / 0.20", "95", "0",
+    ]  # fmt: skip
+
+
+def test_a_part_of_a_walk_is_recorded_from_its_cut_on():
+    whole = stray(Wearer("stands", (Stand(8.0),)), 1, calibrated=True)
+    part = stray(Wearer("stands", (Stand(8.0),), cut_s=4.0), 1, calibrated=True)
+    assert part.error_m < 0.02
+    assert not np.isclose(whole.heading_rad, part.heading_rad, atol=0.0)
