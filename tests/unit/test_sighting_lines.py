@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from edge.ranging import FURTHEST_M, NEAREST_M, range_of
+from edge.ranging import FURTHEST_M, NEAREST_M, POWER_DBM, SHADOWING_DB, range_of
 from edge.samples import ImuBatch, SensorBatch, SensorDescription, SightingSample
 from edge.source_reader import SourceReader
 from edge.sources.port import Outage
@@ -95,6 +95,16 @@ def test_every_loudness_is_a_range(rssi_dbm: float, power_dbm: float) -> None:
     range_m, std_m = range_of(rssi_dbm, power_dbm)
     assert NEAREST_M <= range_m <= FURTHEST_M
     assert std_m > 0.0
+
+
+@pytest.mark.parametrize(("quieter_db", "wanted_m"), [(0.0, 1.0), (22.0, 10.0), (11.0, 3.162)])
+def test_a_range_is_as_unsure_as_a_body_in_the_way_makes_it(
+    quieter_db: float, wanted_m: float
+) -> None:
+    range_m, std_m = range_of(POWER_DBM - quieter_db)
+    assert range_m == pytest.approx(wanted_m, rel=1e-3)
+    behind_somebody_m, _ = range_of(POWER_DBM - quieter_db - SHADOWING_DB)
+    assert math.log(behind_somebody_m / range_m) == pytest.approx(std_m / range_m)
 
 
 @pytest.mark.parametrize("text", ["tcp:", "tcp:host", "tcp:host:0", "tcp:host:70000", "tcp::80"])

@@ -1,0 +1,56 @@
+"""Faults of the inertial sensor that last are told once, however its samples are cut up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch
+from edge.sensor_health import SensorHealth
+from shared.clock import NS_PER_S
+
+RATE_HZ = 100
+
+
+def samples(seconds: float, *, spoilt: str = "", from_s: float = 0.0) -> ImuBatch:
+    count = round(seconds * RATE_HZ)
+    rows = np.random.default_rng(3).normal(size=(count, 6))
+    if spoilt == "stuck":
+        rows[:] = 1.0
+    elif spoilt == "unusable":
+        rows[:] = np.nan
+    t_ns = round(from_s * NS_PER_S) + np.arange(count) * (NS_PER_S // RATE_HZ)
+    return ImuBatch(t_ns, rows[:, :3], rows[:, 3:])
+
+
+def told(health: SensorHealth, imu: ImuBatch, at_once: int = 7) -> list[str]:
+    parts = [imu.part(slice(row, row + at_once)) for row in range(0, len(imu), at_once)]
+    return [fault for part in parts for fault in health.push(part)]
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "word", "lasts_s"), [("stuck", "repeated", 1.02), ("unusable", "no usable", 1.01)]
+)
+def test_what_lasts_for_a_second_is_told_once_and_again_when_it_comes_again(
+    spoilt: str, word: str, lasts_s: float
+) -> None:
+    health = SensorHealth()
+    assert told(health, samples(2.0)) == []
+    assert told(health, samples(lasts_s - 0.01, spoilt=spoilt, from_s=2.0)) == []
+    assert told(health, samples(1.0, from_s=3.5)) == []
+    (fault,) = told(health, samples(5.0, spoilt=spoilt, from_s=4.5))
+    assert word in fault
+    assert told(health, samples(1.0, from_s=9.5)) == []
+    assert len(told(health, samples(lasts_s, spoilt=spoilt, from_s=10.5))) == 1
+
+
+@pytest.mark.parametrize(
+    ("next_s", "words"),
+    [(1.98, []), (2.1, ["no inertial sample for 1.1 s"]), (0.0, []), (-0.1, ["back by 1.1 s"])],
+)
+def test_a_hole_in_time_is_told_and_a_small_one_is_not(next_s: float, words: list[str]) -> None:
+    health = SensorHealth()
+    told(health, samples(1.01))
+    found = told(health, samples(0.1, from_s=next_s))
+    assert len(found) == len(words)
+    assert all(word in fault for word, fault in zip(words, found, strict=True))
