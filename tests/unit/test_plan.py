@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
+import math
+
 import msgspec
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from base_station.site.plan import Plan, read_plan
 from shared.errors import UserError
@@ -54,6 +59,33 @@ def test_a_plan_without_storeys_knows_no_floor() -> None:
     plan = read_plan(b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}')
     assert plan.floor_at(0.0, 3) is None
     assert not plan.is_inside(5.0, 5.0, False)
+
+
+CORNERED = ((0.0, 0.0), (20.0, 0.0), (20.0, 10.0), (10.0, 10.0), (10.0, 20.0), (0.0, 20.0))
+
+
+@pytest.mark.parametrize(
+    ("east_m", "north_m", "depth_m"),
+    [
+        (5.0, 5.0, 5.0),
+        (5.0, 19.0, 1.0),
+        (12.0, 12.0, -2.0),
+        (23.0, 14.0, -5.0),
+        (-3.0, 21.0, -(10**0.5)),
+    ],
+)
+@given(angle_rad=st.floats(-math.pi, math.pi))
+def test_a_building_has_the_same_depth_however_it_stands(
+    east_m: float, north_m: float, depth_m: float, angle_rad: float
+) -> None:
+    def turned(point: tuple[float, float]) -> tuple[float, float]:
+        turned = complex(*point) * cmath.exp(1j * angle_rad)
+        return turned.real, turned.imag
+
+    plan = Plan(b"", (), (tuple(map(turned, CORNERED)),))
+    there_east_m, there_north_m = turned((east_m, north_m))
+    assert plan.depth_m(there_north_m, there_east_m) == pytest.approx(depth_m, abs=1e-9)
+    assert plan.away_m(there_north_m, there_east_m) == pytest.approx(max(0.0, -depth_m), abs=1e-9)
 
 
 def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> None:
