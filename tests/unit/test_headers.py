@@ -1,0 +1,36 @@
+"""What every message begins with: who said it, which it is and when."""
+
+from __future__ import annotations
+
+import pytest
+
+from shared.channels import TEMPERATURE
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import decode, encode, header_of
+from shared.envelope import Stamper
+from shared.errors import WireError
+from shared.messages import Header, Temperature
+
+
+@pytest.mark.parametrize(("schema", "unit_id"), [(0, "FF-01"), (1, "")])
+def test_what_does_not_say_who_or_how_is_no_message(schema: int, unit_id: str) -> None:
+    payload = encode(Temperature(Header(unit_id, 7, 1, 5, schema=schema), 20.0))
+    assert header_of(payload) is None
+    with pytest.raises(WireError, match="no header"):
+        decode(TEMPERATURE, payload)
+
+
+def test_who_said_it_is_known_where_the_rest_is_not() -> None:
+    payload = encode(Temperature(Header("FF-01", 7, 3, 5), 20.0))
+    header = header_of(payload)
+    assert header is not None
+    assert (header.unit_id, header.boot_id, header.seq) == ("FF-01", 7, 3)
+    assert header_of(payload[:3]) is None
+
+
+def test_what_was_captured_earlier_is_of_that_time(clock: ManualClock, stamper: Stamper) -> None:
+    clock.advance(60.0)
+    then_ns = clock.monotonic_ns() - 5 * NS_PER_S
+    header = stamper.header(then_ns)
+    assert header.t_mono_ns == then_ns
+    assert header.t_utc_ns == clock.utc_ns() - 5 * NS_PER_S
