@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import base64
 import binascii
-import os
 import tomllib
 import zlib
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from cryptography.hazmat.primitives import serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 
 from shared.errors import ConfigError
+from shared.out_file import write_secret
 from shared.tls import DAMAGED, TlsIdentity, check_identity
 
 _COMPACT_PREFIX = "MUSTER1:"
@@ -79,15 +79,11 @@ class Enrolment:
         return _COMPACT_PREFIX + text
 
     def write(self, path: Path) -> None:
-        """Write the file, readable by its owner alone; ConfigError where one is already."""
-        try:
-            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        except FileExistsError:
-            raise ConfigError(f"{path} is there already; move it away or choose another") from None
-        except OSError as error:
-            raise ConfigError(f"{path} cannot be written: {error}") from error
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(self.to_toml())
+        """Write the file, readable by its owner alone.
+
+        Raises ConfigError where one is already, or it cannot be written: then there is none.
+        """
+        write_secret(path, self.to_toml(), f"`muster pki renew {self.name}`")
 
 
 class _Compact(msgspec.Struct, array_like=True):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-from shared.errors import UserError
+from shared.errors import ConfigError, UserError
 
 
 def writable(path: Path | None) -> Path | None:
@@ -27,3 +28,28 @@ def writable(path: Path | None) -> Path | None:
 
 def not_written(path: Path, error: OSError) -> UserError:
     return UserError(f"cannot write {path}: {error.strerror}; choose another place")
+
+
+def write_secret(path: Path, text: str, again: str) -> None:
+    """A new file that its owner alone can read.  ``again``: what makes what it holds once more.
+
+    Raises ConfigError where one is already, or where the disk does not take all of it: then
+    nothing is left of it.
+    """
+    try:
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        raise ConfigError(f"{path} is there already; move it away or choose another") from None
+    except OSError as error:
+        raise ConfigError(f"{path} cannot be written: {error.strerror}") from error
+    try:
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        path.unlink()
+        raise ConfigError(
+            f"{path} cannot be written ({error.strerror}), and nothing is left of it; free the "
+            f"disk or choose another place, and make it again: {again}"
+        ) from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ import msgspec
 
 from base_station.pki.registry import Registry
 from shared.errors import ConfigError
+from shared.out_file import write_secret
 from shared.tls import TlsIdentity, check_identity
 
 
@@ -31,13 +31,8 @@ class StationEnrolment:
     registry: Registry
 
     def write(self, path: Path) -> None:
-        """Readable by its owner alone; ConfigError where there is one already."""
-        try:
-            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        except OSError as error:
-            raise ConfigError(f"{path} cannot be written: {error.strerror}") from error
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(self.to_toml())
+        """Readable by its owner alone; ConfigError where there is one already, or none can be."""
+        write_secret(path, self.to_toml(), "the same command")
 
     def to_toml(self) -> str:
         return (

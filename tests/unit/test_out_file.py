@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+
 import pytest
 from typer.testing import CliRunner
 
 from edge.cli import app
-from shared.errors import UserError
-from shared.out_file import writable
+from shared.errors import ConfigError, UserError
+from shared.out_file import writable, write_secret
 
 
 def test_a_place_that_can_be_written_is_left_as_it_is(tmp_path):
@@ -29,3 +31,26 @@ def test_nobody_is_guided_through_a_calibration_that_cannot_be_kept(tmp_path):
     result = CliRunner().invoke(app, ["calibrate", "--source", "bench:1", "--out", out])
     assert isinstance(result.exception, UserError)
     assert "of 3" not in result.output
+
+
+def test_a_secret_is_its_owners_alone_and_nothing_is_written_over(tmp_path):
+    path = tmp_path / "FF-01.enrolment.toml"
+    write_secret(path, "key", "renew")
+    assert path.read_text() == "key"
+    assert path.stat().st_mode & 0o777 == 0o600
+    with pytest.raises(ConfigError, match="there already"):
+        write_secret(path, "other", "renew")
+    assert path.read_text() == "key"
+
+
+def test_of_a_secret_for_which_there_is_no_room_nothing_is_left(tmp_path, monkeypatch):
+    def full(_descriptor):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    path = tmp_path / "FF-01.enrolment.toml"
+    monkeypatch.setattr("shared.out_file.os.fsync", full)
+    with pytest.raises(
+        ConfigError, match=r"No space left.*make it again: `muster pki renew FF-01`"
+    ):
+        write_secret(path, "key", "`muster pki renew FF-01`")
+    assert not path.exists()
