@@ -48,7 +48,7 @@ class EskfConfig(NamedTuple):
     stance_rate_radps_rthz: float = 1e-3
     stance_rate_per_unrest: float = 1.0
     unrest_half_window_s: float = 0.3  # over which the foot must rest to tell the gyroscope bias
-    stance_rate_worth: float = 1e-4  # an update that tells less of the bias's variance is left out
+    stance_rate_worth_hz: float = 0.02  # less of the bias's variance in a second is left out
 
     # The floor (floor.py).
     floor_gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp

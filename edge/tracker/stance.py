@@ -35,7 +35,7 @@ def stand(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfCon
     rate_noise = config.stance_rate_radps_rthz**2
     rate_noise += config.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
-    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth * rate_variance:
+    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_worth_hz * rate_noise:
         for i in range(3):
             measure(step, state, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
             gain = step.update_gain[step.updates - 1, GYRO_BIAS + i]

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from edge.bench.honesty import inertial
 from edge.bench.wearers import KINDS, Wearer, Wore, stray, wearers_table
+from edge.simulation import Simulation
 from edge.simulation.legs import Kneel, Sit, Stand, Wait
+from edge.simulation.scenario import Scenario
+from edge.tracker.error_model import GYRO_BIAS
+from edge.tracker.eskf import EskfTracker
 
 
 @pytest.mark.parametrize("seed", [103, 104])
@@ -25,6 +32,18 @@ def test_whoever_gets_up_again_is_on_his_floor(leg):
         assert one.error_m < 0.15
         assert abs(one.height_m) < max(0.1, 2.0 * one.height_std_m)
         assert one.silent == 0.0
+
+
+def test_a_rest_tells_of_the_bias_whatever_the_rate():
+    """What was left out as worthless was judged by the sample: fast ones learned half."""
+    known = []
+    for rate_hz in (100.0, 200.0, 800.0):
+        simulation = Simulation(Scenario("rests", "rests", (Stand(30.0),), rate_hz=rate_hz), 1)
+        tracker = EskfTracker(replace(simulation.description, mag_present=False))
+        tracker.push(inertial(simulation))
+        known.append(np.sqrt(np.diag(tracker._state["covariance"][0])[GYRO_BIAS : GYRO_BIAS + 3]))
+    assert known[0] == pytest.approx(known[1], rel=0.2)
+    assert known[2] == pytest.approx(known[1], rel=0.2)
 
 
 def test_the_table_says_who_and_with_which_sensors():
