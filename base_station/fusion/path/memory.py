@@ -5,6 +5,8 @@ from __future__ import annotations
 from bisect import bisect_left
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
 from shared.clock import NS_PER_S
 from shared.messages import Position
@@ -13,8 +15,11 @@ KEPT_NS = 30 * 60 * NS_PER_S
 STEP_NS = NS_PER_S // 5
 DENSE_NS = 60 * NS_PER_S  # of it every step, of what is older one in
 COARSE_NS = 2 * NS_PER_S
-THINNED_EVERY = 300  # points; as many as a minute has
+MOST_POINTS = 600  # that are not packed; a minute has half as many
 NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known
+PLACE_ROW = np.dtype(
+    [("t_ns", "<i8"), ("north_m", "<f8"), ("east_m", "<f8"), ("distance_m", "<f8")]
+)
 
 
 class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
@@ -27,9 +32,13 @@ class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
 
 
 class PathMemory(msgspec.Struct):
-    """The last half hour, in the unit's monotonic time; finer in the last minute."""
+    """The last half hour, in the unit's monotonic time; finer in the last minute.
 
-    points: list[OwnPlace] = msgspec.field(default_factory=list)
+    A unit is remembered in some ten thousand numbers; packed, they are not as many objects.
+    """
+
+    packed: bytes = b""  # rows, in order
+    points: list[OwnPlace] = msgspec.field(default_factory=list)  # behind the packed ones
 
     def note(self, position: Position) -> None:
         """Points come in order; where they come too fast, the newest replaces its neighbour."""
@@ -38,29 +47,29 @@ class PathMemory(msgspec.Struct):
             points[-1] = point
             return
         points.append(point)
-        if len(points) % THINNED_EVERY == 0:
-            self._thin(point.t_ns)
+        if len(points) >= MOST_POINTS:
+            self._pack(point.t_ns)
 
     def fill(self, position: Position) -> None:
         """A point that came late, where none is near."""
         point = _point(position)
-        at = self._after(point.t_ns)
-        near = self.points[max(at - 1, 0) : at + 1]
-        if near and all(abs(one.t_ns - point.t_ns) >= STEP_NS for one in near):
-            self.points.insert(at, point)
+        near = [one for one in self._around(point.t_ns) if one is not None]
+        if not near or any(abs(one.t_ns - point.t_ns) < STEP_NS for one in near):
+            return
+        if self.packed and point.t_ns < self.points[0].t_ns:
+            rows = self._rows()
+            at = np.searchsorted(rows["t_ns"], point.t_ns)
+            self.packed = np.insert(rows, at, _packed([point])).tobytes()
+        else:
+            self.points.insert(self._after(point.t_ns), point)
 
     def at(self, t_ns: int) -> OwnPlace | str:
         """The place then (after the last point: there), or why that cannot be told."""
-        points = self.points
-        if not points:
-            return OwnPlace(t_ns, 0.0, 0.0, 0.0)
-        at = self._after(t_ns)
-        if at == len(points):
-            return points[-1]
-        after = points[at]
-        if at == 0:
+        before, after = self._around(t_ns)
+        if after is None:
+            return before or OwnPlace(t_ns, 0.0, 0.0, 0.0)
+        if before is None:
             return after if after.t_ns - t_ns < NEAR_NS else "too old"
-        before = points[at - 1]
         if min(t_ns - before.t_ns, after.t_ns - t_ns) > NEAR_NS:
             return "the path at its time is not known"
         part = (t_ns - before.t_ns) / (after.t_ns - before.t_ns)
@@ -71,19 +80,41 @@ class PathMemory(msgspec.Struct):
             before.distance_m + part * (after.distance_m - before.distance_m),
         )
 
+    def _around(self, t_ns: int) -> tuple[OwnPlace | None, OwnPlace | None]:
+        """The last point before that time and the first one then or after it."""
+        points, at = self.points, self._after(t_ns)
+        before = points[at - 1] if at > 0 else None
+        after = points[at] if at < len(points) else None
+        if before is None and self.packed:
+            rows = self._rows()
+            row = int(np.searchsorted(rows["t_ns"], t_ns))
+            before = OwnPlace(*rows[row - 1].item()) if row > 0 else None
+            after = OwnPlace(*rows[row].item()) if row < len(rows) else after
+        return before, after
+
     def _after(self, t_ns: int) -> int:
         return bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
 
-    def _thin(self, now_ns: int) -> None:
-        """What was old already at the last time has been thinned then."""
-        first = self._after(now_ns - KEPT_NS)
-        thinned = max(first, len(self.points) - 2 * THINNED_EVERY)
-        kept = self.points[first:thinned]
-        for point in self.points[thinned:]:
-            step_ns = COARSE_NS if now_ns - point.t_ns > DENSE_NS else 0
-            if not kept or point.t_ns - kept[-1].t_ns >= step_ns:
+    def _rows(self) -> NDArray[np.void]:
+        return np.frombuffer(self.packed, PLACE_ROW)
+
+    def _pack(self, now_ns: int) -> None:
+        """What has become older than a minute is thinned, and what is too old goes."""
+        rows = self._rows()
+        rows = rows[np.searchsorted(rows["t_ns"], now_ns - KEPT_NS) :]
+        kept: list[OwnPlace] = []
+        last_ns = int(rows["t_ns"][-1]) if len(rows) else now_ns - KEPT_NS
+        dense = self._after(now_ns - DENSE_NS)
+        for point in self.points[:dense]:
+            if point.t_ns - last_ns >= COARSE_NS:
                 kept.append(point)
-        self.points = kept
+                last_ns = point.t_ns
+        self.packed = rows.tobytes() + _packed(kept).tobytes()
+        del self.points[:dense]
+
+
+def _packed(points: list[OwnPlace]) -> NDArray[np.void]:
+    return np.array([msgspec.structs.astuple(point) for point in points], PLACE_ROW)
 
 
 def _point(position: Position) -> OwnPlace:

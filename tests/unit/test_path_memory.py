@@ -1,0 +1,84 @@
+"""Where a unit was some minutes ago, in its own frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+import pytest
+
+from base_station.fusion.path.memory import COARSE_NS, KEPT_NS, MOST_POINTS, PathMemory
+from shared.clock import NS_PER_S
+from shared.messages import Header, Position
+
+FIFTH_NS = NS_PER_S // 5
+
+At = Callable[..., Position]
+
+
+@pytest.fixture
+def at(make_position: Callable[[], Position]) -> At:
+    """On a walk to the north at a metre a second, or elsewhere."""
+
+    def make(t_ns: int, north_m: float | None = None) -> Position:
+        way_m = t_ns / NS_PER_S
+        return msgspec.structs.replace(
+            make_position(),
+            header=Header("FF-01", 1, 1, t_ns),
+            north_m=way_m if north_m is None else north_m,
+            distance_m=1.4 * way_m,
+        )
+
+    return make
+
+
+@pytest.fixture
+def hour(at: At) -> PathMemory:
+    memory = PathMemory()
+    for t_ns in range(0, 3600 * NS_PER_S, FIFTH_NS):
+        memory.note(at(t_ns))
+    return memory
+
+
+def test_half_an_hour_is_known_everywhere(hour: PathMemory) -> None:
+    restored = msgspec.msgpack.decode(msgspec.msgpack.encode(hour), type=PathMemory)
+    for ago_s in (0.3, 59.7, 61.3, 150.1, 1000.9, 1790.9):
+        t_ns = round((3599.8 - ago_s) * NS_PER_S)
+        then = restored.at(t_ns)
+        assert then == hour.at(t_ns)
+        assert not isinstance(then, str)
+        assert then.t_ns == t_ns
+        assert then.north_m == pytest.approx(t_ns / NS_PER_S)
+        assert then.distance_m == pytest.approx(1.4 * t_ns / NS_PER_S)
+
+
+def test_what_is_longer_ago_is_not(hour: PathMemory) -> None:
+    assert hour.at(1600 * NS_PER_S) == "too old"
+
+
+def test_it_stays_small(hour: PathMemory) -> None:
+    assert len(hour.points) < MOST_POINTS
+    assert len(hour.packed) < 32 * (KEPT_NS // COARSE_NS + MOST_POINTS)
+
+
+def test_the_newest_counts_for_what_is_to_come(hour: PathMemory) -> None:
+    then = hour.at(3700 * NS_PER_S)
+    assert not isinstance(then, str)
+    assert then.t_ns == 3600 * NS_PER_S - FIFTH_NS
+
+
+@pytest.mark.parametrize("late_s", [1480, 900])
+def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
+    memory, late_ns = PathMemory(), late_s * NS_PER_S
+    for t_ns in range(0, 1500 * NS_PER_S, FIFTH_NS):
+        if abs(t_ns - late_ns) > 10 * NS_PER_S:
+            memory.note(at(t_ns))
+    assert memory.at(late_ns) == "the path at its time is not known"
+    memory.fill(at(late_ns, north_m=7.0))
+    memory.fill(at(late_ns + FIFTH_NS // 2))  # too near to tell anything new
+    then = memory.at(late_ns)
+    assert not isinstance(then, str)
+    assert then.north_m == 7.0
+    further = memory.at(late_ns + FIFTH_NS // 2)
+    assert not isinstance(further, str)
+    assert further.north_m == pytest.approx(7.0 + 0.1 * (late_s + 10.2 - 7.0) / 10.2, abs=0.01)
