@@ -170,8 +170,9 @@ def _add_noise(
         for axis in range(3):
             hidden = ring[slot].hidden_force_noise[axis] + ring[before].hidden_force_noise[axis]
             _doubt_axis(state, VELOCITY, axis, 0.5 * dt_s * hidden)
-    unseen = config.unseen_per_strike * state.strike_off
-    accel_noise += dt_s * unseen**2 * state.force_unseen_var
+    if not state.faulty_stride:  # else what clipping hid is what a landing is off by
+        unseen = config.unseen_per_strike * state.strike_off
+        accel_noise += dt_s * unseen**2 * state.force_unseen_var
     gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
         for axis in range(3):
