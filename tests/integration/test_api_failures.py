@@ -17,7 +17,7 @@ async def test_a_failure_of_the_station_is_503_and_logged(
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    def fail(_: Records) -> None:
+    def fail(*_: object) -> None:
         raise error
 
     monkeypatch.setattr(Records, "incidents", fail)

@@ -60,4 +60,6 @@ def test_the_path_is_that_of_the_recording(
     since_s, meant_s = ((t - t[0]) * 1e-9 for t in (live.t_ns, meant.t_ns))
     for axis in range(3):
         there_m = np.interp(meant_s, since_s, live.position_n_m[:, axis])
-        assert np.abs(there_m - meant.position_n_m[:, axis]).max() < 0.05
+        off_m = np.abs(there_m - meant.position_n_m[:, axis])
+        assert off_m[meant.stationary].max() < 0.03
+        assert off_m.max() < 0.1  # in the air a stamp that is put right otherwise shows more
