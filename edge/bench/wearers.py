@@ -38,7 +38,7 @@ from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS
 from edge.tracker.port import Quality
 
 WEARERS = 6
-FIRST_SEED = 100  # those below were used while the tracker was made
+FIRST_SEED = 100  # with those below the tracker was made, on these its faults were found
 ROUND = ((20.0, 0.0), (20.0, 12.0), (0.0, 12.0), (0.0, 0.0))
 CRAWLED = ((8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (-4.0, 5.0), (-4.0, 0.0), (4.0, 0.0))
 RISERS, RISER_M, TREAD_M = 9, 0.17, 0.28

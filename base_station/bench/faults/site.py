@@ -25,6 +25,7 @@ UNIT = "anna"
 START_PATIENCE_S = 200.0  # the first agent on a machine compiles its tracker
 _PORT = 7447
 _LOOK_EVERY_S = 0.5
+_STOP_S = 30.0
 _AGENT = "from edge.cli import app; app()"
 # The machine's clock is set by a day while the agent runs.
 _AGENT_OF_JUMPS = """
@@ -70,6 +71,12 @@ class Agent:
             self._process.kill()
             self._process.wait()
             self._process = None
+
+    def stop(self) -> None:
+        """In order: what it has said is out when it ends."""
+        assert self._process is not None
+        self._process.terminate()
+        self._process.wait(_STOP_S)
 
     def set_disk_full(self, *, full: bool) -> None:
         assert self._process is not None

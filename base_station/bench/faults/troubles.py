@@ -110,8 +110,8 @@ class Clone:
         site.link.set(DARK)
         time.sleep(6.0)
         site.link.set(CLEAN)
-        site.wait_logged(site.said(), START_PATIENCE_S)  # once it is gone nobody can fetch the rest
-        site.clone.kill()
+        site.wait_logged(site.said(), START_PATIENCE_S)
+        site.clone.stop()  # killed, it would take with it what it has just said
 
 
 @dataclass(frozen=True, slots=True)
