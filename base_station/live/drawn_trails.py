@@ -14,7 +14,9 @@ import msgspec
 from base_station.api.wire import TrailPoint
 from base_station.live_state import UnitState
 from base_station.trail import TrailStep
-from shared.clock import NS_PER_MS
+from shared.clock import NS_PER_MS, NS_PER_S
+
+BEHIND_NS = 10 * NS_PER_S  # some points at once cost a tenth of the same ones one by one
 
 
 class DrawnTrails:
@@ -22,9 +24,9 @@ class DrawnTrails:
         self._drawn: dict[str, _DrawnTrail] = {}
 
     def keep_up(self, unit: UnitState) -> None:
-        """Follow a trail that has gone on, so that little is left to do when it is asked for."""
+        """Not far behind a trail that goes on: little is left to do when it is asked for."""
         if unit.trail:
-            self._of(unit.unit_id).go_on(unit.trail)
+            self._of(unit.unit_id).keep_near(unit.trail)
 
     def of(self, unit: UnitState) -> msgspec.Raw:
         drawn = self._of(unit.unit_id)
@@ -50,8 +52,8 @@ class _DrawnTrail:
     def whole(self) -> msgspec.Raw:
         return msgspec.Raw(b"[%b]" % bytes(self._text))
 
-    def go_on(self, trail: list[TrailStep]) -> None:
-        if not self._steps or trail[-1] is not self._steps[-1]:
+    def keep_near(self, trail: list[TrailStep]) -> None:
+        if not self._steps or trail[-1].t_ns - self._steps[-1].t_ns >= BEHIND_NS:
             self.follow(trail)
 
     def follow(self, trail: list[TrailStep]) -> None:

@@ -10,12 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from base_station.live import drawn_trails
-from base_station.live.drawn_trails import DrawnTrails
+from base_station.live.drawn_trails import BEHIND_NS, DrawnTrails
 from base_station.live_state import UnitState
 from base_station.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
 Change = tuple[str, int]
+AT_ONCE = BEHIND_NS // (2 * NS_PER_S)  # points of a trail that goes on every two seconds
 CHANGES = st.lists(
     st.tuples(st.sampled_from(["walk", "leave", "fill", "solve", "clear"]), st.integers(0, 40)),
     max_size=25,
@@ -70,11 +71,13 @@ def test_a_point_is_encoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
     unit, trails = UnitState("FF-01"), DrawnTrails()
     unit.trail = [step(2 * i) for i in range(TRAIL_POINTS)]
     trails.all([unit])
-    unit.trail.append(step(2 * TRAIL_POINTS))
-    del unit.trail[0]
-    trails.keep_up(unit)
+    for i in range(5 * AT_ONCE):
+        unit.trail.append(step(2 * (TRAIL_POINTS + i)))
+        del unit.trail[0]
+        trails.keep_up(unit)
+    assert encoded == [TRAIL_POINTS, *5 * [AT_ONCE]]
     assert len(msgspec.json.decode(trails.all([unit])["FF-01"])) == TRAIL_POINTS
-    assert encoded == [TRAIL_POINTS, 1]
+    assert sum(encoded) == TRAIL_POINTS + 5 * AT_ONCE
 
 
 def test_who_left_no_trail_has_none() -> None:
