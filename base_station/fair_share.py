@@ -6,7 +6,7 @@ no log and no step.  From an honest unit it comes all the same, out of its journ
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from shared.clock import NS_PER_S, Clock
 from shared.messages.station import ReportProblem
@@ -19,6 +19,7 @@ _TOLD_AFTER_NS = 3 * NS_PER_S  # of being beyond it: one burst is no matter
 _PAUSE_NS = 2 * NS_PER_S  # without any that is too much: it begins anew
 _OVER_AFTER_NS = 30 * NS_PER_S
 _MOST_SENDERS = 2000  # that are told apart; on a bus without certificates there may be any number
+_PART = "flood "  # and whose
 _TEXT = (
     f"{{0}} says more than any unit does (over {MESSAGES_HZ} messages or {BYTES_PER_S / 1e6:g} MB "
     "a second): what is too much is dropped. Switch it off, or revoke it: muster pki revoke {0}"
@@ -83,13 +84,20 @@ class FairShare:
         since_ns, last_ns = self._beyond.get(sender_id, (now_ns, now_ns))
         self._beyond[sender_id] = now_ns if now_ns - last_ns > _PAUSE_NS else since_ns, now_ns
 
-    def news(self) -> Iterator[ReportProblem]:
-        """Who has begun to be beyond its share, and who has long been well again; one thread."""
+    def news(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
+        """Who has begun to be beyond its share, and who has long been well again; one thread.
+
+        ``known``: the problems that stand reported, by part.  What an earlier run of the program
+        told, or the other of two stations, ends here too.
+        """
         now_ns = self._clock.monotonic_ns()
+        for sender_id in [one.removeprefix(_PART) for one in list(known) if one.startswith(_PART)]:
+            self._told.add(sender_id)
+            self._beyond.setdefault(sender_id, (now_ns, now_ns))
         for sender_id, (since_ns, last_ns) in list(self._beyond.items()):
-            part = f"flood {sender_id}"
+            part = f"{_PART}{sender_id}"
             if now_ns - last_ns >= _OVER_AFTER_NS:
-                del self._beyond[sender_id]
+                self._beyond.pop(sender_id, None)
                 if sender_id in self._told:
                     self._told.remove(sender_id)
                     yield ReportProblem(part, "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, ExitStack
 from typing import NamedTuple
 
@@ -99,6 +99,7 @@ class _LiveStation:
         bus, steady = opened.bus, self._disk.clock
         self._lacking = Lacking()
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
+        self._reported: Mapping[str, str] = {}  # problems of the station's parts, by the log
         self._side = self._new_side()
         self._share = FairShare(self._side.feed.offer, steady)
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
@@ -224,7 +225,7 @@ class _LiveStation:
             self._make_good()
             if self._side.leads:
                 enrolled.update()
-                for report in self._share.news():
+                for report in self._share.news(self._reported):
                     self._gate.submit(STATION_ID, report)
             if hindsight is not None:
                 hindsight.catch_up(records.incidents(), records.tracks_of)
@@ -241,6 +242,7 @@ class _LiveStation:
             return incident is not None and incident.closed_ns is None
 
         self._is_in_incident = is_in_incident
+        self._reported = state.problems
         self._lacking.note_stepped(self._stepped_from_ns, place[0])
         self._disk.clock.hold_while(lambda: not self._leads() or is_in_incident())
         self._side.begin(place, state)

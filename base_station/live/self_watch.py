@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
+_NAMED_WHEN_FAILING = ("drive", "pipeline", "bus", "checkpoint")
 log = logging.getLogger(__name__)
 
 
@@ -38,10 +39,10 @@ class SelfWatch:
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
         """``seen``: what is wrong now, by part, empty where nothing is; ``known``: what has been
-        reported.  A part that had never failed in this run, and is reported by others, is left
-        to them.
+        reported, perhaps by an earlier run of the program.  Parts that others watch are left to
+        them.
         """
-        now = {**seen, **self._failed}
+        now = {**dict.fromkeys(_NAMED_WHEN_FAILING, ""), **seen, **self._failed}
         self._failed = {}
         for part, text in now.items():
             if text:

@@ -15,6 +15,11 @@ class Station:
     def __init__(self) -> None:
         self.clock = ManualClock()
         self.heard: list[str] = []
+        self.known: dict[str, str] = {}
+        self.start()
+
+    def start(self) -> None:
+        """Again, with what the log knows."""
         self.share = FairShare(lambda key, _: self.heard.append(key), self.clock)
 
     def hear(self, key: str, times: int, size: int = 100) -> int:
@@ -30,7 +35,12 @@ class Station:
             self.hear(KEY, MESSAGES_HZ)
 
     def news(self) -> list[tuple[str, bool]]:
-        return [(one.part, bool(one.text)) for one in self.share.news()]
+        reports = list(self.share.news(self.known))
+        for one in reports:
+            self.known[one.part] = one.text
+            if not one.text:
+                del self.known[one.part]
+        return [(one.part, bool(one.text)) for one in reports]
 
 
 @pytest.fixture
@@ -85,6 +95,33 @@ def test_a_flood_is_told_once_and_so_is_its_end(station: Station) -> None:
     assert station.news() == [], "it may go on"
     station.clock.advance(30.0)
     assert station.news() == [("flood evil", False)]
+    assert station.news() == []
+
+
+def test_a_flood_that_was_told_before_a_restart_ends_as_well(station: Station) -> None:
+    station.known["log"] = "the disk is full"
+    station.flood(5)
+    assert station.news() == [("flood evil", True)]
+    station.start()
+    station.flood(5)
+    assert station.news() == [], "it goes on, and is known"
+    station.start()
+    assert station.news() == []
+    station.clock.advance(25.0)
+    assert station.news() == []
+    station.clock.advance(10.0)
+    assert station.news() == [("flood evil", False)]
+    assert station.known == {"log": "the disk is full"}
+    assert station.news() == []
+
+
+def test_a_flood_that_a_person_dismissed_is_not_told_again_while_it_lasts(
+    station: Station,
+) -> None:
+    station.flood(5)
+    assert station.news() == [("flood evil", True)]
+    station.known.clear()
+    station.flood(5)
     assert station.news() == []
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from base_station.live.self_watch import WELL_AFTER, SelfWatch
 from shared.messages.station import ReportProblem
 
@@ -43,6 +45,12 @@ def test_a_part_that_is_only_named_when_it_fails_gets_well_too() -> None:
 
 def test_a_problem_from_before_a_restart_ends_where_its_part_is_watched() -> None:
     assert reports([WELL] * WELL_AFTER, {"log": "the disk is full"}) == [""]
+
+
+@pytest.mark.parametrize("part", ["drive", "pipeline", "bus", "checkpoint"])
+def test_and_where_the_part_is_only_named_when_it_fails(part: str) -> None:
+    assert reports([WELL] * (WELL_AFTER - 1), {part: "it failed"}) == []
+    assert reports([WELL] * WELL_AFTER, {part: "it failed"}) == [""]
 
 
 def test_what_others_reported_is_left_to_them() -> None:
