@@ -13,7 +13,7 @@ from base_station.alarms.book import AlarmBook
 from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
-from base_station.events import PinsTouched
+from base_station.events import PinsTouched, TrailFilled
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
@@ -48,7 +48,7 @@ from shared.messages.station import (
     Unassign,
 )
 
-Effect = Alarm | UnitState | SentCommand | PinsTouched  # what an action changed
+Effect = Alarm | UnitState | SentCommand | PinsTouched | TrailFilled  # what an action changed
 
 
 class Actions:
@@ -64,7 +64,7 @@ class Actions:
 
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
         if isinstance(action, PinAction):
-            return [PinsTouched(tuple(sorted(change_pins(state, by, action))))]
+            return [_pins_of(change_pins(state, by, action))]
         effects: Iterable[Effect] = state.units.values()
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
@@ -138,21 +138,22 @@ class Actions:
         yield command
         yield from self._reviewed(state, touched)
 
-    def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterable[Effect]:
+    def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterator[Effect]:
         before = state.incident
         units = list(_people(state, by, action))
-        self._positioning.begin_incident(state, 0 if before is None else before.closed_ns or 0)
-        return self._reviewed(state, units)
+        before_ns = 0 if before is None else before.closed_ns or 0
+        yield _pins_of(self._positioning.begin_incident(state, before_ns))
+        yield from self._reviewed(state, units)
 
-    def _forget(self, state: StationState, action: ForgetWearers) -> list[UnitState]:
+    def _forget(self, state: StationState, action: ForgetWearers) -> list[Effect]:
         unit = _registered(state, action.unit_id)
         if state.incident is not None and state.incident.closed_ns is None:
             raise UserError("an incident is open; close it first")
         self._positioning.forget(state, unit)
-        pin_book.forget(state, unit.unit_id)
+        met = pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
         command_book.forget(state, unit)
-        return [unit]
+        return [unit, TrailFilled(unit.unit_id), _pins_of(met)]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[Effect]:
         unit = _registered(state, action.unit_id)
@@ -169,7 +170,7 @@ class Actions:
             action.heading_std_rad,
         )
         self._positioning.start(state, unit, start)
-        yield unit
+        yield _pins_of({unit.unit_id})
 
 
 PeopleAction = (
@@ -252,6 +253,10 @@ def _anchor(action: SetAnchor) -> Anchor:
     if abs(action.lat_deg) > 90.0 or abs(action.lon_deg) > 180.0:
         raise UserError(f"{action.lat_deg}, {action.lon_deg} is no latitude and longitude")
     return Anchor(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
+
+
+def _pins_of(unit_ids: set[str]) -> PinsTouched:
+    return PinsTouched(tuple(sorted(unit_ids)))
 
 
 def _or_refuse(outcome: Alarm | str) -> Alarm:

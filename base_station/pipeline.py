@@ -151,6 +151,8 @@ class StationPipeline:
                 outputs.append(CommandTouched(effect.command_id))
             elif isinstance(effect, PinsTouched):
                 outputs.extend(self._repin(effect.unit_ids))
+            elif isinstance(effect, TrailFilled):
+                outputs.append(effect)
             else:
                 outputs.append(UnitTouched(effect.unit_id))
         if isinstance(message.action, SetAnchor | SetPlan):  # who is silent was seen there too
@@ -222,9 +224,8 @@ class StationPipeline:
         note(unit, message, self.state.t_ns)
         match message:
             case Position() if unit.registered:
-                solved = self._positioning.follow(self.state, unit, message)
-                outputs = self._fuse(unit)
-                return [*outputs, *self._solved(solved, unit)] if solved else outputs
+                awaited = self._positioning.follow(self.state, unit, message)
+                return self._repin([unit.unit_id]) if awaited else self._fuse(unit)
             case GpsFix() if unit.registered:
                 if self._positioning.fix(self.state, unit, message).accepted:
                     return self._fuse(unit)
@@ -246,19 +247,15 @@ class StationPipeline:
         return _touched(command)
 
     def _repin(self, unit_ids: Collection[str]) -> list[Output]:
-        """Pins of these units changed: their past is solved again."""
+        """What is known of these units' past changed: it is solved again, and everybody is shown
+        where that leads, whoever is silent too.
+        """
         solved = self._positioning.solve_pins(self.state, unit_ids)
-        touched: list[Output] = [UnitTouched(unit_id) for unit_id in sorted(unit_ids)]
-        return [*self._solved(solved), PinsTouched(tuple(sorted(unit_ids))), *touched]
-
-    def _solved(self, unit_ids: Sequence[str], fused: UnitState | None = None) -> list[Output]:
-        """Their trails are others now, and so is where they are, but for who was just fused."""
-        outputs: list[Output] = []
-        for unit_id in unit_ids:
-            unit = self.state.units[unit_id]
-            if unit is not fused:
-                outputs.extend(self._fuse(unit))
-            outputs += [TrailFilled(unit_id), UnitTouched(unit_id), PinsTouched((unit_id,))]
+        outputs: list[Output] = [PinsTouched(tuple(sorted(solved)))]
+        for unit_id, redrawn in sorted(solved.items()):
+            outputs += [*self._fuse(self.state.units[unit_id]), UnitTouched(unit_id)]
+            if redrawn:
+                outputs.append(TrailFilled(unit_id))
         return outputs
 
     def _fuse(self, unit: UnitState) -> list[Output]:

@@ -25,8 +25,8 @@ def truth(second: float) -> tuple[float, float]:
 class Walk:
     """The units, the script of what the station hears of them, and how far off it is."""
 
-    def __init__(self, *unit_ids: str, turn_rad: float = 0.0) -> None:
-        self.script = Script()
+    def __init__(self, *unit_ids: str, turn_rad: float = 0.0, script: Script | None = None) -> None:
+        self.script = script or Script()
         self.script.register(*unit_ids)
         self.script.act(OpenIncident("i1", "Mill Lane"))
         self.units = unit_ids

@@ -6,7 +6,7 @@ Every check says in a sentence why a pin cannot be taken.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import msgspec
 
@@ -51,11 +51,18 @@ def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
             return _remove_beacon(state, action.beacon_id)
 
 
-def forget(state: StationState, unit_id: str) -> None:
-    """Every pin that says where this unit was."""
-    for pin_id in [one for one, pin in state.pins.items() if unit_id in units_of(pin)]:
-        del state.pins[pin_id]
+def forget(state: StationState, unit_id: str) -> set[str]:
+    """Every pin that says where this unit was; gives the others whose past that changes."""
+    return drop(state, lambda pin: unit_id in units_of(pin)) - {unit_id}
+
+
+def drop(state: StationState, unwanted: Callable[[Pin], bool]) -> set[str]:
+    """Gives whose past the pins were about."""
+    changed: set[str] = set()
+    for pin_id in [one for one, pin in state.pins.items() if unwanted(pin)]:
+        changed |= units_of(state.pins.pop(pin_id))
         state.pin_verdicts.pop(pin_id, None)
+    return changed
 
 
 def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
@@ -142,13 +149,10 @@ def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
 
 
 def _remove(state: StationState, pin_id: str) -> set[str]:
-    gone = [one for one in state.pins if one == pin_id or one.startswith(f"{pin_id}:")]
-    if not gone:
+    group = f"{pin_id}:"
+    changed = drop(state, lambda pin: pin.pin_id == pin_id or pin.pin_id.startswith(group))
+    if not changed:
         raise UserError(f"there is no pin {pin_id}; it may have been removed already")
-    changed: set[str] = set()
-    for one in gone:
-        changed |= units_of(state.pins.pop(one))
-        state.pin_verdicts.pop(one, None)
     return changed
 
 

@@ -41,16 +41,16 @@ class PinnedUnits:
 
     def solve(
         self, state: StationState, unit_ids: Iterable[str], plain: Callable[[str], Fuser]
-    ) -> list[str]:
-        """Solve the past of these units, and of whom they met; gives those whose trail changed.
-        ``plain`` gives the fuser that knows of no pin.
+    ) -> dict[str, bool]:
+        """Solve the past of these units, and of whom they met: all of them, and whether the trail
+        is another now.  ``plain`` gives the fuser that knows of no pin.
         """
         known = [one for one in with_partners(state, unit_ids) if one in state.units]
-        changed, past = [], Past(self._smoother, self.grid)
-        for unit_id, result in solve_pins(state, past, known).items():
-            if self._take(state.units[unit_id], result, plain):
-                changed.append(unit_id)
-        return changed
+        solved = solve_pins(state, Past(self._smoother, self.grid), known)
+        return {
+            unit_id: self._take(state.units[unit_id], result, plain)
+            for unit_id, result in solved.items()
+        }
 
     def _take(self, unit: UnitState, result: Repinned, plain: Callable[[str], Fuser]) -> bool:
         if result.path is None:

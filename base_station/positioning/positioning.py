@@ -15,7 +15,7 @@ from base_station.fusion.plane.compass import bearing_of
 from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
-from base_station.pins.book import has_pins
+from base_station.pins.book import drop, has_pins
 from base_station.pins.evidence import floors_said
 from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
@@ -70,8 +70,8 @@ class Positioning:
     def save_pinned(self) -> dict[str, bytes]:
         return self._pinned.save()
 
-    def follow(self, state: StationState, unit: UnitState, position: Position) -> list[str]:
-        """Gives the units whose past was solved again because this one has gone on."""
+    def follow(self, state: StationState, unit: UnitState, position: Position) -> bool:
+        """Whether pins had waited for it: the past is to be solved again."""
         told = self._told(unit)
         fuser, history = told[0], _history(state, unit)
         reason = fuser.advance(position)
@@ -95,29 +95,27 @@ class Positioning:
         history.note(position, t_ns, bool(reason))
         if state.learnt_floors.follow(position, unit.unit_id):
             self._land(state, unit, t_ns, outside)
-        if history.is_awaited or (begins and has_pins(state, unit.unit_id)):
-            return self.solve_pins(state, [unit.unit_id])
-        return []
+        return history.is_awaited or (begins and has_pins(state, unit.unit_id))
 
-    def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> list[str]:
-        """Pins of these units changed; gives those whose trail did."""
+    def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> dict[str, bool]:
+        """Pins of these units changed; gives whose present hangs on that, and whether the trail
+        is another now.
+        """
         state.learnt_floors.say(floors_said(state))
         return self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
 
-    def begin_incident(self, state: StationState, before_ns: int) -> None:
-        """What was known of paths and pins before that time no longer matters."""
+    def begin_incident(self, state: StationState, before_ns: int) -> set[str]:
+        """What was known of paths and pins before that time no longer matters; gives whose pins
+        went.
+        """
         state.learnt_floors.trim(before_ns)
         state.learnt_building = LearntBuilding()
         for history in state.paths.values():
             history.trim(before_ns)
-        old = [pin.pin_id for pin in state.pins.values() if pin.set_ns <= before_ns]
-        for pin_id in old:
-            del state.pins[pin_id]
-            state.pin_verdicts.pop(pin_id, None)
         for unit in state.units.values():
             if unit.plain_trail is not None:
                 unit.plain_trail.clear()
-        self.solve_pins(state, list(state.units))
+        return drop(state, lambda pin: pin.set_ns <= before_ns)
 
     def fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
         """Whether the fix is used, and why not."""
@@ -132,7 +130,6 @@ class Positioning:
             state.sky = Sky()
         self._fuser(unit).start(start)
         _history(state, unit).begin_with(start)
-        self.solve_pins(state, [unit.unit_id])
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Where its wearers were, and what was learnt of their walk."""

@@ -1,0 +1,186 @@
+"""Whatever changes the past: markers, trails and every console follow, whether the unit speaks, is
+silent or its journal is being read; and a replay and a restart end up the same.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Callable
+from copy import copy
+
+import pytest
+
+from base_station.api.wire import TrailPoint
+from base_station.events import Refused
+from shared.messages import Sighting, SightingKind
+from shared.messages.pins import PlaceBeacon, RemoveBeacon, RemovePin, SetMeeting, SetPin
+from shared.messages.station import (
+    Action,
+    Assign,
+    CloseIncident,
+    ForgetWearers,
+    OpenIncident,
+    RegisterUnit,
+    SetAnchor,
+    SetPlan,
+    SetReference,
+    SetStart,
+)
+from tests.round_walk import Walk, truth
+from tests.station_script import START_NS, Script
+from tests.watched import Watched, apart_m
+
+A, B = "FF-01", "FF-02"
+WALKED_S = 70
+PLAN = b"""{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[
+{"floor":2,"down_m":0},{"floor":3,"down_m":-3.2}]},
+"features":[{"type":"Feature","properties":{"kind":"outline","floor":2},"geometry":
+{"type":"Polygon","coordinates":[[[-9,-60],[90,-60],[90,60],[-9,60],[-9,-60]]]}}]}"""
+
+
+class Story(Walk):
+    """Two units walk a round; they were pinned, met each other, and one passed a beacon."""
+
+    script: Watched
+
+    def __init__(self) -> None:
+        super().__init__(A, B, turn_rad=0.3, script=Watched())
+        for unit_id in (A, B):
+            self.start(unit_id)
+        self.script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
+        self.script.act(PlaceBeacon("door", "", *truth(20.0), None, 0.3, 3.0))
+        self.go(20)
+        self.script.say(Sighting(self.script.header(A), SightingKind.BEACON, "door", 2.0))
+        self.go(20)
+        self.script.act(SetMeeting("met", A, B, self.script.t_ns, 1.0, ""))
+        self.go(WALKED_S - 40)
+        self.pin("of A", A, 60.0)
+        self.pin("of B", B, 50.0)
+
+    def go(self, seconds: int, silent: tuple[str, ...] = ()) -> None:
+        for _ in range(seconds):
+            super().go(1, silent)
+            self.script.tick()
+
+    def place_pin(self, pin_id: str, unit_id: str, second: float, floor: int | None) -> SetPin:
+        t_ns = START_NS + round(second * 1e9)
+        return SetPin(pin_id, unit_id, t_ns, *truth(second - 4.0), 0.5, floor, None, 0.0, "")
+
+
+Change = Callable[[Story], list[Action]]
+CHANGES: dict[str, Change] = {
+    "a pin is set": lambda s: [s.place_pin("new", A, 30.0, None)],
+    "a pin with a floor is set": lambda s: [s.place_pin("new", A, 30.0, 3)],
+    "the other is pinned to a floor": lambda s: [s.place_pin("new", B, 30.0, 3)],
+    "a pin that contradicts is set": lambda s: [
+        SetPin("bad", A, START_NS + 30 * 10**9, 300.0, 0.0, 0.5, None, None, 0.0, "")
+    ],
+    "a pin is moved": lambda s: [s.place_pin("of A", A, 60.0, None)],
+    "a pin is moved to the other": lambda s: [s.place_pin("of A", B, 60.0, None)],
+    "a pin is removed": lambda s: [RemovePin("of A")],
+    "the other's pin is removed": lambda s: [RemovePin("of B")],
+    "a meeting is removed": lambda s: [RemovePin("met")],
+    "every pin is removed": lambda s: [RemovePin(one) for one in s.script.pipeline.state.pins],
+    "a start is said": lambda s: [SetStart(A, 5.0, 5.0, -3.2, -0.5, 0.5, 0.05)],
+    "a start is said of who has no pins": lambda s: [
+        *(RemovePin(one) for one in s.script.pipeline.state.pins),
+        SetStart(A, 5.0, 5.0, -3.2, -0.5, 0.5, 0.05),
+    ],
+    "the anchor is moved": lambda s: [SetAnchor(52.001, 4.001, 0.0, 0.1)],
+    "a beacon is moved": lambda s: [PlaceBeacon("door", "", *truth(16.0), None, 0.3, 3.0)],
+    "a beacon is removed": lambda s: [RemoveBeacon("door")],
+    "a plan is loaded": lambda s: [SetPlan(PLAN)],
+    "a reference barometer is named": lambda s: [SetReference(B, 0.0)],
+    "a unit is renamed": lambda s: [RegisterUnit(A, "another")],
+    "somebody else wears it": lambda s: [Assign(A, "p2", "Ada", "crew", "role")],
+    "a new incident is opened": lambda s: [CloseIncident("i1"), OpenIncident("i2", "Next")],
+    "somebody is forgotten": lambda s: [CloseIncident("i1"), ForgetWearers(A)],
+    "whom somebody met is forgotten": lambda s: [CloseIncident("i1"), ForgetWearers(B)],
+}
+
+
+def speaks(story: Story) -> None:
+    story.go(5)
+
+
+def is_silent(story: Story) -> None:
+    story.script.away.add(A)
+    story.go(40)
+
+
+def is_backfilled(story: Story) -> None:
+    """Half of what it missed has come."""
+    story.script.away.add(A)
+    story.go(30)
+    story.script.away.clear()
+    story.go(2)
+    story.script.backfill(15)
+
+
+CIRCUMSTANCES = (speaks, is_silent, is_backfilled)
+
+
+@pytest.fixture(scope="module", params=CIRCUMSTANCES, ids=lambda one: one.__name__)
+def walked(request: pytest.FixtureRequest) -> Story:
+    story = Story()
+    request.param(story)
+    return story
+
+
+def told(change: str, walked: Story) -> Story:
+    story = copy(walked)
+    story.script = walked.script.restarted()
+    for action in CHANGES[change](story):
+        outputs = story.script.act(action)
+        assert not any(isinstance(one, Refused) for one in outputs), outputs
+    return story
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_markers_trails_and_consoles_follow(change: str, walked: Story) -> None:
+    script = told(change, walked).script
+    shown = markers(script)
+    assert shown == markers(looked_at_again(script)), "at once, whoever is silent too"
+
+    script.backfill(99)
+    script.wait(15)
+    mine, new = script.console, script.joined()
+    assert mine.pins == new.pins
+    assert mine.beacons == new.beacons
+    for unit_id in (A, B):
+        assert mine.units[unit_id].position == new.units[unit_id].position
+        assert mine.units[unit_id].trust == new.units[unit_id].trust
+        drawn, kept = mine.trails.get(unit_id, []), new.trails.get(unit_id, [])
+        assert off_m(drawn, kept) < 1.5
+        assert off_m(kept, drawn) < 1.5
+
+
+def markers(script: Script) -> dict[str, tuple[object, ...]]:
+    units = script.pipeline.state.units.values()
+    return {
+        unit.unit_id: (one.north_m, one.east_m, one.down_m, one.floor)
+        for unit in units
+        if (one := unit.fused) is not None
+    }
+
+
+def looked_at_again(script: Watched) -> Script:
+    """By a station that starts from what this one has saved: the same anchor tells nothing new,
+    but where everybody is.
+    """
+    again = script.restarted()
+    anchor = again.pipeline.state.anchor
+    assert anchor is not None
+    again.act(SetAnchor(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.rotation_rad))
+    return again
+
+
+def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
+    """How far a trail leads from another, at the same times."""
+    worst_m = 0.0
+    for point in trail:
+        at = bisect_left(other, point.t_ms, key=lambda one: one.t_ms)
+        near = other[max(at - 1, 0) : at + 1]
+        worst_m = max(worst_m, min((apart_m(point, one) for one in near), default=math.inf))
+    return worst_m
