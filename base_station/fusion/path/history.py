@@ -1,8 +1,8 @@
 """One unit's own path since an incident began, thinned, with the satellite fixes that were taken.
 
-Small enough to be kept in the pipeline's state for hours (56 bytes a point) and enough to solve
-the whole past again.  Times are the station's, so that a unit that starts again, or whose clock
-is judged better later, goes on in the same history.
+Small enough to be kept in the pipeline's state for days and enough to solve the whole past again:
+what is older than some two minutes is packed (some 11 bytes a point).  Times are the station's, so
+that a unit that starts again, or whose clock is judged better later, goes on in the same history.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
+from base_station.fusion.path.moved import Moved
+from base_station.fusion.path.packed import CHUNK, Packed, Records
 from base_station.fusion.path.points import (
     BREAK,
     DOUBTFUL,
@@ -21,17 +23,14 @@ from base_station.fusion.path.points import (
     RESTART,
     PathArrays,
     Point,
-    Records,
     arrays_of,
-    move,
-    pack,
-    saturated,
+    fix_row,
+    rows_of,
     thinned,
 )
 from base_station.fusion.path.straight import Straight
 from base_station.fusion.port import Estimate, PlaceFix, Start
 from shared.clock import NS_PER_MS, NS_PER_S
-from shared.geo import rotate
 from shared.messages import Position
 from shared.quality import Quality
 
@@ -42,8 +41,8 @@ STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bend
 MOVING_M = 0.05  # between two positions: the wearer moved
 FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
 FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
-CHUNK = 128
-MOST_POINTS = 14_400  # some four hours of walking; beyond it every other old one goes
+_SHOWN = "shown_north_cm", "shown_east_cm", "shown_down_cm"
+_SEEN = "north_cm", "east_cm"
 
 
 class PathHistory(msgspec.Struct):
@@ -51,9 +50,11 @@ class PathHistory(msgspec.Struct):
 
     boot_id: int = 0
     boot_begin_ns: int = 0
-    packed: bytes = b""
+    packed: Packed = msgspec.field(default_factory=Packed)
     points: list[Point] = msgspec.field(default_factory=list)  # behind the packed ones
-    packed_fixes: bytes = b""
+    packed_fixes: Packed = msgspec.field(default_factory=Packed)
+    fixes: bytes = b""  # rows, behind the packed ones
+    moved: Moved = Moved()  # the frame, since anything was packed
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
     straight: Straight = msgspec.field(default_factory=Straight)  # since the last settled point
@@ -62,7 +63,7 @@ class PathHistory(msgspec.Struct):
     @property
     def begin_ns(self) -> int | None:
         if self.packed:
-            return int(np.frombuffer(self.packed, POINT_ROW, 1)["t_ns"][0])
+            return self.packed.begin * NS_PER_MS
         return self.points[0].t_ns if self.points else None
 
     @property
@@ -94,7 +95,7 @@ class PathHistory(msgspec.Struct):
             return
         tip = self.points[-1]
         before_ns, before_north_m, before_east_m = tip.t_ns, tip.north_m, tip.east_m
-        t_ns = max(t_ns, before_ns + 1)
+        t_ns = max(t_ns, before_ns + NS_PER_MS)  # packed, they still are apart
         if self._is_settled(tip, flags) or self._bends(tip, position, t_ns):
             tip = self._begin_point(tip)
         tip.t_ns = t_ns
@@ -139,46 +140,51 @@ class PathHistory(msgspec.Struct):
 
     def trim(self, before_ns: int) -> None:
         """What lies before that time is no longer wanted."""
-        rows = np.frombuffer(self.packed, POINT_ROW)
-        self.packed = rows[rows["t_ns"] >= before_ns].tobytes()
+        before_ms = -(-before_ns // NS_PER_MS)
+        self.packed.cut(before_ms, POINT_ROW)
         self.points = [point for point in self.points if point.t_ns >= before_ns]
-        fixes = np.frombuffer(self.packed_fixes, FIX_ROW)
-        self.packed_fixes = fixes[fixes["t_ns"] >= before_ns].tobytes()
+        self.packed_fixes.cut(before_ms, FIX_ROW)
+        fixes = self._fixes()
+        self.fixes = fixes[fixes["t_ms"] >= before_ms].tobytes()
 
     def fix(self, fix: PlaceFix, t_ns: int) -> None:
         """A fix that was taken; others close by tell the same."""
-        last = np.frombuffer(self.packed_fixes[-FIX_ROW.itemsize :], FIX_ROW)
-        if len(last) and abs(t_ns - int(last["t_ns"][0])) < FIX_NS:
+        fixes = self._fixes()
+        if len(fixes) and abs(t_ns - int(fixes["t_ms"][-1]) * NS_PER_MS) < FIX_NS:
             return
-        seen_mm = saturated(np.array([fix.north_m, fix.east_m, fix.horizontal_std_m]) * 1e3)
-        self.packed_fixes += np.array([(t_ns, *seen_mm)], FIX_ROW).tobytes()
+        if len(fixes) > CHUNK:
+            seen = self.moved.undone().of(fixes[:CHUNK], *_SEEN)
+            self.packed_fixes.add(seen, lambda rows: rows[::2])
+            self.fixes = fixes[CHUNK:].tobytes()
+        self.fixes += fix_row(fix, t_ns).tobytes()
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         """The incident frame was moved: turned clockwise, then shifted."""
-        shift = turn_rad, north_m, east_m
-        fixes = np.frombuffer(self.packed_fixes, FIX_ROW).copy()
-        move(fixes, "north_mm", "east_mm", *shift)
-        self.packed_fixes = fixes.tobytes()
-        rows = np.frombuffer(self.packed, POINT_ROW).copy()
-        move(rows, "shown_north_mm", "shown_east_mm", *shift)
-        rows["shown_down_mm"] = saturated(rows["shown_down_mm"] + down_m * 1e3)
-        self.packed = rows.tobytes()
+        move = Moved(turn_rad, north_m, east_m, down_m)
+        self.moved = self.moved.and_then(move)
+        self.fixes = move.of(self._fixes(), *_SEEN).tobytes()
         for point in self.points:
-            moved = rotate(point.shown_north_m, point.shown_east_m, turn_rad)
-            point.shown_north_m, point.shown_east_m = moved[0] + north_m, moved[1] + east_m
+            point.shown_north_m, point.shown_east_m = move.place(
+                point.shown_north_m, point.shown_east_m
+            )
             point.shown_down_m += down_m
         if self.start is not None:
-            moved = rotate(self.start.north_m, self.start.east_m, turn_rad)
+            north_m, east_m = move.place(self.start.north_m, self.start.east_m)
             self.start = msgspec.structs.replace(
                 self.start,
-                north_m=moved[0] + north_m,
-                east_m=moved[1] + east_m,
+                north_m=north_m,
+                east_m=east_m,
                 down_m=self.start.down_m + down_m,
                 heading_rad=self.start.heading_rad + turn_rad,
             )
 
     def arrays(self) -> PathArrays:
-        return arrays_of(self._rows(), np.frombuffer(self.packed_fixes, FIX_ROW))
+        """Those of packed points are to a centimetre and a millisecond."""
+        shown = self.moved.of(self.packed.rows(POINT_ROW), *_SHOWN)
+        seen = self.moved.of(self.packed_fixes.rows(FIX_ROW), *_SEEN)
+        return arrays_of(
+            np.concatenate((shown, rows_of(self.points))), np.concatenate((seen, self._fixes()))
+        )
 
     def _is_settled(self, tip: Point, flags: int) -> bool:
         """Whether the tip stays where it is and a new one, with these flags, begins."""
@@ -216,14 +222,13 @@ class PathHistory(msgspec.Struct):
         begun = _shown_as(tip)
         self.points.append(begun)
         if len(self.points) >= 2 * CHUNK:
-            self.packed += pack(self.points[:CHUNK]).tobytes()
+            rows = rows_of(self.points[:CHUNK])
+            self.packed.add(self.moved.undone().of(rows, *_SHOWN), thinned)
             del self.points[:CHUNK]
-            if len(self.packed) > MOST_POINTS * POINT_ROW.itemsize:
-                self.packed = thinned(np.frombuffer(self.packed, POINT_ROW)).tobytes()
         return begun
 
-    def _rows(self) -> Records:
-        return np.concatenate((np.frombuffer(self.packed, POINT_ROW), pack(self.points)))
+    def _fixes(self) -> Records:
+        return np.frombuffer(self.fixes, FIX_ROW)
 
 
 def _point_of(position: Position, t_ns: int, flags: int) -> Point:

@@ -1,46 +1,50 @@
-"""A path's points and fixes: as they come, packed in rows, and as arrays in SI units.
+"""A path's points and fixes: as they come, in rows of whole numbers, and as arrays in SI units.
 
-A packed point is 56 bytes; lengths are in millimetres, which saturate and never wrap.
+Lengths in rows are centimetres, which saturate and never wrap.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-_MOST_MM = 2**31 - 1  # what a column holds
+from base_station.fusion.path.packed import Records
+from base_station.fusion.port import PlaceFix
+from shared.clock import NS_PER_MS
+
+_MOST_CM = 2**31 - 1  # the other side of the Earth is nearer
 _TURN_RAD = 2.0 * math.pi
 
-Records = NDArray[np.void]
 Floats = NDArray[np.float64]
-POINT_ROW = np.dtype(
-    [
-        ("t_ns", "<i8"),
-        ("north_mm", "<i4"),  # own frame
-        ("east_mm", "<i4"),
-        ("std_mm", "<i4"),  # as the tracker states it
-        ("heading_e4", "<i4"),  # own frame, 1e-4 rad
-        ("moving_ms", "<i4"),  # since the point before
-        ("shown_north_mm", "<i4"),  # in the incident frame, as estimated then without any pin
-        ("shown_east_mm", "<i4"),
-        ("shown_std_mm", "<i4"),  # along the longer axis
-        ("shown_down_mm", "<i4"),
-        ("shown_down_std_mm", "<i4"),
-        ("floor", "<i4"),
-        ("flags", "<i4"),
-    ]
+_POINT = (
+    "t_ms",
+    "north_cm",  # own frame
+    "east_cm",
+    "std_cm",  # as the tracker states it
+    "heading_e3",  # own frame, 1e-3 rad
+    "moving_ms",  # since the point before
+    "shown_north_cm",  # in the incident frame, as estimated then without any pin
+    "shown_east_cm",
+    "shown_std_cm",  # along the longer axis
+    "shown_down_cm",
+    "shown_down_std_cm",
+    "floor",
+    "flags",
 )
-FIX_ROW = np.dtype([("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("std_mm", "<i4")])
+_FIX = ("t_ms", "north_cm", "east_cm", "std_cm")
+POINT_ROW = np.dtype([(name, "<i8") for name in _POINT])
+FIX_ROW = np.dtype([(name, "<i8") for name in _FIX])
 NO_FLOOR = -(2**31)
 BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not join
 
 
 class Point(msgspec.Struct, array_like=True):
-    """One place of the own path; fields as in the packed rows, not rounded yet."""
+    """One place of the own path; fields as in the rows, not rounded yet."""
 
     t_ns: int = 0
     north_m: float = 0.0
@@ -82,59 +86,65 @@ class PathArrays:
 
 def arrays_of(rows: Records, fixes: Records) -> PathArrays:
     """Points in their order, fixes in any."""
-    fixes = fixes[np.argsort(fixes["t_ns"], kind="stable")]
-    metres = {name: rows[f"{name}_mm"] * 1e-3 for name in ("north", "east", "std")}
+    fixes = fixes[np.argsort(fixes["t_ms"], kind="stable")]
     return PathArrays(
-        t_ns=rows["t_ns"].astype(np.int64),
-        own_m=np.column_stack((metres["north"], metres["east"])),
-        std_m=metres["std"],
-        heading_rad=rows["heading_e4"] * 1e-4,
+        t_ns=rows["t_ms"] * NS_PER_MS,
+        own_m=_metres(rows, "north_cm", "east_cm"),
+        std_m=rows["std_cm"] * 1e-2,
+        heading_rad=rows["heading_e3"] * 1e-3,
         moving_s=rows["moving_ms"] * 1e-3,
-        shown_m=np.column_stack((rows["shown_north_mm"], rows["shown_east_mm"])) * 1e-3,
-        shown_std_m=rows["shown_std_mm"] * 1e-3,
-        down_m=rows["shown_down_mm"] * 1e-3,
-        down_std_m=rows["shown_down_std_mm"] * 1e-3,
-        floor=rows["floor"].astype(np.int64),
-        flags=rows["flags"].astype(np.int64),
-        fix_t_ns=fixes["t_ns"].astype(np.int64),
-        fix_m=np.column_stack((fixes["north_mm"], fixes["east_mm"])) * 1e-3,
-        fix_std_m=fixes["std_mm"] * 1e-3,
+        shown_m=_metres(rows, "shown_north_cm", "shown_east_cm"),
+        shown_std_m=rows["shown_std_cm"] * 1e-2,
+        down_m=rows["shown_down_cm"] * 1e-2,
+        down_std_m=rows["shown_down_std_cm"] * 1e-2,
+        floor=rows["floor"].copy(),
+        flags=rows["flags"].copy(),
+        fix_t_ns=fixes["t_ms"] * NS_PER_MS,
+        fix_m=_metres(fixes, "north_cm", "east_cm"),
+        fix_std_m=fixes["std_cm"] * 1e-2,
     )
 
 
-def pack(points: list[Point]) -> Records:
+def rows_of(points: Sequence[Point]) -> Records:
     rows = np.zeros(len(points), POINT_ROW)
     columns = zip(*map(msgspec.structs.astuple, points), strict=True)
-    for name, column in zip(POINT_ROW.names or (), columns, strict=False):
+    for name, column in zip(_POINT, columns, strict=False):
         values = np.array(column)
-        if name == "heading_e4":  # whatever it says
-            values = np.rint(values % _TURN_RAD * 1e4)
-        elif name.endswith("_mm"):
-            values = saturated(values * 1e3)
+        if name == "t_ms":
+            values //= NS_PER_MS
+        elif name == "heading_e3":  # whatever it says
+            values = np.rint(values % _TURN_RAD * 1e3)
+        elif name.endswith("std_cm"):  # none is said to be smaller than it is
+            values = saturated(np.ceil(values * 1e2))
+        elif name.endswith("_cm"):
+            values = saturated(values * 1e2)
         rows[name] = values
     return rows
 
 
-def move(
-    rows: Records, north: str, east: str, turn_rad: float, north_m: float, east_m: float
-) -> None:
-    cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
-    north_mm, east_mm = rows[north].astype(float), rows[east].astype(float)
-    rows[north] = saturated(cosine * north_mm - sine * east_mm + north_m * 1e3)
-    rows[east] = saturated(sine * north_mm + cosine * east_mm + east_m * 1e3)
+def fix_row(fix: PlaceFix, t_ns: int) -> Records:
+    seen_cm = saturated(np.array([fix.north_m, fix.east_m]) * 1e2)
+    std_cm = saturated(np.ceil(np.array([fix.horizontal_std_m]) * 1e2))
+    return np.array([(t_ns // NS_PER_MS, *seen_cm, *std_cm)], FIX_ROW)
 
 
-def saturated(millimetres: Floats) -> Floats:
+def saturated(centimetres: Floats) -> Floats:
     """An anchor on the other side of the Earth moves everything farther than a number holds."""
-    return np.rint(np.clip(millimetres, -_MOST_MM, _MOST_MM))
+    return np.rint(np.clip(centimetres, -_MOST_CM, _MOST_CM))
 
 
 def thinned(rows: Records) -> Records:
-    """Every other point of the older half goes, but not where the path does not join."""
-    half = len(rows) // 2
+    """Every other point goes, but not the last one nor where a frame begins; what was said of the
+    way to it is said of the way to the next.
+    """
     keep = np.ones(len(rows), bool)
-    keep[1:half:2] = (rows["flags"][1:half:2] & (BREAK | RESTART)) != 0
+    keep[1:-1:2] = (rows["flags"][1:-1:2] & RESTART) != 0
     after = np.flatnonzero(~keep) + 1
     thinned = rows.copy()
     thinned["moving_ms"][after] += rows["moving_ms"][after - 1]
+    thinned["flags"][after] |= rows["flags"][after - 1]
     return thinned[keep]
+
+
+def _metres(rows: Records, north: str, east: str) -> Floats:
+    return np.column_stack((rows[north], rows[east])) * 1e-2
