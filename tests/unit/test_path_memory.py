@@ -58,7 +58,7 @@ def test_what_is_longer_ago_is_not(hour: PathMemory) -> None:
 
 def test_it_stays_small(hour: PathMemory) -> None:
     assert len(hour.points) < MOST_POINTS
-    assert len(hour.packed) < 32 * (KEPT_NS // COARSE_NS + MOST_POINTS)
+    assert len(hour.packed) < 20 * (KEPT_NS // COARSE_NS + MOST_POINTS)
 
 
 def test_the_newest_counts_for_what_is_to_come(hour: PathMemory) -> None:
@@ -82,3 +82,13 @@ def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
     further = memory.at(late_ns + FIFTH_NS // 2)
     assert not isinstance(further, str)
     assert further.north_m == pytest.approx(7.0 + 0.1 * (late_s + 10.2 - 7.0) / 10.2, abs=0.01)
+
+
+def test_a_place_farther_than_a_row_holds_is_at_its_end(at: At) -> None:
+    memory = PathMemory()
+    for t_ns in range(0, 300 * NS_PER_S, FIFTH_NS):
+        memory.note(at(t_ns, north_m=1e300, distance_m=-1e300))
+    then = memory.at(10 * NS_PER_S)
+    assert not isinstance(then, str)
+    assert then.north_m == pytest.approx(-then.distance_m)
+    assert then.north_m > 2e6

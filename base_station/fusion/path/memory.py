@@ -18,8 +18,9 @@ COARSE_NS = 2 * NS_PER_S
 MOST_POINTS = 600  # that are not packed; a minute has half as many
 NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known
 PLACE_ROW = np.dtype(
-    [("t_ns", "<i8"), ("north_m", "<f8"), ("east_m", "<f8"), ("distance_m", "<f8")]
+    [("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("distance_mm", "<i4")]
 )
+_MOST_MM = 2**31 - 1
 
 
 class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
@@ -88,8 +89,8 @@ class PathMemory(msgspec.Struct):
         if before is None and self.packed:
             rows = self._rows()
             row = int(np.searchsorted(rows["t_ns"], t_ns))
-            before = OwnPlace(*rows[row - 1].item()) if row > 0 else None
-            after = OwnPlace(*rows[row].item()) if row < len(rows) else after
+            before = _unpacked(rows[row - 1]) if row > 0 else None
+            after = _unpacked(rows[row]) if row < len(rows) else after
         return before, after
 
     def _after(self, t_ns: int) -> int:
@@ -114,7 +115,18 @@ class PathMemory(msgspec.Struct):
 
 
 def _packed(points: list[OwnPlace]) -> NDArray[np.void]:
-    return np.array([msgspec.structs.astuple(point) for point in points], PLACE_ROW)
+    """To a millimetre; what is farther than a number holds is at its end."""
+    rows = np.zeros(len(points), PLACE_ROW)
+    rows["t_ns"] = [point.t_ns for point in points]
+    for name in ("north", "east", "distance"):
+        metres = np.array([getattr(point, f"{name}_m") for point in points])
+        rows[f"{name}_mm"] = np.rint(np.clip(metres * 1e3, -_MOST_MM, _MOST_MM))
+    return rows
+
+
+def _unpacked(row: np.void) -> OwnPlace:
+    t_ns, *lengths_mm = row.item()
+    return OwnPlace(t_ns, *(length_mm * 1e-3 for length_mm in lengths_mm))
 
 
 def _point(position: Position) -> OwnPlace:
