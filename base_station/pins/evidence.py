@@ -116,7 +116,11 @@ def time_of(history: PathHistory, pin: Pin) -> int | str:
     if pin.t_ns > end_ns + NEAR_NS:
         return "the unit's path has not come to that time yet"
     if pin.t_ns < begin_ns - BEFORE_NS:
-        return "the unit's path begins later; there is nothing to pin there"
+        early_s = (begin_ns - pin.t_ns) / NS_PER_S
+        return (
+            f"the path that is known begins {early_s:.0f} s later: the unit's journal may still "
+            "bring what was before, else give the pin a later time"
+        )
     return min(max(pin.t_ns, begin_ns), end_ns)
 
 

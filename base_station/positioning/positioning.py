@@ -99,10 +99,17 @@ class Positioning:
 
     def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> dict[str, bool]:
         """Pins of these units changed; gives whose present hangs on that, and whether the trail
-        is another now.
+        is another now.  A floor that is said numbers the storeys of everybody in that building.
         """
-        state.learnt_floors.say(floors_said(state))
-        return self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+        renumbered = state.learnt_floors.say(floors_said(state))
+        solved = self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+        if renumbered:
+            shown = [one for one, unit in state.units.items() if unit.fused is not None]
+            for unit_id in shown:
+                if unit_id not in solved:
+                    solved[unit_id] = False
+                    _note_late(state, state.units[unit_id])
+        return solved
 
     def begin_incident(self, state: StationState, before_ns: int) -> set[str]:
         """What was known of paths and pins before that time no longer matters; gives whose pins

@@ -159,11 +159,16 @@ class LearntFloors(msgspec.Struct):
                 storeys, nearest_m = building.storeys, away_m
         return storeys
 
-    def say(self, said: Sequence[FloorSaid]) -> None:
-        """What people say of floors, in the place of what they said before."""
-        if self.said != tuple(said):
-            self.said = tuple(said)
-            self._learn_all()
+    def say(self, said: Sequence[FloorSaid]) -> bool:
+        """What people say of floors, in the place of what they said before; whether storeys are
+        others by it.
+        """
+        if self.said == tuple(said):
+            return False
+        before = [building.storeys for building in self.buildings]
+        self.said = tuple(said)
+        self._learn_all()
+        return before != [building.storeys for building in self.buildings]
 
     def forget(self, unit_id: str) -> None:
         self.walks.pop(unit_id, None)

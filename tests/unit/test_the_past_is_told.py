@@ -184,3 +184,45 @@ def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
         near = other[max(at - 1, 0) : at + 1]
         worst_m = max(worst_m, min((apart_m(point, one) for one in near), default=math.inf))
     return worst_m
+
+
+def test_a_floor_said_of_one_is_that_of_who_is_silent_there() -> None:
+    script = Watched()
+    script.register(A, B)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(60):
+        script.now_s += 1.0
+        down_m = -9.3 * min(max(second - 15, 0) / 20.0, 1.0)
+        for unit_id in (A, B):
+            script.position(unit_id, float(second), 0.0, down_m=down_m, distance_m=float(second))
+        script.tick()
+    walked_ns = script.t_ns
+    script.wait(40)
+    before = {unit_id: shown_floor(script, unit_id) for unit_id in (A, B)}
+    script.act(SetPin("p", A, walked_ns, 59.0, 0.0, 1.0, 2, None, 0.0, "second floor"))
+    after = {unit_id: shown_floor(script, unit_id) for unit_id in (A, B)}
+    assert (before, after) == ({A: 3, B: 3}, {A: 2, B: 2})
+
+
+def shown_floor(script: Watched, unit_id: str) -> int | None:
+    position = script.console.units[unit_id].position
+    return None if position is None else position.floor
+
+
+def test_a_pin_that_waited_for_the_path_is_told_of_as_the_path_comes() -> None:
+    """Used, contradicted, or of a time at which the path had not begun."""
+    script = Watched()
+    walk = Walk(A, B, script=script)
+    walk.start(A)
+    walk.go(20, silent=(B,))
+    walk.go(20, silent=(A, B))
+    north_m, east_m = truth(40.0)
+    for pin_id, unit_id, off_m in (("good", A, 0.0), ("bad", A, 500.0), ("early", B, 0.0)):
+        at = north_m + off_m, east_m
+        script.act(SetPin(pin_id, unit_id, script.t_ns, *at, 1.0, None, None, 0.0, ""))
+    assert [pin.state for pin in script.console.pins] == ["waiting"] * 3
+    walk.go(61, silent=(B,))
+    walk.go(1)
+    pins = {pin.pin_id: pin for pin in script.console.pins}
+    assert [pins[one].state for one in ("good", "bad", "early")] == ["used", "conflict", "waiting"]
+    assert "begins 62 s later" in pins["early"].text
