@@ -82,7 +82,7 @@ class LiveStation:
         self._subscription = self.bus.subscribe("muster/v1/**", self.feed.offer)
         stamper = Stamper(STATION_ID, clock.utc_ns(), clock)
         self.downlink = Downlink(self.bus, stamper, clock)
-        saved = self.checkpoints.latest()
+        saved = self.archive().latest()
         self.pipeline = make_pipeline(saved.pipeline if saved else None)
         self.drive = StationDrive(
             self.pipeline,

@@ -24,7 +24,8 @@ from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.recorder import Recorder
 from base_station.steady_clock import SteadyClock
-from shared.clock import Clock
+from shared.clock import Clock, SystemClock
+from shared.errors import StoreError
 from shared.messages.station import Action
 
 _RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
@@ -98,13 +99,14 @@ def open_disk(
     *,
     alone: bool = True,
 ) -> Disk:
-    """The database is made from the log where there is none.  ``alone``: no other station has a
-    copy of that.
+    """The database is made from the log where it lacks what that knows.  ``alone``: no other
+    station has a copy of that.
+
+    Raises StoreError where the database cannot be used, or is of another log.
     """
-    is_new = not folder.database.exists()
     store = closing.enter_context(Store(folder.database))
-    if is_new and recorder.segments():
-        announce("the database is new; it is made again from the log")
+    if _lacks_log(store, recorder):
+        announce("the database lacks what the log knows: it is made again from the log")
         project_whole_log(store, folder.log, lambda _: None)
     projection = SqlProjection(store)
     closing.callback(projection.close)
@@ -121,3 +123,18 @@ def open_disk(
         clock=steady,
         check=LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER),
     )
+
+
+def _lacks_log(store: Store, recorder: Recorder) -> bool:
+    """Whether it is new, or what made it from the log did not come to its end.  Raises StoreError
+    where it has another log's: two incidents would be one.
+    """
+    logged = {one.path.name for one in recorder.segments() if one.messages}
+    known = {one.name for one in Records(store, SystemClock()).segments()}
+    if known and logged and not known & logged:
+        raise StoreError(
+            f"the database {store.engine.url.database} is of another log than the one beside it "
+            f"(it knows {max(known)}, here is {max(logged)}); put the right one there, or move it "
+            "away: what the log knows is then made again, and people and users are not"
+        )
+    return bool(logged) and not known

@@ -52,7 +52,6 @@ def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
     lock = folder.lock()
     try:
         with Store(folder.database) as store:
-            Records(store, SystemClock()).forget_projections()
             return project_whole_log(store, folder.log, on_progress)
     finally:
         lock.close()
@@ -63,10 +62,12 @@ def cut_log(data: Path, place: Place, on_progress: Callable[[float], None]) -> N
     folder = DataFolder(data)
     lock = folder.lock()
     try:
+        with Store(folder.database) as store:  # it must not know what is cut, however this ends
+            Records(store, SystemClock()).forget_projections()
         set_aside(folder, place)
     finally:
         lock.close()
-    rebuild(data, on_progress)  # what is queried must not know of it either
+    rebuild(data, on_progress)
 
 
 def forget(

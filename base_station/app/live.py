@@ -111,7 +111,7 @@ class _LiveStation:
         self._forgettings = self._disk.forgetting_desk(
             opened.recordings, self._act, self._save_soon, self._leads
         )
-        saved = self._disk.checkpoints.latest()
+        saved = self._disk.archive.latest()
         self._stepped_from_ns = saved.t_ns if saved else 0
         self._drive = start_drive(
             self._disk.log, saved, self._surroundings(), self._begin, self._recovering()

@@ -50,6 +50,9 @@ def announce_first_login(accounts: Accounts, note: Path, announce: Announce) -> 
 
 
 def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
+    """Cut short, it leaves a database that knows no segment of the log."""
+    records = Records(store, SystemClock())
+    records.forget_projections()
     segments = []
     for path in segment_paths(log):
         with SegmentReader(path) as reader:
@@ -67,5 +70,5 @@ def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], No
         write,
         lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
     )
-    SegmentIndex(Records(store, SystemClock()), {}).update(segments)
+    SegmentIndex(records, {}).update(segments)
     return count

@@ -29,6 +29,8 @@ _PRAGMAS = (
     "foreign_keys = ON",
     "secure_delete = ON",  # what is deleted is overwritten
 )
+_DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+_NOT_OURS = (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
 
 
 class Store:
@@ -47,8 +49,7 @@ class Store:
         except SQLAlchemyError as error:
             self._engine.dispose()
             raise StoreError(
-                f"{path} cannot be opened as the station's database ({_cause(error)}); move it "
-                "away and run 'muster base rebuild' to make what the log knows again"
+                f"{path} cannot be opened as the station's database: {self._cause(error)}"
             ) from error
         except StoreError:
             self._engine.dispose()
@@ -65,7 +66,7 @@ class Store:
             with Session(self._engine, expire_on_commit=False) as session:
                 yield session
         except SQLAlchemyError as error:
-            raise StoreError(f"the database cannot be read: {_cause(error)}") from error
+            raise StoreError(f"the database cannot be read: {self._cause(error)}") from error
 
     @contextmanager
     def write(self) -> Iterator[Session]:
@@ -79,7 +80,8 @@ class Store:
                     yield session
                     session.commit()
             except SQLAlchemyError as error:
-                raise StoreError(f"the database did not take a change: {_cause(error)}") from error
+                cause = self._cause(error)
+                raise StoreError(f"the database did not take a change: {cause}") from error
 
     def compact(self) -> None:
         """Leave no byte in the file of what was deleted or replaced."""
@@ -95,6 +97,18 @@ class Store:
 
     def close(self) -> None:
         self._engine.dispose()
+
+    def _cause(self, error: SQLAlchemyError) -> str:
+        cause = getattr(error, "orig", None) or error
+        code = getattr(cause, "sqlite_errorcode", 0) & 0xFF
+        if code in _DAMAGE:
+            return (
+                f"{cause}; stop the station, and put {self._engine.url.database} back from a "
+                "backup or move it away: what the log knows is made again at the next start, "
+                "people and users are not"
+            )
+        remedy = "; see that file and folder can be written" if code in _NOT_OURS else ""
+        return f"{cause}{remedy}"
 
     def __enter__(self) -> Store:
         return self
@@ -137,7 +151,3 @@ def _engine(path: Path) -> Engine:
         connection.exec_driver_sql(connection.get_execution_options().get(_BEGIN, "BEGIN"))
 
     return engine
-
-
-def _cause(error: SQLAlchemyError) -> str:
-    return str(getattr(error, "orig", None) or error)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 from base_station.checkpoint import Checkpoint
 from base_station.events import Output, Received, StationEvent, event_of
@@ -36,6 +37,20 @@ class Archive:
     checkpoints: Checkpoints
     make_pipeline: MakePipeline
 
+    def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
+        """The newest state that was saved of this log, as ``Checkpoints.latest``: its place is
+        there.  Beside a log that was put back from a backup there may be later ones, or another's.
+        """
+        while (saved := self.checkpoints.latest(until_ns, after_ns)) is not None:
+            if self._has(saved):
+                return saved
+            until_ns = saved.t_ns - 1
+        return None
+
+    def _has(self, saved: SavedState) -> bool:
+        there = takewhile(lambda record: record[0] == saved.t_ns, self.open_log(saved.t_ns))
+        return sum(not is_decision(key) for _, key, _ in there) >= saved.events_at_t
+
 
 class Playback:
     """A pipeline at some time of the log."""
@@ -55,7 +70,7 @@ class Playback:
 
     def seek(self, t_ns: int) -> Iterator[None]:
         """Go to ``t_ns``, back or forth, pausing now and then so that it can be given up."""
-        saved = self._archive.checkpoints.latest(t_ns, self._at_ns if t_ns >= self._at_ns else -1)
+        saved = self._archive.latest(t_ns, self._at_ns if t_ns >= self._at_ns else -1)
         if t_ns < self._at_ns or saved is not None:
             self._begin(saved)
         while self.advance(t_ns) is not None:

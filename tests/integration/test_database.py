@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from alembic import command
-from sqlalchemy import inspect
+from sqlalchemy import inspect, text
 
 from base_station.bench.rig import said
 from base_station.db.migrate import alembic_config
@@ -79,6 +79,33 @@ def test_what_is_no_database_is_refused_and_kept(path: Path) -> None:
     with pytest.raises(StoreError, match="move it away"):
         Store(path)
     assert path.read_bytes().startswith(b"this is a shopping list")
+
+
+def test_a_database_that_is_damaged_in_a_part_says_what_to_do(
+    path: Path, clock: ManualClock
+) -> None:
+    with Store(path) as store:
+        Records(store, clock).audit("chief", "Looked", "")
+        with store.read() as session:
+            wanted = text("SELECT rootpage FROM sqlite_master WHERE name = 'audit'")
+            page = session.execute(wanted).scalar_one()
+            page_bytes = session.execute(text("PRAGMA page_size")).scalar_one()
+    content = bytearray(path.read_bytes())
+    begin = (page - 1) * page_bytes
+    content[begin : begin + 300] = b"\xee" * 300
+    path.write_bytes(content)
+    with Store(path) as store:
+        records = Records(store, clock)
+        with pytest.raises(StoreError, match=r"malformed.*move it away"):
+            records.audit_entries(ALL)
+        with pytest.raises(StoreError, match=r"malformed.*move it away"):
+            records.audit("chief", "Looked", "again")
+
+
+def test_what_cannot_be_opened_is_one_sentence(path: Path) -> None:
+    path.mkdir()
+    with pytest.raises(StoreError, match=r"unable to open.*can be written"):
+        Store(path)
 
 
 def test_a_copy_can_be_taken_while_someone_writes(

@@ -210,6 +210,24 @@ def test_a_damaged_checkpoint_only_costs_time(records: list[Record], tmp_path: P
         assert again.pipeline.state.units["FF-01"].position is not None
 
 
+def test_a_checkpoint_of_another_log_is_left_out(records: list[Record], tmp_path: Path) -> None:
+    source = archive(records, tmp_path)
+    for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
+        pass
+    state = saving.pipeline.checkpoint()
+    source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, state)
+    mine = source.latest()
+    source.checkpoints.save(START_NS + 50 * NS_PER_S, 3, state)  # of a log with an event more there
+    source.checkpoints.save(START_NS + 60 * NS_PER_S + 1, 1, state)
+    source.checkpoints.save(START_NS + 900 * NS_PER_S, 1, state)  # the log was put back
+    assert source.latest() == mine
+    assert source.latest(START_NS + 60 * NS_PER_S + 1) == mine
+    assert source.latest(after_ns=START_NS + 40 * NS_PER_S) is None
+    for _ in (again := Playback(source)).seek(START_NS + 100 * NS_PER_S):
+        pass
+    assert again.pipeline.state.t_ns == START_NS + 100 * NS_PER_S
+
+
 def test_checkpoints_of_another_program_do_not_send_a_seek_back(
     records: list[Record], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
