@@ -125,7 +125,7 @@ class EskfConfig(NamedTuple):
     landing_worth: float = 8.0  # that is worth so many landings
     landing_memory: float = 40.0  # landings
     landing_off_most: float = 0.06  # of one
-    strike_off: float = 0.01  # the same of the vertical velocity, of strides without a fault
+    strike_off: float = 0.01  # the same of the vertical velocity, before any landing
     strike_worth: float = 2.0
     landing_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
     landing_off_usual: float = 0.02  # more than this, and the gains are worse than was told

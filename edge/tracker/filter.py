@@ -26,7 +26,7 @@ from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
 from edge.tracker.intervals import mean_readings
-from edge.tracker.landing import land, lift_off
+from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
 from edge.tracker.stance import glides, stand
@@ -69,6 +69,7 @@ def filter_sample(
             land(ring, step, state, slot, config)
         stand(ring, step, state, slot, config)
         state.swing_rad = 0.0
+        state.faultless_var_m2ps2 = 0.0
         state.swing_speed_mps = 0.0
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             settle(ring, step, progress, state, slot, config)
@@ -170,9 +171,10 @@ def _add_noise(
         for axis in range(3):
             hidden = ring[slot].hidden_force_noise[axis] + ring[before].hidden_force_noise[axis]
             _doubt_axis(state, VELOCITY, axis, 0.5 * dt_s * hidden)
-    if not state.faulty_stride:  # else what clipping hid is what a landing is off by
-        unseen = config.unseen_per_strike * state.strike_off
-        accel_noise += dt_s * unseen**2 * state.force_unseen_var
+    unseen = config.unseen_per_strike * state.strike_off
+    strike_noise = dt_s * unseen**2 * state.force_unseen_var
+    state.faultless_var_m2ps2 += dt_s * (accel_noise + strike_noise)
+    accel_noise += strike_noise * strike_share(state)
     gyro_noise += dt_s * state.gyro_bend_var
     if ring[slot].flags & GYRO_SATURATED:
         for axis in range(3):

@@ -9,7 +9,8 @@ move) or before a rest has shown the gyroscope's bias is stated in full.
 How far the vertical velocity is off tells what heel strikes have left.  A strike is over before
 many a sensor has followed it.  The worse it leaves the landings, the more is the force doubted
 where samples do not follow the motion (see intervals): then a landing puts the strike right, and
-not the swing before it, which would end too high and too far.
+not the swing before it, which would end too high and too far.  Where clipping hid a part of the
+stride, a landing tells of both, and of the strike by its share of the variance.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import math
 from numba import njit
 
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import GYRO_BIAS, POSITION
+from edge.tracker.error_model import GYRO_BIAS, POSITION, VELOCITY
 from edge.tracker.stance import lever_velocity_row
 from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
@@ -47,11 +48,21 @@ def land(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConf
     state.landings = min(state.landings + 1.0, config.landing_memory)
     weight = 1.0 / (config.landing_worth + state.landings)
     state.landing_off += weight * (off - state.landing_off)
-    if not state.faulty_stride:
-        state.strike_off += (struck - state.strike_off) / (config.strike_worth + state.landings)
+    share = strike_share(state)
+    state.strikes = min(state.strikes + share, config.landing_memory)
+    state.strike_off += share * (struck - state.strike_off) / (config.strike_worth + state.strikes)
     if state.swing_speed_mps > config.landing_slow_mps:
         off *= min(config.landing_speed_mps / state.swing_speed_mps, 1.0)
         state.gain_off += weight * (off - state.gain_off)
+
+
+@njit()
+def strike_share(state: FilterState) -> float:
+    """Return the share of the vertical velocity's variance that no fault of the stride has made."""
+    if not state.faulty_stride:
+        return 1.0
+    down = VELOCITY + 2
+    return float(min(state.faultless_var_m2ps2 / state.covariance[down, down], 1.0))
 
 
 @njit()
