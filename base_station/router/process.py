@@ -8,11 +8,13 @@ import sys
 from pathlib import Path
 from threading import Event, Lock, Thread
 
-from base_station.router.router import FAILED, LINKS, READY
 from shared.errors import BusError
 
 logger = logging.getLogger(__name__)
 
+READY = "router ready"
+FAILED = "router failed: "
+LINKS = "--links"  # between where it listens and whom it joins
 _RESTART_AFTER_S = 1.0
 _PATIENCE_S = 5.0
 
@@ -26,7 +28,7 @@ class RouterProcess:
     def __init__(self, data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> None:
         """Raises BusError with the router's own sentence when it cannot open."""
         endpoints = (*listen, LINKS, *links) if links else listen
-        self._command = [sys.executable, "-m", "base_station.router.router", str(data), *endpoints]
+        self._command = [sys.executable, "-m", "base_station.router", str(data), *endpoints]
         self._closing = Event()
         self._starting = Lock()
         self._process = self._start()

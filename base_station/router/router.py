@@ -1,4 +1,4 @@
-"""The bus's router, a process of its own beside the station; ``router_process`` keeps it running.
+"""The bus's router, a process of its own beside the station; ``process`` keeps it running.
 
 Zenoh reads access rules when it opens, so enrolling or revoking somebody means opening the
 router again.  In its own process that costs everybody's link half a second, and the station
@@ -8,28 +8,18 @@ keeps its session, its subscriptions and what it knows.
 from __future__ import annotations
 
 import logging
-import os
 import secrets
-import signal
-import sys
 import time
-from contextlib import closing
 from pathlib import Path
-from threading import Event, Thread
 
 from base_station.pki.access import access_control, seldom_asked
 from base_station.pki.folder import PkiFolder
 from base_station.router.neighbour import Neighbour, listens
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
 from shared.errors import BusError, ConfigError, MusterError, PortInUseError
-from shared.log import set_up_logging
 
 logger = logging.getLogger(__name__)
 
-READY = "router ready"
-FAILED = "router failed: "
-LINKS = "--links"  # between where it listens and whom it joins
-_LOOK_EVERY_S = 1.0
 _LOOKS_ALONE = 3  # at least, before the link to the other router is taken for lost
 _PROBE_S = 1.0
 _OPEN_ATTEMPTS = 10
@@ -132,32 +122,6 @@ def _patience() -> int:
     return _LOOKS_ALONE + secrets.randbelow(_LOOKS_ALONE)
 
 
-def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> int:
-    """Until a signal comes or standard input ends, which it does when the parent dies.
-
-    Tells the parent on standard output whether it is open.  Gives the exit code.
-    """
-    set_up_logging()
-    stop = Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
-    Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
-    try:
-        router = Router(data, listen, links)
-    except MusterError as error:
-        print(f"{FAILED}{error}", flush=True)
-        return 2
-    print(READY, flush=True)
-    with closing(router):
-        try:
-            while not stop.wait(_LOOK_EVERY_S):
-                router.refresh()
-        except MusterError as error:
-            logger.error("%s", error)
-            return 2
-    return 0
-
-
 def _is_secure(listen: tuple[str, ...]) -> bool:
     secure = [endpoint.startswith("tls/") for endpoint in listen]
     if any(secure) and not all(secure):
@@ -176,15 +140,3 @@ def _open(endpoint: StationEndpoint) -> ZenohBus:
         except PortInUseError:
             time.sleep(_ATTEMPT_EVERY_S)
     return ZenohBus(endpoint)
-
-
-def _stop_at_end_of_input(stop: Event) -> None:
-    # Not sys.stdin: its lock, held while it reads, would abort a program that ends meanwhile.
-    while os.read(sys.stdin.fileno(), 4096):
-        pass
-    stop.set()
-
-
-if __name__ == "__main__":
-    listening, _, linking = " ".join(sys.argv[2:]).partition(LINKS)
-    sys.exit(run_router(Path(sys.argv[1]), tuple(listening.split()), tuple(linking.split())))

@@ -49,3 +49,9 @@ def test_the_example_settings_name_the_folder_that_the_service_may_write(service
 def test_compiled_code_is_kept_where_a_service_may_write(service: Path) -> None:
     settings = read(service)
     assert settings["Environment"] == f"NUMBA_CACHE_DIR=%C/{settings['CacheDirectory']}"
+
+
+def test_the_station_alone_is_told_to_stop() -> None:
+    """Told at once, its router would be gone before what is on its way has come through."""
+    station = next(service for service in SERVICES if service.stem == "muster-station")
+    assert read(station)["KillMode"] == "mixed"
