@@ -37,6 +37,7 @@ class Outbox:
         self._publish = publish
         self._waiting: SimpleQueue[Message | None] = SimpleQueue()
         self._unsaved: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)
+        self._unsaved_alerts: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)  # nothing ousts them
         self._storage_fault: str | None = None
         self._urgent = Event()
         self._closed = False
@@ -94,13 +95,16 @@ class Outbox:
 
     def _save(self, group: list[Journaled]) -> None:
         """A refusal stops nothing: the messages are sent, and written when the disk allows."""
-        overflow = len(self._unsaved) + len(group) - _UNSAVED_KEPT
-        self.never_saved += max(0, overflow)
-        self._unsaved.extend(group)
-        if not self._unsaved:
+        for message in group:
+            is_alert = message.channel.qos is Qos.ALERT
+            unsaved = self._unsaved_alerts if is_alert else self._unsaved
+            self.never_saved += len(unsaved) == _UNSAVED_KEPT
+            unsaved.append(message)
+        waiting = [*self._unsaved_alerts, *self._unsaved]
+        if not waiting:
             return
         try:
-            self._spool.append(self._unsaved)
+            self._spool.append(waiting)
         except StoreError as error:
             if self._storage_fault is None:
                 logger.error("%s; messages are sent but not kept", error)
@@ -114,6 +118,7 @@ class Outbox:
                 )
             self._storage_fault = None
             self._unsaved.clear()
+            self._unsaved_alerts.clear()
 
 
 def _journaled(message: Message) -> Journaled:

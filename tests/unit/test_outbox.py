@@ -84,6 +84,27 @@ def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monk
     assert not outbox.storage_fault
 
 
+def test_an_alert_is_not_ousted_by_what_came_after_it(spool, stamper, monkeypatch):
+    """Neither a disk nor a link for minutes: the mayday is what must not be missing."""
+
+    def refuse(messages):
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
+    sent = []
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    append = spool.append
+    monkeypatch.setattr(spool, "append", refuse)
+    outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+    outbox.put(Temperature(stamper.header(), degc) for degc in range(5))
+    until(partial(holds, sent, 6))
+    monkeypatch.setattr(spool, "append", append)
+    outbox.put((Temperature(stamper.header(), 5.0),))
+    outbox.close()
+    assert [entry.seq for entry in spool.read(spool.boot_id, 1, 9)] == [1, 5, 6, 7]
+    assert outbox.never_saved == 3
+
+
 def test_what_a_full_disk_cost_is_counted_and_said(spool, stamper, monkeypatch, caplog):
     def refuse(messages):
         raise StoreError("the disk is full")

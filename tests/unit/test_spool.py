@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from edge.spool import Journaled, Spool, open_spool
+from edge.spool import RAW, Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
 
 MB = 1_000_000
+PROMISING = ("journal_mode", "synchronous")
 
 
 def spool_at(path: Path, boot_ids=None, limit_bytes: int = 100 * MB) -> Spool:
@@ -85,6 +86,32 @@ def test_room_is_made_from_the_least_worth_and_oldest(tmp_path):
     spool.close()
 
 
+def test_raw_samples_go_before_anything_a_person_is_shown(tmp_path):
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    spool.append([entry(seq, STATUS, 800) for seq in range(1, 401)])
+    for start in range(401, 1401, 250):
+        spool.append([entry(seq, IMU, 800) for seq in range(start, start + 250)])
+    assert spool.rows_freed > 0
+    assert seqs(spool, spool.boot_id, 1, 400) == list(range(1, 401))
+    raw = [each.seq for each in spool.read(spool.boot_id, 1, 10**9, RAW)]
+    assert raw == list(range(raw[0], 1401))
+    assert raw[0] > 401
+    spool.close()
+
+
+def test_a_journal_that_has_nothing_of_this_boot_says_so(tmp_path):
+    first = spool_at(tmp_path, boot_ids=[1])
+    assert (first.first_seq, first.last_seq, first.rows_freed, first.pending) == (1, 0, 0, 0)
+    first.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
+    first.close()
+    second = spool_at(tmp_path, boot_ids=[2], limit_bytes=MB // 5)
+    second.append([entry(seq, IMU, 800) for seq in range(1, 51)])
+    second.append([entry(51, EVENT)])  # room is made of what is worth least: all of this boot
+    assert second.first_seq == 51
+    assert seqs(second, 2) == [51]
+    second.close()
+
+
 def test_what_the_station_has_goes_first(tmp_path):
     spool = spool_at(tmp_path, limit_bytes=1 * MB)
     spool.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
@@ -98,6 +125,31 @@ def test_what_the_station_has_goes_first(tmp_path):
     assert 1 < kept[0] <= 601
     assert spool.first_seq == kept[0]
     assert spool.rows_freed == 0  # nothing was given up that the station does not have
+    spool.close()
+
+
+def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_path):
+    first = spool_at(tmp_path, boot_ids=[1])
+    first.append([entry(seq) for seq in range(1, 101)])
+    first.close()
+    second = spool_at(tmp_path, boot_ids=[2])
+    second.append([entry(seq) for seq in range(1, 11)])
+    second.acknowledge(1, 100)
+    assert second.pending == 10
+    second.acknowledge(2, 4)
+    assert second.pending == 6
+    second.acknowledge(2, 2)  # an answer that was overtaken
+    assert second.pending == 6
+    acknowledged = {boot.boot_id: boot.acknowledged_seq for boot in second.boots()}
+    assert acknowledged == {1: 100, 2: 4}
+    second.close()
+
+
+def test_what_is_safe_outlives_a_power_cut(tmp_path):
+    """No test can cut the power; this is what SQLite asks for to promise it."""
+    spool = spool_at(tmp_path)
+    said = [spool._writer.execute(f"PRAGMA {name}").fetchone()[0] for name in PROMISING]
+    assert said == ["wal", 2]
     spool.close()
 
 
@@ -151,7 +203,33 @@ def test_a_damaged_journal_is_set_aside_not_deleted(tmp_path, spoil_at):
     spool.close()
 
 
+def test_a_journal_that_the_disk_does_not_let_be_opened_is_left_where_it_is(tmp_path, monkeypatch):
+    """It is whole, and holds what the station may not have yet."""
+    spool = spool_at(tmp_path)
+    spool.append([entry(1)])
+    spool.close()
+
+    def full(*_: object) -> int:
+        error = sqlite3.OperationalError("database or disk is full")
+        error.sqlite_errorcode = sqlite3.SQLITE_FULL
+        raise error
+
+    path = tmp_path / "journal.sqlite"
+    with monkeypatch.context() as disk:
+        disk.setattr(Spool, "_begin_boot", full)
+        with pytest.raises(StoreError, match="full"):
+            open_spool(path, itertools.count(5).__next__, 77, MB)
+    assert [one.name for one in tmp_path.iterdir() if "damaged" in one.name] == []
+    spool, aside = open_spool(path, itertools.count(5).__next__, 77, MB)
+    assert aside is None
+    assert seqs(spool, 1) == [1]
+    spool.close()
+
+
 def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StoreError, match="cannot be used"):
         spool_at(tmp_path / "file")
+    with pytest.raises(StoreError, match="cannot be used"):
+        open_spool(tmp_path / "file" / "journal.sqlite", itertools.count(5).__next__, 77, MB)
+    assert [one.name for one in tmp_path.iterdir()] == ["file"]
