@@ -1,7 +1,8 @@
 """An MCAP file in the making: chunks one after the other, and what makes the file complete.
 
 The library's writer packs every field of every message by itself, which is most of what a log
-costs; the records that come once a chunk or once a file are still the library's.
+costs, and its index of a file of many topics takes a hundred bytes of memory a topic and chunk;
+the records that come once a file are still the library's.
 """
 
 from __future__ import annotations
@@ -13,19 +14,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import ChunkIndex, DataEnd, Footer, Header, McapRecord, Statistics
+from mcap.records import DataEnd, Footer, Header, McapRecord, Statistics
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
-from shared.mcap_log.container import CHUNK, COMPRESSION, MESSAGE, MESSAGE_BYTES, RECORD
+from shared.mcap_log.container import (
+    CHUNK,
+    CHUNK_INDEX,
+    CHUNK_MARK,
+    COMPRESSION,
+    MESSAGE,
+    MESSAGE_BYTES,
+    RECORD,
+)
 from shared.mcap_log.durable_file import DurableFile
 
 PROFILE = "muster"
 _MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and when it was said
 _INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
 _SIZE = struct.Struct("<Q")
+_INDEX_OF_TOPIC = np.dtype([("topic", "<u2"), ("offset", "<u8")])
 _LEVEL = 1  # of Zstandard: packs positions as small as the usual 3, and sooner
 
 
@@ -116,7 +127,9 @@ class McapFile:
         self.schemas: dict[int, bytes] = {}  # records with opcode and length, by number
         self.topics: dict[int, bytes] = {}
         self.counts: Counter[int] = Counter()  # messages, by topic
-        self._chunks: list[ChunkIndex] = []
+        self._chunks: list[bytes] = []  # their records in the file's index
+        self._start_ns: int | None = None
+        self._end_ns = 0
         self.file.write(MCAP0_MAGIC)
         self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
 
@@ -126,28 +139,17 @@ class McapFile:
         index_begin = self.file.tell()
         self.file.write(chunk.index)
         self.counts.update(chunk.counts)
-        self._chunks.append(
-            ChunkIndex(
-                chunk_length=len(chunk.record),
-                chunk_start_offset=offset,
-                compression=COMPRESSION.decode("ascii"),
-                compressed_size=len(chunk.record) - 9 - CHUNK.size - len(COMPRESSION) - _SIZE.size,
-                message_end_time=chunk.end_ns,
-                message_index_length=len(chunk.index),
-                message_index_offsets={
-                    topic: index_begin + at for topic, at in chunk.index_offsets.items()
-                },
-                message_start_time=chunk.start_ns,
-                uncompressed_size=chunk.size,
-            )
-        )
+        self._chunks.append(_chunk_index(chunk, offset, index_begin))
+        earliest_ns = chunk.start_ns if self._start_ns is None else self._start_ns
+        self._start_ns = min(earliest_ns, chunk.start_ns)
+        self._end_ns = max(self._end_ns, chunk.end_ns)
 
     def finish(self) -> None:
         """Write what makes the file complete."""
         self.file.write(bytes_of(DataEnd(0)))
         start = self.file.tell()
         summary = b"".join((*self.schemas.values(), *self.topics.values()))
-        summary += b"".join(bytes_of(record) for record in (self._statistics(), *self._chunks))
+        summary += b"".join((bytes_of(self._statistics()), *self._chunks))
         checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
         self.file.write(summary)
         self.file.write(bytes_of(Footer(start, 0, zlib.crc32(checked))))
@@ -160,11 +162,31 @@ class McapFile:
             channel_message_counts=dict(self.counts),
             chunk_count=len(self._chunks),
             message_count=sum(self.counts.values()),
-            message_end_time=max((chunk.message_end_time for chunk in self._chunks), default=0),
-            message_start_time=min((chunk.message_start_time for chunk in self._chunks), default=0),
+            message_end_time=self._end_ns,
+            message_start_time=self._start_ns or 0,
             metadata_count=0,
             schema_count=len(self.schemas),
         )
+
+
+def _chunk_index(chunk: MadeChunk, offset: int, index_begin: int) -> bytes:
+    """With opcode and length."""
+    topics = chunk.index_offsets
+    entries = np.fromiter(topics.items(), _INDEX_OF_TOPIC, len(topics))
+    entries["offset"] += np.uint64(index_begin)
+    packed_bytes = len(chunk.record) - RECORD.size - CHUNK.size - len(COMPRESSION) - _SIZE.size
+    body = b"".join(
+        (
+            CHUNK_INDEX.pack(
+                chunk.start_ns, chunk.end_ns, offset, len(chunk.record), entries.nbytes
+            ),
+            entries.tobytes(),
+            _SIZE.pack(len(chunk.index)),
+            CHUNK_MARK,
+            struct.pack("<QQ", packed_bytes, chunk.size),
+        )
+    )
+    return RECORD.pack(Opcode.CHUNK_INDEX, len(body)) + body
 
 
 def bytes_of(record: McapRecord) -> bytes:
