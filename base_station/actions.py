@@ -171,6 +171,7 @@ class Actions:
         )
         self._positioning.start(state, unit, start)
         yield _pins_of({unit.unit_id})
+        yield TrailFilled(unit.unit_id)
 
 
 PeopleAction = (

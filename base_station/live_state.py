@@ -21,7 +21,7 @@ from base_station.sender import STALE_AFTER_S, Link, Sender
 from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
 from base_station.site.storeys import Storey
-from base_station.trail import TrailStep, extend_trail, fill_trail
+from base_station.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -162,6 +162,12 @@ class UnitState(Sender):
     def fill_plain_trail(self, fused: FusedPosition) -> None:
         if self.plain_trail is not None:
             fill_trail(self.plain_trail, fused)
+
+    def change_plain_trail(self, since_ns: int, trail: list[TrailStep]) -> None:
+        """Without any pin, the wearer was elsewhere since then."""
+        plain = self.trail if self.plain_trail is None else self.plain_trail
+        before = [step for step in plain if step.t_ns < since_ns]
+        plain[:] = [*before, *trail][-TRAIL_POINTS:]
 
     def show_solved_trail(self, trail: list[TrailStep]) -> None:
         """The past was solved with pins; what would be without is kept beside it."""

@@ -209,7 +209,7 @@ def _samples(
     incident: Incident, state: StationState, points: PathArrays, path: SmoothedPath
 ) -> list[TrackSample]:
     """With the floors that were known at the end; they may have been learnt late."""
-    floors = floors_along(state, points, path)
+    floors = floors_along(state, points, path.places_m)
     heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
     return [
         TrackSample(

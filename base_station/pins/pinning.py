@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import NO_FLOOR, PathArrays
@@ -34,6 +35,8 @@ from base_station.pins.pin import Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
 from base_station.trail import TRAIL_POINTS, TrailStep
+
+Floats = NDArray[np.float64]
 
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
 
@@ -109,7 +112,8 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
                 verdicts.setdefault(pin_id, []).append(_judged(state, verdict))
             if any(verdict.used for verdict in solution.verdicts.values()):
                 path = solution.paths[unit_id]
-                results[unit_id] = Repinned(path, trail_of(state, history.arrays(), path))
+                trail = trail_of(state, history.arrays(), path.places_m)
+                results[unit_id] = Repinned(path, trail)
     for pin_id, found in verdicts.items():
         state.pin_verdicts[pin_id] = max(found, key=lambda one: _SEVERITY[one.state])
     return results
@@ -118,28 +122,28 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
 _SEVERITY = {"used": 0, "waiting": 1, "conflict": 2}
 
 
-def trail_of(state: StationState, points: PathArrays, path: SmoothedPath) -> list[TrailStep]:
-    """A smoothed path as the consoles draw it: thinned evenly, since the incident began."""
+def trail_of(state: StationState, points: PathArrays, places_m: Floats) -> list[TrailStep]:
+    """A path (n, 3) as the consoles draw it: thinned evenly, since the incident began."""
     since_ns = state.incident.opened_ns if state.incident is not None else 0
-    rows = np.flatnonzero(path.t_ns >= since_ns)
+    rows = np.flatnonzero(points.t_ns >= since_ns)
     if len(rows) > TRAIL_POINTS:
         rows = rows[np.linspace(0, len(rows) - 1, TRAIL_POINTS).round().astype(int)]
-    floors = floors_along(state, points, path)
+    floors = floors_along(state, points, places_m)
     return [
         TrailStep(
-            int(path.t_ns[row]), float(path.north_m[row]), float(path.east_m[row]), floors[row]
+            int(points.t_ns[row]), float(places_m[row, 0]), float(places_m[row, 1]), floors[row]
         )
         for row in rows
     ]
 
 
-def floors_along(state: StationState, points: PathArrays, path: SmoothedPath) -> list[int | None]:
+def floors_along(state: StationState, points: PathArrays, places_m: Floats) -> list[int | None]:
     """By the heights that are known now and the storeys that are; without any, as they were said
     then.
     """
     floors: list[int | None] = []
-    places = np.column_stack((path.north_m, path.east_m, path.down_m)).tolist()
-    for (north_m, east_m, down_m), said in zip(places, points.floor.tolist(), strict=True):
+    said_then = points.floor.tolist()
+    for (north_m, east_m, down_m), said in zip(places_m.tolist(), said_then, strict=True):
         storeys = state.storeys_at(north_m, east_m)
         held = floors[-1] if floors else None
         known = None if said == NO_FLOOR else said

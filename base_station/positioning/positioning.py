@@ -19,6 +19,7 @@ from base_station.pins.book import drop, has_pins
 from base_station.pins.evidence import floors_said
 from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
+from base_station.positioning.begun import begin
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe
@@ -135,8 +136,7 @@ class Positioning:
         state.start_set = True
         if unit.unit_id == state.barometers.reference_id:
             state.sky = Sky()
-        self._fuser(unit).start(start)
-        _history(state, unit).begin_with(start)
+        begin(state, unit, self._fuser(unit), _history(state, unit), start)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Where its wearers were, and what was learnt of their walk."""

@@ -226,3 +226,23 @@ def test_a_pin_that_waited_for_the_path_is_told_of_as_the_path_comes() -> None:
     pins = {pin.pin_id: pin for pin in script.console.pins}
     assert [pins[one].state for one in ("good", "bad", "early")] == ["used", "conflict", "waiting"]
     assert "begins 62 s later" in pins["early"].text
+
+
+@pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
+def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None:
+    """Nobody knew which way the unit looked, nor that it began on the first floor."""
+    script = Watched()
+    walk = Walk(unit_id, turn_rad=0.7, script=script)
+    for _ in range(300):
+        walk.go(1)
+        script.tick()
+    if unit_id == A:
+        walk.pin("p", A, 295.0)
+    script.act(SetPlan(PLAN))
+    script.act(SetStart(unit_id, 0.0, 0.0, -3.2, -0.7, 0.5, 0.05))
+    assert walk.worst_m(unit_id) < 9.0, "what its heading drifted"
+    assert {step.floor for step in walk.trail(unit_id)} == {3}
+    assert off_m(script.console.trails[unit_id], script.joined().trails[unit_id]) == 0.0
+    before = walk.trail(unit_id).copy()
+    walk.go(20)
+    assert walk.trail(unit_id)[: len(before)] == before

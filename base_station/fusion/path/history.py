@@ -12,6 +12,7 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
+from base_station.fusion.path.led import Led
 from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.packed import CHUNK, Packed, Records
 from base_station.fusion.path.points import (
@@ -137,6 +138,14 @@ class PathHistory(msgspec.Struct):
     def begin_with(self, start: Start) -> None:
         """A person said where the own frame of the running boot begins."""
         self.start, self.start_ns = start, self.boot_begin_ns
+
+    def lead(self, led: Led) -> None:
+        """It was not where it was shown since a run of the unit's program began."""
+        led.points(self.points)
+        self.packed.change(
+            POINT_ROW,
+            lambda rows: self.moved.undone().of(led.rows(self.moved.of(rows, *_SHOWN)), *_SHOWN),
+        )
 
     def trim(self, before_ns: int) -> None:
         """What lies before that time is no longer wanted."""

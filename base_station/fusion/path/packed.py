@@ -62,6 +62,10 @@ class Packed(msgspec.Struct, array_like=True):
             self.chunks[two] = [_chunk(thin(rows), thinned)]
             two = self._oldest(thinned)
 
+    def change(self, row: np.dtype[np.void], change: Callable[[Records], Records]) -> None:
+        """Every row is what ``change`` makes of it."""
+        self.chunks = [_chunk(change(_rows(one, row)), one.thinned) for one in self.chunks]
+
     def cut(self, before: int, row: np.dtype[np.void]) -> None:
         """What is earlier than that time is no longer wanted."""
         kept = []

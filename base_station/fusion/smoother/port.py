@@ -81,6 +81,11 @@ class SmoothedPath:
     turn_rad: Floats  # heading of the own frame's north
     present: Present  # the last point, on the plan where its walls are heeded
 
+    @property
+    def places_m(self) -> Floats:
+        """(n, 3)"""
+        return np.column_stack((self.north_m, self.east_m, self.down_m))
+
 
 @dataclass(frozen=True)
 class Solution:
