@@ -267,7 +267,11 @@ class StationDrive:
     def _report_problems(self) -> None:
         """A part that fails, or is well again, is an event like any other."""
         self._saving.look()
-        seen = {"log": self._around.log.problem, "store": self._around.projection.problem()}
+        seen = {
+            "log": self._around.log.problem,
+            "disk": self._around.log.little_room,
+            "store": self._around.projection.problem(),
+        }
         for report in list(self._watch.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
             self._do(STATION_ID, report)

@@ -154,10 +154,15 @@ class Recorder:
         if self.lost:  # said until the station starts anew
             missing = f"the disk did not keep up: {self.lost} records are missing in the log"
             return f"{missing}; {self._writer.problem}" if self._writer.problem else missing
-        if self._disk_free_bytes < _LITTLE_FREE_BYTES:
-            free_mb = self._disk_free_bytes / 1e6
-            return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
         return ""
+
+    @property
+    def little_room(self) -> str:
+        """That the disk will soon take nothing, as a sentence for a person; empty: it will."""
+        if self._disk_free_bytes >= _LITTLE_FREE_BYTES:
+            return ""
+        free_mb = self._disk_free_bytes / 1e6
+        return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
 
     @property
     def is_behind(self) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
+_NUMBER = re.compile(r"\d+")
 _NAMED_WHEN_FAILING = ("drive", "pipeline", "bus", "checkpoint")
 log = logging.getLogger(__name__)
 
@@ -47,7 +49,7 @@ class SelfWatch:
         for part, text in now.items():
             if text:
                 self._quiet[part] = 0
-                if part not in known:
+                if part not in known or (part in seen and _said(text) != _said(known[part])):
                     yield ReportProblem(part, text)
             elif part in known:
                 self._quiet.setdefault(part, 0)
@@ -57,3 +59,8 @@ class SelfWatch:
                 del self._quiet[part]
                 if part in known:
                     yield ReportProblem(part, "")
+
+
+def _said(text: str) -> str:
+    """Whatever is counted in it: what is worse now than it was is told, and not every number."""
+    return _NUMBER.sub("", text)

@@ -44,6 +44,11 @@ class Log(Protocol):
         ...
 
     @property
+    def little_room(self) -> str:
+        """That soon no more are kept, as a sentence for a person; empty: there is room."""
+        ...
+
+    @property
     def is_behind(self) -> bool:
         """Whether records of a second ago may not be on the disk yet."""
         ...

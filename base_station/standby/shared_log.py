@@ -53,6 +53,10 @@ class SharedLog:
         return self._log.problem
 
     @property
+    def little_room(self) -> str:
+        return self._log.little_room
+
+    @property
     def is_behind(self) -> bool:
         return self._log.is_behind
 

@@ -176,3 +176,24 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
     keys = [key for _, key, _ in read_log(tmp_path / "log")]
     backfilled = keys.count(backfilled_key(unit, POSITION.suffix))
     assert keys.count(POSITION.key(unit)) + backfilled == 99
+
+
+def test_a_disk_that_was_nearly_full_before_is_told_to_be_full_in_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who was told that there is little room, and can wait with that, must hear of the rest."""
+    monkeypatch.setattr("base_station.recorder._LITTLE_FREE_BYTES", 1 << 62)
+    with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
+
+        def told(words: str) -> bool:
+            return words in "; ".join(list(station.pipeline.state.problems.values()))
+
+        until(lambda: told("MB are free for the log"))
+        with files_of_at_most(0):
+            station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
+            until(lambda: told("cannot be written"))
+            for _ in range(6):
+                station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
+            until(lambda: told("records are missing in the log"))
+        alarms = [key for key, one in station.pipeline.state.alarms.items() if one.is_open]
+        assert alarms == ["station|disk", "station|log"]

@@ -57,6 +57,20 @@ def test_what_others_reported_is_left_to_them() -> None:
     assert reports([WELL] * 20, {"rule-heat": "the rule failed"}) == []
 
 
+def test_what_is_worse_than_what_was_told_is_told_and_every_number_is_not() -> None:
+    waiting = [{"log": f"the log cannot be written, {count} records wait"} for count in range(5)]
+    missing = [{"log": f"the disk did not keep up: {count} are missing"} for count in range(5)]
+    assert reports(waiting + missing) == [waiting[0]["log"], missing[0]["log"]]
+
+
+def test_a_part_that_fails_in_ever_other_ways_is_told_once() -> None:
+    watch, known = SelfWatch(), dict[str, str]()
+    for message in ("one message", "another", "one more"):
+        watch.note("pipeline", message)
+        known |= {report.part: report.text for report in watch.check(WELL, known)}
+    assert known == {"pipeline": "one message"}
+
+
 def test_a_problem_that_a_person_dismissed_is_told_again_while_it_lasts() -> None:
     watch = SelfWatch()
     assert [r.text for r in watch.check(FULL, {})] == ["the disk is full"]

@@ -144,7 +144,7 @@ def pairing(tmp_path: Path) -> Iterator[Pairing]:
 class FullDisk:
     """A ``Log`` that takes as much as it has room for."""
 
-    problem = ""
+    problem = little_room = ""
     is_behind = False
 
     def __init__(self) -> None:
