@@ -200,16 +200,20 @@ class Positioning:
         if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
         self._fuser(unit).remember(position)
-        fused = said(state, unit, estimate, self._kind.name, None, header)
-        unit.fill_plain_trail(fused)
+        fused = plain = said(state, unit, estimate, self._kind.name, None, header)
+        opened_ns = state.incident.opened_ns if state.incident is not None else 0
+        is_drawn = plain.t_meas_ns >= opened_ns
+        if is_drawn:
+            unit.fill_plain_trail(plain)
         pinned = self._pinned.get(unit.unit_id)
         known = None if pinned is None else pinned.recall(position)
         if pinned is not None and known is not None:
             pinned.remember(position)
             fused = said(state, unit, known, self._kind.name, None, header)
-        unit.fill_trail(fused)
+        if is_drawn:
+            unit.fill_trail(fused)
         if unit.unit_id in state.paths:
-            state.paths[unit.unit_id].fill(position, fused.t_meas_ns)
+            state.paths[unit.unit_id].fill(position, plain.t_meas_ns, estimate, plain.floor)
         _note_late(state, unit)
         return fused
 

@@ -246,3 +246,32 @@ def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None
     before = walk.trail(unit_id).copy()
     walk.go(20)
     assert walk.trail(unit_id)[: len(before)] == before
+
+
+def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
+    """The unit set out where no radio reaches; the commander had said where it was then."""
+    script = Watched()
+    walk = Walk(A, script=script)
+    script.away.add(A)
+    for second in range(100):
+        walk.go(1)
+        script.tick()
+        if second == 39:
+            early = SetPin("early", A, script.t_ns, *truth(40.0), 0.5, None, None, 0.0, "")
+            script.act(early)
+    walk.start(A)
+    script.away.clear()
+    for _ in range(20):
+        walk.go(1)
+        script.tick()
+    assert walk.state("early") == "waiting"
+    assert script.console.pins[0].text.startswith("the path that is known begins 61 s later")
+    for _ in range(20):
+        walk.go(1)
+        script.backfill(10)
+        script.tick()
+    assert walk.state("early") == "used"
+    walk.pin("late", A, 20.0)
+    assert walk.state("late") == "used"
+    assert walk.worst_m(A, end_s=40.0) < 2.0
+    assert {pin.state for pin in script.console.pins} == {"used"}

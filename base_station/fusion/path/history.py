@@ -41,6 +41,8 @@ STEP_NS = 10 * NS_PER_S
 STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bends
 MOVING_M = 0.05  # between two positions: the wearer moved
 FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
+FILLED_NS = 30 * NS_PER_S  # a journal is being read: what is packed cannot be filled
+MOST_LOOSE = 32 * CHUNK
 FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
 _SHOWN = "shown_north_cm", "shown_east_cm", "shown_down_cm"
 _SEEN = "north_cm", "east_cm"
@@ -60,6 +62,8 @@ class PathHistory(msgspec.Struct):
     start_ns: int = 0  # when the own frame began that it is about
     straight: Straight = msgspec.field(default_factory=Straight)  # since the last settled point
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
+    since_ns: int = 0  # what was before is not wanted
+    filled_ns: int = 0  # where the path had come to when a position came late last
 
     @property
     def begin_ns(self) -> int | None:
@@ -108,32 +112,28 @@ class PathHistory(msgspec.Struct):
             if stepped_m > MOVING_M:
                 tip.moving_ms += (tip.t_ns - before_ns) // NS_PER_MS
 
-    def fill(self, position: Position, t_ns: int) -> None:
-        """A position that came late, where none near it is known."""
-        row = bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
-        if not 0 < row < len(self.points) or position.header.boot_id != self.boot_id:
+    def fill(self, position: Position, t_ns: int, estimate: Estimate, floor: int | None) -> None:
+        """A position that came late, and where it was without any pin; it is wanted where none near
+        it is known, in a gap or before the first one of the running boot that was heard.
+        """
+        points = self.points
+        row = bisect_left(points, t_ns, key=lambda point: point.t_ns)
+        if row == len(points) or position.header.boot_id != self.boot_id:
             return
-        before, after = self.points[row - 1], self.points[row]
-        near_ns = min(t_ns - before.t_ns, after.t_ns - t_ns)
-        if near_ns < FILL_NS or after.flags & (BREAK | RESTART):
+        near = points[max(row - 1, 0) : row + 1]
+        if min(abs(point.t_ns - t_ns) for point in near) < FILL_NS:
             return
-        moving_ms = round(after.moving_ms * (t_ns - before.t_ns) / (after.t_ns - before.t_ns))
-        after.moving_ms -= moving_ms
-        late = _shown_as(before)
-        late.t_ns, late.moving_ms = t_ns, moving_ms
-        late.flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
-        _follow(late, position)
-        self.points.insert(row, late)
-        self.straight = Straight()
+        late = _point_of(position, t_ns, 0 if position.quality is Quality.GOOD else DOUBTFUL)
+        _show(late, estimate, floor)
+        joins = self._begin_earlier if t_ns < self.boot_begin_ns else self._fill_gap
+        if joins(late, row):
+            points.insert(row, late)
+            self.straight, self.filled_ns = Straight(), points[-1].t_ns
 
     def show(self, estimate: Estimate, floor: int | None) -> None:
         """What is estimated at the newest point without any pin."""
         if self.points:
-            tip = self.points[-1]
-            tip.shown_north_m, tip.shown_east_m = estimate.north_m, estimate.east_m
-            tip.shown_std_m = max(estimate.std_north_m, estimate.std_east_m)
-            tip.shown_down_m, tip.shown_down_std_m = estimate.down_m, estimate.std_down_m
-            tip.floor = NO_FLOOR if floor is None else floor
+            _show(self.points[-1], estimate, floor)
 
     def begin_with(self, start: Start) -> None:
         """A person said where the own frame of the running boot begins."""
@@ -149,6 +149,7 @@ class PathHistory(msgspec.Struct):
 
     def trim(self, before_ns: int) -> None:
         """What lies before that time is no longer wanted."""
+        self.since_ns = before_ns
         before_ms = -(-before_ns // NS_PER_MS)
         self.packed.cut(before_ms, POINT_ROW)
         self.points = [point for point in self.points if point.t_ns >= before_ns]
@@ -195,6 +196,32 @@ class PathHistory(msgspec.Struct):
             np.concatenate((shown, rows_of(self.points))), np.concatenate((seen, self._fixes()))
         )
 
+    def _fill_gap(self, late: Point, row: int) -> bool:
+        after = self.points[row]
+        if row == 0 or after.flags & (BREAK | RESTART):
+            return False
+        before_ns = self.points[row - 1].t_ns
+        part = (late.t_ns - before_ns) / (after.t_ns - before_ns)
+        late.moving_ms = round(after.moving_ms * part)
+        after.moving_ms -= late.moving_ms
+        return True
+
+    def _begin_earlier(self, late: Point, row: int) -> bool:
+        """The running boot's own frame."""
+        first = self.points[row]
+        if row > 0 and not first.flags & RESTART:
+            return False
+        if row == 0 and (self.packed or late.t_ns < self.since_ns):
+            return False
+        late.flags |= first.flags & RESTART
+        first.flags &= ~RESTART
+        if abs(first.north_m - late.north_m) + abs(first.east_m - late.east_m) > MOVING_M:
+            first.moving_ms += (first.t_ns - late.t_ns) // NS_PER_MS
+        if self.start_ns == self.boot_begin_ns:
+            self.start_ns = late.t_ns
+        self.boot_begin_ns = late.t_ns
+        return True
+
     def _is_settled(self, tip: Point, flags: int) -> bool:
         """Whether the tip stays where it is and a new one, with these flags, begins."""
         if flags & (BREAK | RESTART) or (flags ^ tip.flags) & DOUBTFUL:
@@ -230,7 +257,8 @@ class PathHistory(msgspec.Struct):
         self.straight = Straight()
         begun = _shown_as(tip)
         self.points.append(begun)
-        if len(self.points) >= 2 * CHUNK:
+        is_filled = tip.t_ns - self.filled_ns < FILLED_NS and len(self.points) < MOST_LOOSE
+        if len(self.points) >= 2 * CHUNK and not is_filled:
             rows = rows_of(self.points[:CHUNK])
             self.packed.add(self.moved.undone().of(rows, *_SHOWN), thinned)
             del self.points[:CHUNK]
@@ -251,6 +279,13 @@ def _follow(point: Point, position: Position) -> None:
     point.north_m, point.east_m = position.north_m, position.east_m
     point.std_m = max(position.std_north_m, position.std_east_m)
     point.heading_rad = position.heading_rad
+
+
+def _show(point: Point, estimate: Estimate, floor: int | None) -> None:
+    point.shown_north_m, point.shown_east_m = estimate.north_m, estimate.east_m
+    point.shown_std_m = max(estimate.std_north_m, estimate.std_east_m)
+    point.shown_down_m, point.shown_down_std_m = estimate.down_m, estimate.std_down_m
+    point.floor = NO_FLOOR if floor is None else floor
 
 
 def _shown_as(point: Point) -> Point:
