@@ -20,6 +20,7 @@ from base_station.checkpoint import Checkpoint, read_checkpoint
 from shared.clock import NS_PER_S
 
 SUFFIX = ".checkpoint"
+_PART = "saving.part"
 KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
 KEPT_BYTES = 2_000_000_000
@@ -52,22 +53,26 @@ class Checkpoints:
         folder.mkdir(parents=True, exist_ok=True)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
-        """Raises OSError where the disk does not take it."""
+        """Raises OSError where the disk does not take it; then nothing is left of it."""
         # An hour of a hundred units is 27 MB as it is.
         packed = zstandard.ZstdCompressor(level=1).compress(pipeline)
         file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, self._program)
         content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"
-        part = path.with_suffix(".part")
-        part.write_bytes(content)
-        part.replace(path)
+        part = self._folder / _PART  # a kill leaves one at most
+        try:
+            part.write_bytes(content)
+            part.replace(path)
+        except OSError:
+            part.unlink(missing_ok=True)
+            raise
         self._useless.discard(path)
         self._thin_out()
 
     def clear(self) -> None:
         """Remove all of them: a restart steps the whole log."""
         for path in self._folder.iterdir():
-            if path.suffix in {SUFFIX, ".part"}:
+            if path.suffix == SUFFIX or path.name == _PART:
                 path.unlink(missing_ok=True)
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import fcntl
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from shared.errors import ConfigError
@@ -28,22 +28,39 @@ def write_atomically(path: Path, content: bytes) -> None:
 
     Raises ConfigError where it cannot.
     """
-    partial = path.with_name(path.name + ".partial")
+    write_together({path: content})
+
+
+def write_together(contents: Mapping[Path, bytes]) -> None:
+    """Replace files of one folder that belong together, as ``write_atomically``: where the disk
+    does not take all of them, all stay as they were.
+    """
+    partials = {path: path.with_name(path.name + ".partial") for path in contents}
+    path = next(iter(contents))
     try:
-        partial.unlink(missing_ok=True)
-        descriptor = _open_own(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
+        for path, content in contents.items():
+            _write_new(partials[path], content)
+        for path, partial in partials.items():
+            partial.replace(path)
         folder = os.open(path.parent, os.O_RDONLY)
         try:
             os.fsync(folder)
         finally:
             os.close(folder)
     except OSError as error:
+        with suppress(OSError):
+            for partial in partials.values():
+                partial.unlink(missing_ok=True)
         raise ConfigError(f"{path} cannot be written: {error.strerror or error}") from error
+
+
+def _write_new(path: Path, content: bytes) -> None:
+    path.unlink(missing_ok=True)
+    descriptor = _open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 
 from base_station.pki.certificates import Issued, issue, make_authority, read_issued
-from base_station.pki.files import locked, make_folder, write_atomically
+from base_station.pki.files import locked, make_folder, write_atomically, write_together
 from base_station.pki.registry import Entry, Registry, load_registry, save_registry
 from base_station.pki.station_enrolment import StationEnrolment
 from shared.channels import validate_unit_id
@@ -189,9 +189,13 @@ class PkiFolder:
         else:
             registry = self.registry().merged(enrolment.registry)
         with locked(self._folder):
-            write_atomically(self._folder / "authority.pem", identity.authority)
-            write_atomically(self._folder / "station.key", identity.private_key)
-            write_atomically(self._folder / "station.pem", identity.certificate)
+            write_together(
+                {
+                    self._folder / "authority.pem": identity.authority,
+                    self._folder / "station.key": identity.private_key,
+                    self._folder / "station.pem": identity.certificate,
+                }
+            )
             save_registry(self.registry_path, registry)
 
     def take_registry(self, other: Registry) -> None:
@@ -274,8 +278,12 @@ class PkiFolder:
         issued = issue(
             authority, STATION_NAME, Holder.STATION, self._now(), valid, hosts=registry.hosts
         )
-        write_atomically(self._folder / "station.key", issued.key_pem())
-        write_atomically(self._folder / "station.pem", issued.certificate_pem())
+        write_together(
+            {
+                self._folder / "station.key": issued.key_pem(),
+                self._folder / "station.pem": issued.certificate_pem(),
+            }
+        )
         entry = Entry.of(Holder.STATION, STATION_NAME, STATION_NAME, issued.certificate)
         save_registry(self.registry_path, registry.with_entry(entry))
 

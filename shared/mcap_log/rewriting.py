@@ -34,7 +34,10 @@ def rewrite_segment(
         else:
             making.unlink(missing_ok=True)
     except OSError as error:
-        raise LogError(f"{path} cannot be written ({error.strerror}): mend the disk") from error
+        making.unlink(missing_ok=True)  # the room is for what is being recorded
+        raise LogError(
+            f"{path} cannot be written ({error.strerror}): free or mend the disk"
+        ) from error
     return changed
 
 

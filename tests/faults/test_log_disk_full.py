@@ -12,15 +12,24 @@ from pathlib import Path
 
 import pytest
 
+from base_station.past.checkpoints import Checkpoints
 from base_station.recorder import Recorder
 from shared.channels import POSITION, Qos, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode
-from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentWriter, read_log, segment_paths
+from shared.errors import LogError
+from shared.mcap_log import (
+    SegmentInfo,
+    SegmentPolicy,
+    SegmentWriter,
+    read_log,
+    rewrite_segment,
+    segment_paths,
+)
 from shared.messages import Header, Position
 from shared.messages.station import RegisterUnit
 from shared.sequence_set import Run
-from tests.live_station import LiveStation
+from tests.live_station import LiveStation, make_pipeline
 from tests.waiting import until
 
 KEY = POSITION.key("anna")
@@ -176,6 +185,30 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
     keys = [key for _, key, _ in read_log(tmp_path / "log")]
     backfilled = keys.count(backfilled_key(unit, POSITION.suffix))
     assert keys.count(POSITION.key(unit)) + backfilled == 99
+
+
+def test_a_segment_that_cannot_be_written_anew_leaves_the_room_to_the_log(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    write_seconds(writer, range(20))
+    writer.close()
+    (path,) = segment_paths(tmp_path)
+    before = path.read_bytes()
+    with files_of_at_most(2000), pytest.raises(LogError, match="free or mend the disk"):
+        rewrite_segment(path, lambda record: [(record[0], record[1], os.urandom(300))])
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == before
+
+
+def test_a_state_that_cannot_be_saved_leaves_the_room_to_the_log(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    checkpoints.save(100, 1, make_pipeline().checkpoint())
+    (saved,) = tmp_path.iterdir()
+    with files_of_at_most(1000), pytest.raises(OSError, match="too large"):
+        checkpoints.save(200, 1, os.urandom(10_000))
+    assert list(tmp_path.iterdir()) == [saved]
+    latest = checkpoints.latest()
+    assert latest is not None
+    assert latest.t_ns == 100
 
 
 def test_a_disk_that_was_nearly_full_before_is_told_to_be_full_in_the_end(

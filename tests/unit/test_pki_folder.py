@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import itertools
 import os
 import stat
 from datetime import UTC, datetime, timedelta
@@ -47,6 +49,27 @@ def certificate(enrolment: Enrolment) -> x509.Certificate:
 
 def common_name(of: x509.Certificate) -> str:
     return str(of.subject.get_attributes_for_oid(NameOID.COMMON_NAME)[0].value)
+
+
+@pytest.mark.parametrize("refused", [1, 2, 3])
+def test_a_disk_that_is_full_leaves_a_certificate_and_its_key_together(
+    pki: PkiFolder, monkeypatch: pytest.MonkeyPatch, refused: int
+) -> None:
+    """A station that is renewed then must start the next time, too."""
+    before = pki.station_identity()
+    calls = itertools.count(1)
+
+    def full(descriptor: int) -> None:
+        if next(calls) >= refused:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr("base_station.pki.files.os.fsync", full)
+        with pytest.raises(ConfigError, match="No space left"):
+            pki.renew_station()
+    after = pki.station_identity()  # which says where the two do not belong together
+    assert refused == 3 or after == before
+    assert not list(pki.path.glob("*.partial"))
 
 
 def test_nobody_else_can_read_what_it_keeps(pki: PkiFolder) -> None:
