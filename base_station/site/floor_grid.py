@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 
-from base_station.site.crossing import cross_moved
+from base_station.site.crossing import BESIDE, FREE, WALL, Ground, meet_moved
 from base_station.site.plan import Plan, Ring
 from base_station.site.way_out import WayOut
 
@@ -35,6 +36,7 @@ class FloorGrid:
         )
         floors = {wall.floor for wall in plan.walls}
         self._walls = {floor: self._walls_of(plan, floor) for floor in sorted(floors)}
+        self._ground = {floor: _ground(walls) for floor, walls in self._walls.items()}
         on_stairs = {stairs.floor for stairs in plan.stairs}
         self._stairs = {floor: self._stairs_of(plan, floor) for floor in sorted(on_stairs)}
 
@@ -51,23 +53,25 @@ class FloorGrid:
     def knows(self, floor: int) -> bool:
         return floor in self._walls
 
-    def crossed(self, floor: int, from_m: Floats, to_m: Floats) -> Flags:
-        """Which straight ways (n, 2) -> (n, 2), north and east, a wall of the floor cuts."""
-        walls = self._walls[floor]
+    def met(self, floor: int, from_m: Floats, to_m: Floats) -> Ground:
+        """The worst that straight ways (n, 2) -> (n, 2), north and east, meet on the floor (n,):
+        ``FREE``, ``BESIDE`` a wall, or a ``WALL``.
+        """
+        ground = self._ground[floor]
         way_m = to_m - from_m
         looks = max(1, math.ceil(float(np.abs(way_m).max(initial=0.0)) / LOOK_M))
         parts = np.arange(1, looks + 1)[:, None] / looks
         north = self._rows(from_m[:, 0] + parts * way_m[:, 0])
         east = self._columns(from_m[:, 1] + parts * way_m[:, 1])
-        return np.asarray(walls[north, east].any(axis=0))
+        return np.asarray(ground[north, east].max(axis=0))
 
-    def crossed_moved(self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats) -> Flags:
+    def met_moved(self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats) -> Ground:
         """The same of each way moved by each of its moves (n, g, 2): (n, g)."""
         corner = np.array([self._north_m, self._east_m])
-        cut = np.empty(moves_m.shape[:2], dtype=np.uint8)
+        worst = np.empty(moves_m.shape[:2], dtype=np.uint8)
         begins, ways = (from_m - corner) / CELL_M, (to_m - from_m) / CELL_M
-        cross_moved(self._walls[floor], begins, ways, moves_m / CELL_M, LOOK_M / CELL_M, cut)
-        return cut.astype(np.bool_)
+        meet_moved(self._ground[floor], begins, ways, moves_m / CELL_M, LOOK_M / CELL_M, worst)
+        return worst
 
     def has_stairs(self, floor: int) -> bool:
         return floor in self._stairs
@@ -119,6 +123,11 @@ class FloorGrid:
             if one.floor == floor:
                 stairs |= _within(one.ring, north_m, east_m)
         return stairs
+
+
+def _ground(walls: Flags) -> Ground:
+    beside = binary_dilation(walls, np.ones((3, 3), dtype=np.bool_))
+    return np.where(walls, WALL, np.where(beside, BESIDE, FREE)).astype(np.uint8)
 
 
 def _within(ring: Ring, north_m: Floats, east_m: Floats) -> Flags:

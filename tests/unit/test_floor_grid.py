@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from base_station.site.crossing import BESIDE, FREE, WALL
 from base_station.site.floor_grid import CELL_M, FloorGrid
 from base_station.site.plan import Ring, read_plan
 from base_station.site.way_out import MOST_SQUARES, ring_about
@@ -59,9 +60,9 @@ def reach(grid: FloorGrid, floor: int, north_m: float, east_m: float, way_m: flo
 
 
 def test_a_step_through_a_wall_is_seen_and_one_through_the_door_is_not(grid: FloorGrid) -> None:
-    from_m = np.array([[5.0, 9.5], [9.0, 9.5], [5.0, 5.0]])
-    to_m = np.array([[5.0, 10.5], [9.0, 10.5], [6.0, 5.0]])
-    assert grid.crossed(0, from_m, to_m).tolist() == [True, False, False]
+    from_m = np.array([[5.0, 9.5], [9.0, 9.5], [5.0, 5.0], [5.0, 9.0]])
+    to_m = np.array([[5.0, 10.5], [9.0, 10.5], [6.0, 5.0], [6.0, 9.8]])
+    assert grid.met(0, from_m, to_m).tolist() == [WALL, FREE, FREE, BESIDE]
 
 
 def test_the_way_leads_through_the_door(grid: FloorGrid) -> None:

@@ -16,6 +16,7 @@ from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
 from base_station.fusion.smoother.shared import START_PART
+from base_station.site.crossing import BESIDE, FREE, WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
 from shared.clock import NS_PER_S
@@ -140,12 +141,14 @@ def test_those_who_begin_at_one_engine_err_together(smoother: Smoother) -> None:
     assert 0.95 * math.sqrt(START_PART) * START.std_m < surest_m < 1.1 * START.std_m
 
 
-def test_moved_ways_are_cut_where_ways_are() -> None:
+def test_moved_ways_meet_what_ways_meet() -> None:
     rng, grid = np.random.default_rng(3), corridor()
     from_m = rng.uniform(-12.0, 12.0, (60, 2))
     to_m, moves_m = from_m + rng.normal(size=(60, 2)), rng.normal(size=(60, 7, 2))
-    cut = grid.crossed_moved(0, from_m, to_m, moves_m)
-    assert 0.0 < cut.mean() < 1.0
+    met = grid.met_moved(0, from_m, to_m, moves_m)
+    assert set(np.unique(met).tolist()) == {FREE, BESIDE, WALL}
     for move in range(7):
-        moved = grid.crossed(0, from_m + moves_m[:, move], to_m + moves_m[:, move])
-        assert np.mean(cut[:, move] == moved) > 0.95  # a longest way is looked at more often
+        moved = grid.met(0, from_m + moves_m[:, move], to_m + moves_m[:, move])
+        # a longest way is looked at more often
+        assert np.mean((met[:, move] == WALL) == (moved == WALL)) > 0.95
+        assert np.mean(met[:, move] == moved) > 0.9

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
 from base_station.fusion.plane.state import DRIFT, PATH, SLOW, STATES
+from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -25,6 +26,7 @@ GUESSES = 400
 MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
 UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
 THROUGH_WALL = 0.02  # what is left of a guess's weight
+BESIDE_WALL = 0.2  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
@@ -137,10 +139,11 @@ class WallCloud:
 
     def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> None:
         before = _normal(self._log_weights)
-        lost = math.log(THROUGH_WALL) * grid.crossed(floor, from_m, self._guesses[:, :2])
+        met = grid.met(floor, from_m, self._guesses[:, :2])
+        lost = math.log(THROUGH_WALL) * (met == WALL)
         if climbs and grid.has_stairs(floor):
             lost = lost + math.log(OFF_STAIRS) * ~grid.on_stairs(floor, self._guesses[:, :2])
-        self._log_weights = self._log_weights + lost
+        self._log_weights = self._log_weights + lost + math.log(BESIDE_WALL) * (met == BESIDE)
         passed = float(before @ np.exp(lost))
         self._contradiction += MEMORY * (-math.log(passed) - self._contradiction)
         self._draw_anew()

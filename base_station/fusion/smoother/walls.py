@@ -21,12 +21,14 @@ from numpy.typing import NDArray
 from base_station.fusion.path.points import BREAK, RESTART
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
 from base_station.fusion.smoother.equations import Equations
+from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 THROUGH_WALL = 0.02  # what is left of a place's weight: plans lack doors
+BESIDE_WALL = 0.2  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
 UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
@@ -88,22 +90,25 @@ class Pieces:
     def __len__(self) -> int:
         return len(self.knot)
 
-    def logs_at(self, belief: Belief, place_m: Floats) -> Floats:
-        """How likely each piece is at each of some places of its middle (p, g, 2): logarithms."""
+    def logs_at(self, belief: Belief, place_m: Floats) -> tuple[Floats, Floats]:
+        """How likely each piece is at each of some places of its middle (p, g, 2), logarithms: by
+        walls and stairs, and by the room that is left beside walls.
+        """
         turn = belief.x[self.knot, 2:4][self.piece]
         from_m, to_m = _turned(turn, self.from_m), _turned(turn, self.to_m)
-        logs = np.zeros(place_m.shape[:2])
+        logs, room = np.zeros((2, *place_m.shape[:2]))
         for floor in np.unique(self.floor).tolist():
             on = np.flatnonzero(self.floor == floor)
             middles = place_m[self.piece[on]]
-            cut = self.grid.crossed_moved(floor, from_m[on], to_m[on], middles)
-            np.add.at(logs, self.piece[on], math.log(THROUGH_WALL) * cut)
+            met = self.grid.met_moved(floor, from_m[on], to_m[on], middles)
+            np.add.at(logs, self.piece[on], math.log(THROUGH_WALL) * (met == WALL))
+            np.add.at(room, self.piece[on], math.log(BESIDE_WALL) * (met == BESIDE))
             up = on[self.climbs[on]]
             if len(up) and self.grid.has_stairs(floor):
                 ends = (place_m[self.piece[up]] + to_m[up][:, None]).reshape(-1, 2)
                 off = ~self.grid.on_stairs(floor, ends).reshape(len(up), -1)
                 np.add.at(logs, self.piece[up], math.log(OFF_STAIRS) * off)
-        return logs
+        return logs, room
 
 
 class Words:
@@ -124,9 +129,11 @@ class Words:
         place = _times(spread, told)
         looks, weights = _looks()
         apart = np.einsum("pij,gj->pgi", np.linalg.cholesky(spread), looks)
-        likely = weights * np.exp(self.pieces.logs_at(belief, place[:, None] + apart))
+        logs, room = self.pieces.logs_at(belief, place[:, None] + apart)
+        likely = weights * np.exp(logs)
         passed = likely.sum(axis=1)
-        likely /= passed[:, None]
+        likely *= np.exp(room)
+        likely /= likely.sum(axis=1)[:, None]
         shift = np.einsum("pg,pgi->pi", likely, apart)
         off = apart - shift[:, None]
         left = np.einsum("pg,pgi,pgj->pij", likely, off, off) + SHARPEST_M**2 * np.eye(2)

@@ -1,0 +1,59 @@
+"""Beside a wall there is no room for half a body."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+
+from base_station.fusion.plane.state import STATES
+from base_station.fusion.plane.wall_cloud import WallCloud
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import read_plan
+
+CORRIDOR_M, LONG_M = 2.0, 30.0
+NOISE = 0.03**2, 0.004**2
+
+
+def corridor() -> FloorGrid:
+    """From south to north; its west wall lies on east 0."""
+    lines = [[[0.0, 0.0], [0.0, LONG_M]], [[CORRIDOR_M, 0.0], [CORRIDOR_M, LONG_M]]]
+    ring = [[0.0, 0.0], [CORRIDOR_M, 0.0], [CORRIDOR_M, LONG_M], [0.0, LONG_M], [0.0, 0.0]]
+    shapes = [("outline", "Polygon", [ring]), *(("wall", "LineString", line) for line in lines)]
+    features = [
+        {
+            "type": "Feature",
+            "properties": {"kind": kind, "floor": 0},
+            "geometry": {"type": shape, "coordinates": coordinates},
+        }
+        for kind, shape, coordinates in shapes
+    ]
+    site = {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0}]}
+    plan = {"type": "FeatureCollection", "muster": site, "features": features}
+    grid = FloorGrid.of(read_plan(msgspec.json.encode(plan)))
+    assert grid is not None
+    return grid
+
+
+def walked_north(east_m: float, std_m: float) -> WallCloud:
+    """Fifteen metres along the corridor, from where somebody is taken to be."""
+    mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
+    mean[[0, 1, 2]] = 5.0, east_m, 1.0
+    covariance[[0, 1], [0, 1]] = std_m**2
+    covariance[[3, 4, 5, 6, 7], [3, 4, 5, 6, 7]] = 0.01**2, 1.0, 1.0, 1.0, 1.0
+    cloud, grid = WallCloud(mean, covariance, 1), corridor()
+    for _ in range(30):
+        cloud.walk((0.5, 0.0, 0.5, 0.0), NOISE, grid, 0)
+    return cloud
+
+
+def test_nobody_walks_with_a_shoulder_in_the_wall() -> None:
+    cloud = walked_north(0.4, 0.25)
+    mean, covariance = cloud.moments()
+    assert 0.58 < mean[1] < 0.8
+    assert math.sqrt(covariance[1, 1]) < 0.32
+
+
+def test_to_be_close_to_a_wall_does_not_speak_against_the_plan() -> None:
+    assert not walked_north(0.1, 0.05).is_contradicted
