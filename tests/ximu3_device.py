@@ -115,6 +115,8 @@ class PtyDevice:
             if self._closed.wait(0.01):
                 return
         for part in self._said:
+            if self._closed.is_set():
+                return
             os.write(self._ours, part)
 
 

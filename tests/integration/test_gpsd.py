@@ -1,0 +1,97 @@
+"""The daemon itself, where it is installed, with a pretended receiver on a serial port."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import replace
+
+import pytest
+
+from base_station.bench.rig.station import free_port
+from edge.receivers import open_receiver
+from edge.receivers.gps_reader import GpsReader
+from edge.samples import GpsSample
+from shared.clock import NS_PER_S, SystemClock
+from shared.messages import FixType
+from tests.gps_receiver import Told, burst
+from tests.waiting import until
+from tests.ximu3_device import PtyDevice, paced
+
+LONG_S = 120  # longer than any of this takes
+STD_M = 2.0
+HERE = Told(std_m=STD_M, vertical_std_m=3.0)
+
+
+class Gpsd:
+    """May be ended and begun again, as its users do."""
+
+    def __init__(self, program: str, device: str) -> None:
+        self.port = free_port()
+        self._command = [program, "-N", "-n", "-S", str(self.port), device]
+        self.begin()
+
+    def begin(self) -> None:
+        self._process = subprocess.Popen(self._command)
+
+    def end(self) -> None:
+        self._process.terminate()
+        self._process.wait(10.0)
+
+
+def each_second() -> Iterator[tuple[float, bytes]]:
+    now_s = time.time() % 86_400
+    for second in range(LONG_S):
+        yield float(second), burst(replace(HERE, of_day_s=now_s + second))
+
+
+@pytest.fixture(scope="module")
+def gpsd() -> Iterator[Gpsd]:
+    program = shutil.which("gpsd", path=f"{os.environ['PATH']}:/usr/sbin")
+    if program is None:
+        pytest.skip("no gpsd on this machine: install the package gpsd")
+    with closing(PtyDevice(paced(each_second()))) as receiver:
+        gpsd = Gpsd(program, receiver.source)
+        yield gpsd
+        gpsd.end()
+
+
+@pytest.fixture(scope="module")
+def reader(gpsd: Gpsd) -> Iterator[GpsReader]:
+    with closing(open_receiver(f"gpsd://127.0.0.1:{gpsd.port}", SystemClock())) as reader:
+        reader.start()
+        yield reader
+
+
+def sure_fix(reader: GpsReader) -> GpsSample:
+    """The first of which gpsd has heard the receiver's own accuracy."""
+    found: list[GpsSample] = []
+
+    def heard() -> bool:
+        found.extend(fix for fix in reader.take() if fix.horizontal_std_m == STD_M)
+        return bool(found)
+
+    until(heard, "a fix with the receiver's own accuracy")
+    return found[0]
+
+
+def test_a_fix_is_what_the_receiver_said(reader: GpsReader) -> None:
+    fix = sure_fix(reader)
+    assert (fix.lat_deg, fix.lon_deg) == pytest.approx((HERE.lat_deg, HERE.lon_deg), abs=1e-6)
+    assert fix.height_m == pytest.approx(HERE.height_m, abs=0.1)  # above the ellipsoid
+    assert fix.vertical_std_m == HERE.vertical_std_m
+    assert fix.fix_type == FixType.THREE_D
+    assert abs(fix.t_ns - SystemClock().monotonic_ns()) < 5 * NS_PER_S
+
+
+def test_one_that_is_begun_again_is_heard_again(gpsd: Gpsd, reader: GpsReader) -> None:
+    sure_fix(reader)
+    gpsd.end()
+    until(reader.take_faults, "word of its end")
+    reader.take()
+    gpsd.begin()
+    sure_fix(reader)
