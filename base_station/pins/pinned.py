@@ -39,6 +39,10 @@ class PinnedUnits:
     def all(self) -> Iterable[Fuser]:
         return self._fusers.values()
 
+    def past(self) -> Past:
+        """What solves it, as long as nothing more comes to be known."""
+        return Past(self._smoother, self.grid)
+
     def solve(
         self, state: StationState, unit_ids: Iterable[str], plain: Callable[[str], Fuser]
     ) -> dict[str, bool]:
@@ -46,7 +50,7 @@ class PinnedUnits:
         is another now.  ``plain`` gives the fuser that knows of no pin.
         """
         known = [one for one in with_partners(state, unit_ids) if one in state.units]
-        solved = solve_pins(state, Past(self._smoother, self.grid), known)
+        solved = solve_pins(state, self.past(), known)
         return {
             unit_id: self._take(state.units[unit_id], result, plain)
             for unit_id, result in solved.items()

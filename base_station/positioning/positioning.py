@@ -24,6 +24,7 @@ from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe
 from base_station.positioning.inside import is_outside, note_inside
+from base_station.positioning.refixed import move_fixes, place_again
 from base_station.positioning.said import said
 from base_station.positioning.silent import Silent
 from base_station.site.floor_grid import FloorGrid
@@ -103,7 +104,11 @@ class Positioning:
         is another now.  A floor that is said numbers the storeys of everybody in that building.
         """
         renumbered = state.learnt_floors.say(floors_said(state))
+        past = self._pinned.past()
+        units = [state.units[one] for one in unit_ids if one in state.units]
+        again = [one for one in units if place_again(state, one, self._fuser(one), past)]
         solved = self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+        solved |= {unit.unit_id: True for unit in again}
         if renumbered:
             shown = [one for one, unit in state.units.items() if unit.fused is not None]
             for unit_id in shown:
@@ -154,12 +159,15 @@ class Positioning:
         plan; what the first satellite fix had placed moves with the new anchor.
         """
         old = state.anchor
-        if old is not None and state.anchor_by_gps:
+        if old is not None and old != anchor:
             shift = anchor.to_incident_m(old.lat_deg, old.lon_deg, old.height_m)
             turn_rad = old.rotation_rad - anchor.rotation_rad
-            for fuser in (*self._fusers.values(), *self._pinned.all()):
-                fuser.reframe(turn_rad, *shift)
-            reframe(state, turn_rad, shift)
+            if state.anchor_by_gps:
+                for fuser in (*self._fusers.values(), *self._pinned.all()):
+                    fuser.reframe(turn_rad, *shift)
+                reframe(state, turn_rad, shift)
+            else:
+                move_fixes(state, turn_rad, *shift[:2])
         state.anchor, state.anchor_by_gps, state.sky = anchor, False, Sky()
 
     def fused(self, state: StationState, unit: UnitState, header: Header) -> FusedPosition | None:

@@ -13,6 +13,7 @@ import pytest
 
 from base_station.api.wire import TrailPoint
 from base_station.events import Refused
+from shared.geo import Anchor
 from shared.messages import Sighting, SightingKind
 from shared.messages.pins import PlaceBeacon, RemoveBeacon, RemovePin, SetMeeting, SetPin
 from shared.messages.station import (
@@ -275,3 +276,37 @@ def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
     assert walk.state("late") == "used"
     assert walk.worst_m(A, end_s=40.0) < 2.0
     assert {pin.state for pin in script.console.pins} == {"used"}
+
+
+def test_an_anchor_that_is_put_right_moves_whom_satellites_had_placed() -> None:
+    """Who has gone inside and is silent since, too; whom a person placed on the plan stays."""
+    true, wrong = Anchor(52.0, 4.0, 0.0, 0.0), Anchor(52.001, 4.0005, 0.0, 0.3)
+    script = Watched()
+    script.register(A, B)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(SetStart(B, 0.0, 5.0, 0.0, 0.0, 0.5, 0.05))
+    script.act(SetAnchor(wrong.lat_deg, wrong.lon_deg, 0.0, wrong.rotation_rad))
+    for second in range(400):
+        script.now_s += 1.0
+        for unit_id in (A, B):
+            script.position(unit_id, float(second), 0.0, distance_m=float(second))
+        lat_deg, lon_deg, _ = true.to_geodetic(float(second), 0.0, 0.0)
+        if second < 390:
+            script.gps(A, lat_deg, lon_deg, horizontal_std_m=2.0)
+        script.tick()
+    script.wait(20)
+    assert distance_m(script, A, (399.0, 0.0)) > 100.0
+    script.act(SetAnchor(true.lat_deg, true.lon_deg, 0.0, 0.0))
+    script.wait(5)
+    assert distance_m(script, A, (399.0, 0.0)) < 4.0
+    assert distance_m(script, B, (399.0, 5.0)) < 0.1
+    for unit_id, east_m in ((A, 0.0), (B, 5.0)):
+        trail = script.console.trails[unit_id]
+        assert max(abs(point.east_m - east_m) for point in trail) < 4.0
+        assert (trail[0].north_m, trail[-1].north_m) == pytest.approx((0.0, 399.0), abs=5.0)
+
+
+def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> float:
+    position = script.console.units[unit_id].position
+    assert position is not None
+    return math.dist((position.north_m, position.east_m), place_m)

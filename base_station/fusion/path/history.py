@@ -12,20 +12,19 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
+from base_station.fusion.path.fixes import PathFixes
 from base_station.fusion.path.led import Led
 from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.packed import CHUNK, Packed, Records
 from base_station.fusion.path.points import (
     BREAK,
     DOUBTFUL,
-    FIX_ROW,
     NO_FLOOR,
     POINT_ROW,
     RESTART,
     PathArrays,
     Point,
     arrays_of,
-    fix_row,
     rows_of,
     thinned,
 )
@@ -43,9 +42,7 @@ MOVING_M = 0.05  # between two positions: the wearer moved
 FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
 FILLED_NS = 30 * NS_PER_S  # a journal is being read: what is packed cannot be filled
 MOST_LOOSE = 32 * CHUNK
-FIX_NS = 2 * NS_PER_S  # fixes are taken this far apart: their errors are much the same
 _SHOWN = "shown_north_cm", "shown_east_cm", "shown_down_cm"
-_SEEN = "north_cm", "east_cm"
 
 
 class PathHistory(msgspec.Struct):
@@ -55,14 +52,14 @@ class PathHistory(msgspec.Struct):
     boot_begin_ns: int = 0
     packed: Packed = msgspec.field(default_factory=Packed)
     points: list[Point] = msgspec.field(default_factory=list)  # behind the packed ones
-    packed_fixes: Packed = msgspec.field(default_factory=Packed)
-    fixes: bytes = b""  # rows, behind the packed ones
+    fixes: PathFixes = msgspec.field(default_factory=PathFixes)
     moved: Moved = Moved()  # the frame, since anything was packed
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
     straight: Straight = msgspec.field(default_factory=Straight)  # since the last settled point
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
     since_ns: int = 0  # what was before is not wanted
+    is_refixed: bool = False  # fixes were moved: the unit is to be placed again
     filled_ns: int = 0  # where the path had come to when a position came late last
 
     @property
@@ -153,26 +150,17 @@ class PathHistory(msgspec.Struct):
         before_ms = -(-before_ns // NS_PER_MS)
         self.packed.cut(before_ms, POINT_ROW)
         self.points = [point for point in self.points if point.t_ns >= before_ns]
-        self.packed_fixes.cut(before_ms, FIX_ROW)
-        fixes = self._fixes()
-        self.fixes = fixes[fixes["t_ms"] >= before_ms].tobytes()
+        self.fixes.trim(before_ms)
 
     def fix(self, fix: PlaceFix, t_ns: int) -> None:
         """A fix that was taken; others close by tell the same."""
-        fixes = self._fixes()
-        if len(fixes) and abs(t_ns - int(fixes["t_ms"][-1]) * NS_PER_MS) < FIX_NS:
-            return
-        if len(fixes) > CHUNK:
-            seen = self.moved.undone().of(fixes[:CHUNK], *_SEEN)
-            self.packed_fixes.add(seen, lambda rows: rows[::2])
-            self.fixes = fixes[CHUNK:].tobytes()
-        self.fixes += fix_row(fix, t_ns).tobytes()
+        self.fixes.note(fix, t_ns, self.moved)
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         """The incident frame was moved: turned clockwise, then shifted."""
         move = Moved(turn_rad, north_m, east_m, down_m)
         self.moved = self.moved.and_then(move)
-        self.fixes = move.of(self._fixes(), *_SEEN).tobytes()
+        self.fixes.reframe(move)
         for point in self.points:
             point.shown_north_m, point.shown_east_m = move.place(
                 point.shown_north_m, point.shown_east_m
@@ -188,13 +176,24 @@ class PathHistory(msgspec.Struct):
                 heading_rad=self.start.heading_rad + turn_rad,
             )
 
+    def move_fixes(self, turn_rad: float, north_m: float, east_m: float) -> bool:
+        """They lie elsewhere in the incident frame, and nothing is known by what was estimated with
+        them; False where there are none.
+        """
+        if not self.fixes:
+            return False
+        self.fixes.move(Moved(turn_rad, north_m, east_m), self.moved)
+        for point in self.points:
+            point.shown_std_m = 0.0
+        self.packed.change(POINT_ROW, _unsaid)
+        self.is_refixed = True
+        return True
+
     def arrays(self) -> PathArrays:
         """Those of packed points are to a centimetre and a millisecond."""
         shown = self.moved.of(self.packed.rows(POINT_ROW), *_SHOWN)
-        seen = self.moved.of(self.packed_fixes.rows(FIX_ROW), *_SEEN)
-        return arrays_of(
-            np.concatenate((shown, rows_of(self.points))), np.concatenate((seen, self._fixes()))
-        )
+        rows = np.concatenate((shown, rows_of(self.points)))
+        return arrays_of(rows, self.fixes.rows(self.moved))
 
     def _fill_gap(self, late: Point, row: int) -> bool:
         after = self.points[row]
@@ -264,8 +263,11 @@ class PathHistory(msgspec.Struct):
             del self.points[:CHUNK]
         return begun
 
-    def _fixes(self) -> Records:
-        return np.frombuffer(self.fixes, FIX_ROW)
+
+def _unsaid(rows: Records) -> Records:
+    unsaid = rows.copy()
+    unsaid["shown_std_cm"] = 0
+    return unsaid
 
 
 def _point_of(position: Position, t_ns: int, flags: int) -> Point:
