@@ -66,23 +66,25 @@ function PersonRow({ person, done }: RowProps) {
           }}
         />
       </td>
-      <td class="row-actions">
-        <button
-          type="button"
-          aria-label={`Change ${person.name}`}
-          onClick={() => (changing.value = true)}
-        >
-          Change
-        </button>
-        {user.value?.role === "administrator" && (
-          <Forget
-            name={person.name}
-            warning="Name, photo and everywhere this person was are deleted."
-            subjectId={person.person_id}
-            forget={(name) => api.forgetPerson(person.person_id, name)}
-            done={done}
-          />
-        )}
+      <td>
+        <div class="row-actions">
+          <button
+            type="button"
+            aria-label={`Change ${person.name}`}
+            onClick={() => (changing.value = true)}
+          >
+            Change
+          </button>
+          {user.value?.role === "administrator" && (
+            <Forget
+              name={person.name}
+              warning="Name, photo and everywhere this person was are deleted."
+              subjectId={person.person_id}
+              forget={(name) => api.forgetPerson(person.person_id, name)}
+              done={done}
+            />
+          )}
+        </div>
       </td>
     </tr>
   );
