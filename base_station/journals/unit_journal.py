@@ -114,9 +114,10 @@ class _Boot:
 
     def may_have_alerts(self) -> Run | None:
         """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
-        is missing before any number that came is lost.
+        is missing before any number that came is lost; and so is what has long been said, as the
+        last words of a run that ended out of reach.
         """
-        last = self.held.lasts[-1] if self.held.lasts else self.newest
+        last = max(self.held.lasts[-1], self._settled_to) if self.held.lasts else self.newest
         newest = self._known.newest_missing(self.first, last)
         if newest is None:
             return None

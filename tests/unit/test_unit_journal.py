@@ -6,6 +6,7 @@ import pytest
 
 from base_station.journals.unit_journal import Held, Question, UnitJournal
 from base_station.sender import BOOTS
+from shared.clock import NS_PER_S
 from shared.errors import WireError
 from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run, SequenceSet
@@ -61,8 +62,82 @@ def test_an_alert_that_may_still_be_under_way_is_waited_for() -> None:
     assert journal.next_question() is None
 
 
+def test_the_alerts_among_the_last_words_of_a_run_come_before_any_backlog() -> None:
+    """A fall in the dark, the unit starts again, and then the link returns."""
+    ended, running = Held(BOOT, (Run(1, 70),)), Held(8, (Run(1, 5), Run(500, 510)))
+    journal = UnitJournal()
+    journal.report((ended,), 0)
+    indexed(journal, JournalBoot(BOOT, 1, 70, 0, 0))
+    journal.report((ended, running), 1)
+    indexed(journal, JournalBoot(BOOT, 1, 100, 0, 0), JournalBoot(8, 1, 510, 0, 0))
+    journal.report((ended, running), 2)
+    asked = asked_of(journal)
+    alerts = [(one["epoch"], one["from"], one["to"]) for one in asked[:2]]
+    assert alerts == [(8, 6, 499), (BOOT, 71, 100)]
+    assert len(asked) > 2, "and the rest behind them"
+
+
+def test_a_unit_that_has_started_again_is_asked_at_once_what_it_has() -> None:
+    journal = journal_of(Run(1, 100))
+    journal.report((Held(BOOT, (Run(1, 100),)), Held(8, (Run(5, 5),))), 1)
+    assert next_of(journal)[0] == "index"
+
+
+def test_what_it_has_is_asked_now_and_then() -> None:
+    journal = journal_of(Run(1, 100))
+    held = (Held(BOOT, (Run(1, 100),)),)
+    journal.report(held, 29 * NS_PER_S)
+    assert journal.next_question() is None
+    journal.report(held, 31 * NS_PER_S)
+    assert next_of(journal)[0] == "index"
+
+
+def test_a_hole_is_found_by_what_came_behind_it() -> None:
+    journal = journal_of(Run(1, 100), last=100)
+    for number in range(2):
+        journal.report((Held(BOOT, (Run(1, 100), Run(151, 160))),), number)
+    first, *_ = asked_of(journal)
+    assert (first["from"], first["to"]) == (101, 150)
+
+
+def test_what_the_journal_has_no_more_is_not_asked_for() -> None:
+    journal = UnitJournal()
+    held = (Held(BOOT, (Run(90, 100),)),)
+    journal.report(held, 0)
+    indexed(journal, JournalBoot(BOOT, 51, 100, 0, 0))
+    journal.report(held, 1)
+    asked = asked_of(journal)
+    assert min(one["from"] for one in asked) == 51
+    assert max(one["to"] for one in asked) == 89
+
+
+def test_a_unit_that_fell_silent_is_asked_for_little_again() -> None:
+    held = (Held(BOOT, (Run(1, 1),)),)
+    journal = journal_of(Run(1, 1), last=100_000)
+    totals = []
+    for number in range(6):
+        journal.report(held, number)
+        question = journal.next_question()
+        assert question is not None
+        asked = dict(question.parameters)
+        if question.what == "urgent":
+            last = JournalChunk(BOOT, asked["from"], asked["to"], (), urgent_only=True)
+            answer(journal, question, last)
+            continue
+        totals.append(asked["total"])
+        assert asked["bytes"] == min(asked["total"], 8192), "what comes first is stored first"
+        if number < 5:
+            answer(journal, question, JournalChunk(BOOT, asked["to"], asked["to"], ()))
+        else:
+            journal.end(question, 1)
+    journal.report(held, 7)
+    assert totals == sorted(totals)
+    assert totals[-1] > 8192
+    assert next_of(journal)[1]["total"] == totals[0]
+
+
 def test_alerts_are_asked_for_once() -> None:
-    journal = journal_of(Run(1, 10), Run(61, 70))
+    journal = journal_of(Run(1, 10), Run(61, 70), last=70)
     question = journal.next_question()
     assert question is not None
     alert = JournalEntry(20, "alert/event", b"")
@@ -87,7 +162,7 @@ def test_what_the_alerts_brought_is_not_fetched_again() -> None:
 
 
 def test_who_does_not_answer_is_not_asked_before_the_next_report() -> None:
-    journal = journal_of(Run(1, 10), Run(21, 30))
+    journal = journal_of(Run(1, 10), Run(21, 30), last=30)
     question = journal.next_question()
     assert question is not None
     journal.end(question, 1)
@@ -108,6 +183,9 @@ def test_a_run_that_the_journal_has_no_more_is_not_asked_for() -> None:
 def test_the_newest_piece_is_asked_for_first() -> None:
     journal = journal_of(Run(1, 1), last=1000)
     journal.report((Held(BOOT, (Run(1, 1),)),), 1)
+    question = journal.next_question()
+    assert question is not None
+    answer(journal, question, JournalChunk(BOOT, 2, 1000, (), urgent_only=True))
     what, asked = next_of(journal)
     assert (what, asked["to"]) == ("range", 1000)
     assert 1 < asked["from"] < 1000
