@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from collections import Counter
 
 import msgspec
@@ -51,6 +52,19 @@ def test_what_goes_on_evenly_takes_hardly_a_byte() -> None:
     packed = Packed()
     packed.add(rows, as_they_are)
     assert sum(len(one.columns) for one in packed.chunks) < 0.5 * CHUNK
+
+
+def test_no_more_is_held_than_is_packed() -> None:
+    packed = Packed()
+    packed.add(chunk(0), as_they_are)
+    tracemalloc.start()
+    try:
+        for number in range(1, 33):
+            packed.add(chunk(number), as_they_are)
+        held_bytes, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert held_bytes < 3.0 * 32 * CHUNK
 
 
 def test_there_are_only_so_many_chunks_of_each_detail() -> None:

@@ -109,7 +109,8 @@ def _compressed(columns: NDArray[np.int64]) -> bytes:
     steps = np.diff(columns, n=2, prepend=np.zeros((len(columns), 2), np.int64))
     small = (steps << 1) ^ (steps >> 63)
     planes = small.view(np.uint8).reshape(*small.shape, _BYTES).transpose(0, 2, 1)
-    return zstandard.ZstdCompressor(_LEVEL).compress(planes.tobytes())
+    compressed = zstandard.ZstdCompressor(_LEVEL).compress(planes.tobytes())
+    return bytes(memoryview(compressed))  # it holds the room that it might have needed
 
 
 def _decompressed(packed: bytes, columns: int) -> NDArray[np.int64]:
