@@ -182,7 +182,11 @@ def compose_agent(
             stamper=stamper,
             clock=clock,
             black_box=BlackBox(
-                folder.black_box, description, round(config.storage.black_box_mb * 1e6), clock
+                folder.black_box,
+                description,
+                round(config.storage.black_box_mb * 1e6),
+                clock,
+                clock.utc_std_s,
             ),
             spool=spool,
             outbox=outbox,

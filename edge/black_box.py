@@ -7,16 +7,19 @@ most a second is lost to a ``kill -9``.
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 
+from edge.box_time import ahead_of, note_ahead, remove_if_empty
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
 from shared.errors import ConfigError
-from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
+from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_began_ns, segment_paths
 from shared.messages import Message, UnitDescription
 
 logger = logging.getLogger(__name__)
@@ -32,13 +35,23 @@ class BlackBox:
     """``write`` never waits and never raises; ``fault`` says what the disk does not do."""
 
     def __init__(
-        self, folder: Path, description: UnitDescription, limit_bytes: int, clock: Clock
+        self,
+        folder: Path,
+        description: UnitDescription,
+        limit_bytes: int,
+        clock: Clock,
+        utc_std_s: Callable[[], float] = lambda: 0.0,
     ) -> None:
-        """Raises ConfigError where nothing can be written at all."""
+        """``utc_std_s``: how well the clock knows station time, 0 where it does not.
+
+        Raises ConfigError where nothing can be written at all.
+        """
         self._folder = folder
         self._description = description
         self._limit_bytes = limit_bytes
         self._clock = clock
+        self._utc_std_s = utc_std_s
+        self._ahead_ns: int | None = None  # of station time, as noted beside the recording
         self._utc_offset_ns = clock.utc_ns() - clock.monotonic_ns()
         began = datetime.fromtimestamp(clock.utc_ns() // NS_PER_S, UTC)
         self._boot_name = f"{began:%Y%m%dT%H%M%SZ}-{description.header.boot_id:016x}"
@@ -87,9 +100,20 @@ class BlackBox:
         if now_ns - self._described_ns >= _DESCRIBE_EVERY_NS:
             self._described_ns = now_ns
             raw = (self._description, *raw)
+        self._note_ahead(now_ns)
         for message in raw:
             key = channel_of(message).key(self._description.header.unit_id)
             self._writer.write(now_ns, key, encode(message))
+
+    def _note_ahead(self, now_ns: int) -> None:
+        """Where it cannot be written, the next time may do."""
+        if self._utc_std_s() == 0.0:
+            return
+        ahead_ns = now_ns - self._clock.utc_ns()
+        if self._ahead_ns is None or abs(ahead_ns - self._ahead_ns) > NS_PER_S:
+            with suppress(OSError):
+                note_ahead(self._folder / self._boot_name, ahead_ns)
+                self._ahead_ns = ahead_ns
 
     def _note_problem(self, problem: str) -> None:
         if problem and self._problem is None:
@@ -110,11 +134,16 @@ class BlackBox:
 
         This boot's are the newest, whatever date a clock that was never set has given them.
         """
+        found = {boot: segment_paths(boot) for boot in self._folder.glob("*/")}
+
+        def began_ns(boot: Path) -> int:
+            return segment_began_ns(found[boot][0]) - (ahead_of(boot) or 0)
+
         boots = sorted(
-            (path for path in self._folder.glob("*") if path.is_dir()),
-            key=lambda boot: (boot.name == self._boot_name, boot.name),
+            (boot for boot in found if found[boot]),
+            key=lambda boot: (boot.name == self._boot_name, began_ns(boot)),
         )
-        segments = [segment for boot in boots for segment in segment_paths(boot)]
+        segments = [segment for boot in boots for segment in found[boot]]
         sizes = [segment.stat().st_size for segment in segments]
         excess_bytes = sum(sizes) - self._limit_bytes
         for segment, size in zip(segments[:-1], sizes, strict=False):
@@ -122,5 +151,4 @@ class BlackBox:
                 return
             segment.unlink()
             excess_bytes -= size
-            if not any(segment.parent.iterdir()):
-                segment.parent.rmdir()
+            remove_if_empty(segment.parent)

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from edge.answers import Answers, Parameters
+from edge.box_time import ahead_of
 from edge.data_folder import DataFolder
 from edge.station_clock import StationClock
 from shared.clock import NS_PER_S
-from shared.mcap_log import segment_began_ns, segment_paths, segments_within
+from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths, segments_within
 from shared.messages.recording import (
     RecordedFile,
     RecordingDigest,
@@ -20,6 +21,7 @@ from shared.messages.recording import (
 
 MOST_PIECE_BYTES = 65_536
 _HASHED_AT_ONCE = 1 << 20
+_ON_DISK_NS = 2 * NS_PER_S  # until what is recorded can be read
 
 
 class RecordingServer(Answers):
@@ -32,18 +34,25 @@ class RecordingServer(Answers):
         super().__init__(unit_id, "recording", answers)
 
     def _index(self, values: Parameters) -> Iterator[bytes]:
-        """Times are station time; the black box goes by the machine's."""
+        """Times are station time; each boot's recording goes by the machine's as it was then."""
         from_ns, to_ns = int(values["from"]), int(values["to"])
-        ahead_ns = round(self._clock.machine_ahead_s() * NS_PER_S)
+        now_ahead_ns = round(self._clock.machine_ahead_s() * NS_PER_S)
         found: list[Path] = []
-        first_ns = 0
+        began_ns: list[int] = []
         for boot in sorted(self._folder.black_box.glob("*/")):
             segments = segment_paths(boot)
             if not segments:
                 continue
-            first_ns = first_ns or segment_began_ns(segments[0]) - ahead_ns
+            known_ns = ahead_of(boot)
+            ahead_ns = now_ahead_ns if known_ns is None else known_ns
+            began_ns.append(segment_began_ns(segments[0]) - ahead_ns)
             within = segments_within(segments, from_ns + ahead_ns, to_ns + ahead_ns)
-            found += [one for one in within if one.stat().st_mtime_ns >= from_ns + ahead_ns]
+            found += [
+                one
+                for one in within
+                if one != segments[-1] or _end_ns(one) + _ON_DISK_NS >= from_ns + ahead_ns
+            ]
+        first_ns = min(began_ns, default=0)
         if found:
             found += sorted(self._folder.calibrations.glob("*.toml"))
         files = tuple(RecordedFile(self._name_of(one), one.stat().st_size) for one in found)
@@ -78,6 +87,12 @@ class RecordingServer(Answers):
             boots = {boot.name: boot for boot in self._folder.black_box.glob("*/")}
             found = segment_paths(boots[folder]) if folder in boots else []
         return next((path for path in found if path.name == file), None)
+
+
+def _end_ns(path: Path) -> int:
+    """Log time of a segment's last record, also while it is written."""
+    with SegmentReader(path) as reader:
+        return reader.info().end_ns
 
 
 def sha256_of(path: Path, size_bytes: int) -> bytes:

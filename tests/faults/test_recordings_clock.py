@@ -1,0 +1,107 @@
+"""A unit that began in 1970, or in 2100, finds its recording by station time all the same."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from edge.black_box import BlackBox
+from edge.data_folder import DataFolder
+from edge.raw_stream import RawStream
+from edge.recording_server import RecordingServer
+from edge.sources import open_source
+from edge.station_clock import StationClock
+from shared.bus import ReplyHandler
+from shared.clock import NS_PER_S, ManualClock
+from shared.mcap_log import segment_began_ns, segment_paths
+from shared.messages.clock import ClockAnswer
+from shared.messages.recording import RecordingIndex
+
+U = "FF-01"
+STATION_NS = 1_800_000_000 * NS_PER_S
+SECONDS, BATCHES = 800, 400
+WINDOW_S = 10
+
+
+class Machine(ManualClock):
+    """A unit's clock, which somebody may set."""
+
+    def set_to(self, utc_ns: int) -> None:
+        self._utc_offset_ns = utc_ns - self._monotonic_ns
+
+
+def link(clock: StationClock, station_ns: int) -> None:
+    """It hears what time it is at the station."""
+
+    def answer(reply: ReplyHandler) -> None:
+        reply(ClockAnswer(station_ns, station_ns).to_bytes())
+
+    clock.turn(answer)
+
+
+def record(folder: DataFolder, machine: Machine, began_ns: int, set_at_s: float) -> StationClock:
+    """The unit begins at this station time, and somebody sets its clock later."""
+    clock = StationClock(machine)
+    source = open_source("simulated:climbs-stairs?seed=3")
+    raw = RawStream(U, 7)
+    description = raw.description(0, source.description, source="", tracker="")
+    box = BlackBox(folder.black_box, description, 10**9, clock, clock.utc_std_s)
+    for number, batch in zip(range(BATCHES), source.batches(), strict=False):
+        at_s = number * SECONDS / BATCHES
+        if at_s == set_at_s:
+            machine.set_to(began_ns + round(at_s * NS_PER_S))
+        box.write(raw.messages(batch))
+        if number == 0:
+            link(clock, began_ns)
+        while not box._waiting.empty():  # each is written at its own time
+            time.sleep(0)
+        machine.advance(SECONDS / BATCHES)
+    box.close()
+    return clock
+
+
+def found(server: RecordingServer, from_s: float) -> list[str]:
+    """The segments of a window that begins so long behind the recording's start."""
+    from_ns = STATION_NS + round(from_s * NS_PER_S)
+    question = f"from={from_ns};to={from_ns + WINDOW_S * NS_PER_S}"
+    (answer,) = server.replies(f"muster/v1/{U}/recording/index", question, b"")
+    return [file.path for file in RecordingIndex.from_bytes(answer).files]
+
+
+@pytest.mark.parametrize("began_ns", [60 * NS_PER_S, 4_102_444_800 * NS_PER_S])
+@pytest.mark.parametrize("set_at_s", [400.0, -1.0], ids=["set right", "never set"])
+def test_a_window_is_found_whatever_the_clock_said_when(
+    tmp_path: Path, began_ns: int, set_at_s: float
+) -> None:
+    folder, machine = DataFolder(tmp_path), Machine(utc_ns=began_ns)
+    clock = record(folder, machine, STATION_NS, set_at_s)
+    (boot,) = folder.black_box.iterdir()
+    segments = segment_paths(boot)
+    assert len(segments) > 3
+    starts_s = [(segment_began_ns(one) - began_ns) / NS_PER_S for one in segments]
+    again = StationClock(Machine(utc_ns=90 * NS_PER_S))  # it was off, and has no battery
+    link(again, STATION_NS + 3600 * NS_PER_S)
+    for server in (RecordingServer(U, folder, one) for one in (clock, again)):
+        for number, start_s in enumerate(starts_s):
+            name = f"{boot.name}/{segments[number].name}"
+            assert found(server, start_s + 20.0) == [name], "and no other"
+        assert found(server, -60.0) == []
+        assert found(server, SECONDS + 60.0) == []
+    folder.close()
+
+
+def test_the_oldest_goes_first_whatever_its_date(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    for boot, began_s in enumerate((4_102_444_800, 60)):  # first of all a clock in 2100
+        machine = Machine(utc_ns=began_s * NS_PER_S)
+        record(folder, machine, STATION_NS + boot * 3600 * NS_PER_S, set_at_s=-1.0)
+    first, second = sorted(folder.black_box.iterdir(), reverse=True)
+    kept_bytes = sum(one.stat().st_size for one in segment_paths(second))
+    source = open_source("simulated:climbs-stairs?seed=3")
+    description = RawStream(U, 9).description(0, source.description, source="", tracker="")
+    BlackBox(folder.black_box, description, kept_bytes, Machine()).close()
+    assert not first.exists()
+    assert segment_paths(second)
+    folder.close()
