@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from base_station.bench.rig.said import position
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
-from base_station.fusion.smoother.lines import ASIDE_M, mixture
+from base_station.fusion.smoother.lines import ASIDE_M, HABIT_PART, counts_of, mixture
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import UnitEvidence
 from shared.clock import NS_PER_S
@@ -43,6 +43,14 @@ def test_legs_at_the_ends_of_the_earth_cost_nothing() -> None:
     likely = mixture(across_m, np.full(10, ASIDE_M**2))
     assert (likely[:8].sum(axis=1) > 0.9).all()
     assert likely[8:].max() < 1e-6
+
+
+def test_many_legs_of_one_person_tell_less_than_as_many_of_several() -> None:
+    alone = counts_of(["FF-01"] * 12, np.ones(12)).sum()
+    together = counts_of([f"FF-{number:02}" for number in range(12)], np.ones(12)).sum()
+    assert together == pytest.approx(12.0)
+    assert alone == pytest.approx(12.0 / (1.0 + 11.0 * HABIT_PART))
+    assert counts_of(["FF-01"], np.array([0.3])).sum() == pytest.approx(0.3)
 
 
 def searched(start_m: tuple[float, float], std_m: float, seed: int, down_m: float) -> UnitEvidence:

@@ -4,7 +4,8 @@ Somebody who follows a building's walls walks where others do, and where they di
 has few corridors, and its rooms end at few walls.  How far across the axis legs lie gathers at such
 lines; the most frequented are a mixture of normal distributions, and the rest of the legs lie
 anywhere (expectation maximisation: Dempster, Laird and Rubin 1977).  Each line is an unknown of the
-one problem, and a leg counts as far as it is one of that line.
+one problem, and a leg counts as far as it is one of that line; but one person's legs are aside of
+it alike in part, to the hand that is on the wall, and many of them tell little more than a few.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ASIDE_M = 0.4  # each leg of its line: a corridor is some two metres wide
+HABIT_PART = 0.2  # of that variance one person's legs have in common
 CROOKED_RAD = np.radians(12.0)  # from the axis: not along walls
 LEVELS_M = 1.0  # apart: of two storeys, whose lines need not lie above each other
 LEGS_LEAST = 5.0  # a line is walked at least so often
@@ -41,7 +43,7 @@ CELL_M = 0.1
 class Line:
     quarter: int  # 0: along the axis, 1: at right angles to it
     visits: Sequence[Visit]  # at the middles of legs
-    likely: Floats  # (v,) that each leg is of this line
+    counts: Floats  # (v,) what part of a leg that tells by itself each one is worth
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ class _Gathered:
         for each in likely.T:
             of_it = np.flatnonzero(each > UNLIKELY)
             if len(of_it) > 1:
-                yield Line(quarter, [self.visits[one] for one in of_it], each[of_it])
+                visits = [self.visits[one] for one in of_it]
+                yield Line(quarter, visits, counts_of([v.unit_id for v in visits], each[of_it]))
 
 
 def find_lines(
@@ -117,6 +120,15 @@ def mixture(across_m: Floats, variance_m2: Floats) -> Floats:
     return likely
 
 
+def counts_of(unit_ids: Sequence[str], likely: Floats) -> Floats:
+    """``Line.counts`` of legs that are so likely of a line: n of one person, whose errors have a
+    part p in common, tell as much together as n / (1 + p (n - 1)) that have not.
+    """
+    _, unit = np.unique(unit_ids, return_inverse=True)
+    legs = np.bincount(unit, weights=likely)[unit]
+    return np.asarray(likely / (1.0 + HABIT_PART * np.maximum(legs - 1.0, 0.0)))
+
+
 def _crowded(across_m: Floats, spread_m2: Floats) -> Floats:
     """Where legs lie more densely than on either side."""
     near = np.arange(-round(ASIDE_M / CELL_M) - 1, round(ASIDE_M / CELL_M) + 2)
@@ -156,7 +168,7 @@ def add_line(
     middle_m = place_m.mean(axis=0)
     along_m = (place_m - middle_m) @ (to_east, -to_north)
     equations.add(
-        ASIDE_M / np.sqrt(line.likely), float(middle_m @ (to_north, to_east)),
+        ASIDE_M / np.sqrt(line.counts), float(middle_m @ (to_north, to_east)),
         (own, to_north), (own + 1, to_east),
         (own + 2, to_north * north + to_east * east), (own + 3, to_east * north - to_north * east),
         (np.full(len(own), axis_column), -along_m), (np.full(len(own), column), -1.0),
