@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Timer
 
@@ -169,8 +170,7 @@ def compose_agent(
     commands: SimpleQueue[bytes] = SimpleQueue()
     link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
     outbox = Outbox(unit_id, spool, link.publish)
-    if damaged is not None:
-        detail = f"the journal was damaged and is set aside as {damaged.name}"
+    for detail in _set_aside(folder, damaged):
         outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
     return Agent(
         Parts(
@@ -195,6 +195,17 @@ def compose_agent(
             manager=ServiceManager(os.environ),
         )
     )
+
+
+def _set_aside(folder: DataFolder, damaged: Path | None) -> Iterator[str]:
+    """What was found in the unit's folder and is of no use to it, in words for a person."""
+    if damaged is not None:
+        yield f"the journal was damaged and is set aside as {damaged.name}"
+    if folder.set_aside is not None:
+        yield (
+            "the folder held the journal of another unit, as if copied; it is set aside as "
+            f"{folder.set_aside.name}"
+        )
 
 
 def _description(
