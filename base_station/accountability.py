@@ -13,9 +13,8 @@ from collections.abc import Iterator
 import msgspec
 
 from base_station.commands.state import SentCommand
+from base_station.limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.live_state import (
-    PAR_INTERVAL_S,
-    WORK_LIMIT_S,
     Duty,
     Incident,
     StationState,

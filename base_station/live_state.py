@@ -15,6 +15,7 @@ from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.vertical.weather import Barometers
+from base_station.limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.pins.late import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.sender import STALE_AFTER_S, Link, Sender
@@ -37,8 +38,6 @@ from shared.messages import (
 from shared.messages.station import TakeOver
 
 FORGOTTEN = "(forgotten)"  # in place of what was said of a person
-PAR_INTERVAL_S = 20 * 60.0  # departments use 10 to 30 minutes
-WORK_LIMIT_S = 40 * 60.0
 
 
 class Person(msgspec.Struct, frozen=True):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -78,3 +80,9 @@ def test_plain_connections_from_elsewhere_need_a_word(
 def test_an_address_is_taken_apart() -> None:
     assert host_and_port("[::1]:80") == ("::1", 80)
     assert host_and_port("station.local:8080") == ("station.local", 8080)
+
+
+def test_settings_are_read_before_what_takes_its_time() -> None:
+    """So that a wrong one is said at once."""
+    script = "import sys; import base_station.config; sys.exit('scipy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
