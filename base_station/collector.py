@@ -7,10 +7,14 @@ of a second in which nobody is heard or told anything.
 Its threads take turns ten times as often as they would.  What comes from the bus and what goes to a
 console passes three threads that need it for a moment only, and each would wait for five
 milliseconds while the drive has much to do.
+
+Its memory for what is large, such as a state that is saved, would come to be that of what is small,
+full of holes that nothing fits into, and the station's would grow with them.
 """
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import sys
 from collections.abc import Iterator
@@ -19,6 +23,8 @@ from contextlib import contextmanager
 _TURN_S = 0.0005
 _NEW_OBJECTS = 50_000  # made and not gone, after which the young are looked at
 _YOUNG, _OLD = 20, 20  # such looks, after which older ones are
+_LARGE_BYTES = 1 << 20  # a block of its own, given back to the system when it is free
+_MMAP_THRESHOLD = -3  # as the C library calls it
 
 
 @contextmanager
@@ -35,6 +41,9 @@ def relax() -> None:
     """When the program begins."""
     gc.set_threshold(_NEW_OBJECTS, _YOUNG, _OLD)
     sys.setswitchinterval(_TURN_S)
+    set_memory = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
+    if set_memory is not None:
+        set_memory(_MMAP_THRESHOLD, _LARGE_BYTES)
 
 
 def settle() -> None:

@@ -18,7 +18,7 @@ import zstandard
 from numpy.typing import NDArray
 
 CHUNK = 128  # rows
-MOST_CHUNKS = 48  # of one detail: of rows as they came, 6,144
+MOST_CHUNKS = 32  # of one detail: of rows as they came, 4,096
 _BYTES = 8  # of a number
 _LEVEL = 3
 
