@@ -87,7 +87,7 @@ def complaints(page: Page) -> Iterator[list[str]]:
 
     def note(message: ConsoleMessage) -> None:
         if message.type == "error" and "ERR_CONNECTION" not in message.text:
-            said.append(message.text)
+            said.append(f"{message.text} {message.location.get('url', '')}")
 
     page.on("console", note)
     page.on("pageerror", lambda error: said.append(str(error)))
