@@ -18,6 +18,7 @@ from shared.messages.station import Action
 _BEHIND_NS = 2 * NS_PER_S
 _GOODBYE_NS = 2 * NS_PER_S
 _LOOK_S = 0.02
+_MOST_MARKS = 1000
 _GONE_NS = 3 * NS_PER_S  # nothing was heard from it
 
 
@@ -57,6 +58,8 @@ class OtherCopy:
             self._marks.append((now_ns, self._place()))
             while self._marks and self._marks[0][1] <= self._has:
                 self._marks.popleft()
+            if len(self._marks) > _MOST_MARKS:  # nobody comes for hours: the first one matters
+                self._marks = deque(list(self._marks)[::2])
             ready = self._take_ready()
             alone = [one for one in self._waiting if now_ns >= one.until_ns]
             for one in alone:

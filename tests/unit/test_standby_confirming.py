@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from concurrent.futures import Future
 
 import pytest
@@ -38,6 +39,26 @@ class TestConfirming:
 
     def test_without_a_standby_an_action_is_confirmed_at_once(self, copy: OtherCopy) -> None:
         assert self.act(copy).done()
+
+    def test_a_standby_that_stays_away_costs_no_memory_and_is_behind(
+        self, copy: OtherCopy, clock: ManualClock
+    ) -> None:
+        copy.note(Place(4, 1))
+        tracemalloc.start()
+        try:
+            for number in range(20_000):
+                clock.advance(0.2)
+                self.place = Place(6 + number, 1)
+                copy.check()
+            held_bytes, _ = tracemalloc.get_traced_memory()
+        finally:
+            tracemalloc.stop()
+        assert held_bytes < 500_000
+        copy.note(Place(10_000, 1))  # it comes back, and has half of it
+        assert copy.is_behind
+        copy.note(self.place)
+        copy.check()
+        assert not copy.is_behind
 
     def test_an_action_waits_until_the_standby_has_it(self, copy: OtherCopy) -> None:
         copy.note(Place(4, 1))
