@@ -109,3 +109,90 @@ def test_a_storey_that_is_only_to_be_expected_is_no_height_to_pin_to() -> None:
     assert storey_of(storeys, 1) is not None
     assert storey_of(storeys, 2) is None
     assert storey_of(storeys, None) is None
+
+
+def downs_m(*heights: tuple[float, int, float]) -> list[float]:
+    """The levels of so many landings (height, how many, how sure)."""
+    landings = [Height(down_m, std_m) for down_m, count, std_m in heights for _ in range(count)]
+    return [round(one.down_m, 2) for one in levels_of(landings)]
+
+
+def test_a_level_is_in_the_middle_of_all_that_was_walked_on_it() -> None:
+    """Not where most came together by chance."""
+    assert downs_m((-3.0, 3, 0.3), (-3.4, 2, 0.3), (-3.6, 2, 0.3), (-3.8, 2, 0.3)) == [-3.4]
+
+
+def test_who_knows_the_height_well_counts_more_than_several_who_do_not() -> None:
+    assert downs_m((-3.0, 3, 0.2), (-4.2, 4, 1.5)) == [-3.0]
+
+
+def test_heights_that_scatter_are_those_of_the_nearest_storey() -> None:
+    scattered = ((-2.6, 2, 0.3), (-3.0, 2, 0.3), (-3.4, 2, 0.3))
+    above = ((-5.6, 2, 0.3), (-6.0, 2, 0.3), (-6.4, 2, 0.3))
+    assert downs_m(*scattered, *above) == [-3.0, -6.0]
+
+
+@pytest.mark.parametrize(
+    ("counts", "kept"),
+    [((5, 2, 5), [0.0, -4.0]), ((2, 5, 2), [-2.0]), ((5, 2, 1), [0.0, -4.0])],
+)
+def test_of_levels_nearer_than_storeys_are_the_one_with_more_behind_it_is_there(
+    counts: tuple[int, int, int], kept: list[float]
+) -> None:
+    assert downs_m(*zip((0.0, -2.0, -4.0), counts, (0.3,) * 3, strict=True)) == kept
+
+
+@pytest.mark.parametrize(
+    ("down_m", "ground_m"), [(-1.2, -1.2), (0.9, 0.9), (-1.7, 0.0), (-2.2, 0.0), (1.9, 0.0)]
+)
+def test_a_raised_ground_floor_is_the_ground_floor_and_a_landing_of_the_stairs_is_none(
+    down_m: float, ground_m: float
+) -> None:
+    seen = [one for one in storeys_of(down_m, -7.0).values() if one.seen]
+    assert [one.floor for one in seen] == [0, 2]
+    assert seen[0].down_m == pytest.approx(ground_m)
+    assert seen[0].std_m < 0.4
+
+
+def test_the_ground_is_where_it_is_and_not_at_the_frames_height() -> None:
+    levels = levels_of([Height(-10.0, 0.2), Height(-13.1, 0.2), Height(-6.9, 0.2)])
+    storeys = number_levels(levels, Height(-10.3, 0.3))
+    assert {one.floor: one.down_m for one in storeys if one.seen} == {-1: -6.9, 0: -10.0, 1: -13.1}
+
+
+def test_how_high_a_storey_is_becomes_known_by_walking_on_some() -> None:
+    before, after = storeys_of()[4].std_m, storeys_of(0.0, -3.0, -6.0, -9.0)[4].std_m
+    assert 1.0 < before < 3.0
+    assert after < 0.6
+
+
+def test_whoever_says_what_is_known_anyway_changes_nothing() -> None:
+    assert storeys_of(-4.6, -7.6, said=((0.0, 0),)) == storeys_of(-4.6, -7.6)
+    assert storeys_of(-4.6, -7.6, said=((-20.0, 9),)) == storeys_of(-4.6, -7.6), "nobody was there"
+
+
+@pytest.mark.parametrize(
+    ("heights", "said", "floors"),
+    [
+        ((6.2,), ((6.2, -1),), [-1, 0]),
+        ((3.0,), ((3.0, 1),), [-1, 0]),
+        ((3.0, 6.0), ((6.0, -1),), [-2, -1, 0]),
+        ((-3.1, -6.2), ((-6.2, 3), (-3.1, 2)), [0, 2, 3]),
+        ((-3.1, -6.2), ((-6.2, 3), (-3.1, 1)), [0, 1, 3]),
+        ((-3.1, -6.2), ((-6.2, 2), (-3.1, 2)), [0, 1, 2]),
+        ((-3.1, -6.2), ((-3.1, 2), (-6.2, 2)), [0, 2, 3]),
+    ],
+)
+def test_floors_that_are_said_are_believed_in_turn_as_far_as_they_rise(
+    heights: tuple[float, ...], said: tuple[tuple[float, int], ...], floors: list[int]
+) -> None:
+    assert [one.floor for one in storeys_of(*heights, said=said).values() if one.seen] == floors
+
+
+def test_what_two_people_say_has_the_storeys_between_spread_evenly() -> None:
+    storeys = storeys_of(-3.0, -12.0, said=((-3.0, 1), (-12.0, 4)))
+    assert storeys[2].down_m == pytest.approx(-6.0)
+    assert storeys[3].down_m == pytest.approx(-9.0)
+    assert not storeys[3].seen
+    assert storeys[3].numbered > 0.9
+    assert [one.floor for one in storeys.values()] == list(range(-3, 13))
