@@ -26,7 +26,7 @@ from tests.set_clock import MachineClock
 pytestmark = pytest.mark.timeout(300)
 
 APART_S = 3.0
-DAY_S = 86_400.0
+DAY_S, HOUR_S = 86_400.0, 3_600.0
 OLD_BOOT, BACKLOG = 0xABCD, 40_000
 
 
@@ -91,14 +91,17 @@ def end_and_compare(two: TwoStations, ends_first: Station) -> None:
 def test_the_other_station_takes_over_and_the_first_comes_back(
     tmp_path: Path, closing: ExitStack
 ) -> None:
-    """In the middle of a long backlog, and though the two machines' clocks differ by a day."""
+    """In the middle of a long backlog, and though the two machines' clocks differ by a day and are
+    both set back by an hour meanwhile.
+    """
     two = two_stations(tmp_path, (Place(), Place()), closing)
     fill_journal(tmp_path / "units" / "anna", "anna")
-    ahead = MachineClock(tmp_path, "second")
-    ahead.set_ahead(DAY_S)
-    with ahead.ticks():
+    one, other = MachineClock(tmp_path, "first"), MachineClock(tmp_path, "second")
+    other.set_ahead(DAY_S)
+    with other.ticks():
         two.second.start()
-    two.first.start()
+    with one.ticks():
+        two.first.start()
     wait_until("the second follows", lambda: two.first.leads() and two.second.follows())
     assert "ahead" in str(two.second.get("/health")["problems"])
     two.start_unit("anna", two.first)
@@ -108,17 +111,21 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     assert two.second.refuses("/incidents", {"name": "Other"})
     wait_until("the backlog comes", lambda: count_old(two.first) > 1000)
     two.first.kill()
+    one.set_ahead(-HOUR_S)
+    other.set_ahead(DAY_S - HOUR_S)
     assert count_old(two.first) < BACKLOG  # in the middle
     wait_until("the second leads", two.second.leads)
     assert [one["name"] for one in two.second.get("/incidents")] == ["Mill Lane"]
     tell_everyone(two.second, "come out")
     wait_until("the units answer", lambda: two.second.delivered("come out") == {"anna", "bert"})
-    two.first.start()
+    with one.ticks():
+        two.first.start()
     wait_until("the first follows", two.first.follows)
     assert texts(two.first) == ["come out"]
     complete(two)
     end_and_compare(two, two.first)
     times_ns = [t_ns for t_ns, _, _ in two.first.logged().events]
+    assert times_ns == sorted(times_ns)
     assert times_ns[-1] - times_ns[0] < DAY_S / 24 * NS_PER_S
 
 
