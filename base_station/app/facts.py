@@ -20,7 +20,7 @@ class Troubled(Protocol):
 def facts_of(
     opened: Opened, clock: SteadyClock, side: Side, others: Sequence[Troubled]
 ) -> StationFacts:
-    parts: tuple[Troubled, ...] = (clock, opened.expiry, side, *others)
+    parts: tuple[Troubled, ...] = (clock, opened.expiry, opened.renewal, side, *others)
     problems = [
         *opened.config.standing_problems(),
         *(problem for part in parts for problem in part.problems()),

@@ -51,7 +51,7 @@ from shared.service_manager import ServiceManager
 
 
 class _Again(NamedTuple):
-    """The station is to start anew, as the standby of another one."""
+    """The station is to start anew; where there is another one that leads, as its standby."""
 
     cut: Place | None  # behind which the log goes its own way
     mended: bool = False  # what was saved of it was made without what was missing
@@ -223,6 +223,9 @@ class _LiveStation:
             index.update(opened.recorder.segments())
             self._disk.check.look(opened.recorder.segments())
             self._make_good()
+            if opened.renewal.is_due(in_incident=self._is_in_incident()):
+                self._announce("the renewed certificate is taken up")
+                self._start_again(None)
             if self._side.leads:
                 enrolled.update()
                 for report in self._share.news(self._reported):

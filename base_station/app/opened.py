@@ -14,6 +14,7 @@ from base_station.data_folder import DataFolder
 from base_station.feed import LiveFeed
 from base_station.pki.expiry import ExpiryWatch
 from base_station.pki.folder import PkiFolder
+from base_station.pki.renewal import Renewal
 from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import ask_over
@@ -41,6 +42,7 @@ class Opened:
     bus: Bus
     pki: PkiFolder
     expiry: ExpiryWatch
+    renewal: Renewal
     recordings: RecordingDesk
 
 
@@ -76,5 +78,6 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
         bus=bus,
         pki=pki,
         expiry=ExpiryWatch(pki, clock),
+        renewal=Renewal(pki, joining.tls, clock),
         recordings=recordings,
     )

@@ -66,7 +66,7 @@ def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tup
 
 def _expiry_sentence(entry: Entry, now: datetime) -> str:
     if entry.holder is Holder.STATION and entry.name == STATION_NAME:
-        who, command = "this station", "muster pki renew-station, then start the station again"
+        who, command = "this station", "muster pki renew-station"
     elif entry.holder is Holder.STATION:
         who, command = f"station {entry.name}", f"muster pki enroll-station {entry.name}"
     elif entry.holder is Holder.OPERATOR:

@@ -95,6 +95,27 @@ def test_what_ends_soon_is_among_the_problems(
         )
 
 
+def test_a_station_takes_its_renewed_certificate_up_before_the_old_one_ends(
+    serve: Callable[..., Command], pki: PkiFolder, data: Path, make_position: MakePosition
+) -> None:
+    """Or it would hear nobody from then on, with everything in order by its folder."""
+    (listen,) = pki.registry().connect
+    station = serve("--listen", listen, http=f"127.0.0.1:{free_port()}")
+    address, key = station.wait_ready(), POSITION.key("FF-01")
+    with closing(join(pki.enroll("FF-01"))) as unit, Browser(address, data) as browser:
+        until(lambda: unit.is_heard(key), "the unit is let in")
+        pki.renew_station()
+        until(lambda: station.said().count("ready ") == 2, "the station begins again")
+
+        def heard() -> bool:
+            unit.publish(key, encode(make_position()), Qos.LIVE)
+            return bool(browser.call("GET", "/health")["messages"])
+
+        until(heard, "the unit is heard again")
+    assert station.said().count("taken up") == 1
+    assert station.stop() == 0
+
+
 def test_without_an_authority_the_station_says_how_to_make_one(
     serve: Callable[..., Command], data: Path
 ) -> None:

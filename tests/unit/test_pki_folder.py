@@ -14,7 +14,8 @@ from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
-from base_station.pki.folder import PkiFolder
+from base_station.pki.folder import CERTIFICATE_VALID, PkiFolder
+from base_station.pki.renewal import Renewal
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
@@ -302,3 +303,24 @@ def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: P
     clock.advance(61.0)
     assert "damaged" in watch.problems()[0]
     assert ExpiryWatch(PkiFolder(tmp_path / "plain"), clock).problems() == ()
+
+
+def test_a_renewed_certificate_is_taken_up_when_nobody_is_in_action_or_the_old_one_ends(
+    pki: PkiFolder, clock: Clock
+) -> None:
+    machine = ManualClock(round(clock.now.timestamp() * NS_PER_S))
+    renewal = Renewal(pki, pki.station_identity(), machine)
+    assert not renewal.is_due(in_incident=False)
+    clock.now += DAY
+    machine.advance(DAY.total_seconds())
+    pki.renew_station()
+    assert not renewal.is_due(in_incident=True)
+    (said,) = renewal.problems()
+    assert "2027-03-01" in said
+    assert renewal.is_due(in_incident=False)
+    assert renewal.problems() == ()
+    machine.advance((CERTIFICATE_VALID - DAY - timedelta(minutes=30)).total_seconds())
+    assert renewal.is_due(in_incident=True)
+    (pki.path / "station.pem").write_text("no certificate")
+    assert not renewal.is_due(in_incident=False), "a station that runs is better than none"
+    assert not Renewal(pki, None, machine).is_due(in_incident=False)
