@@ -184,3 +184,42 @@ def test_an_active_station_goes_on_when_the_other_is_gone() -> None:
     site.become("active")
     site.hear("standby")
     assert site.decide(100 * LEASE_S) == "stay"
+
+
+def test_one_that_leads_does_not_step_back_for_one_that_follows() -> None:
+    """Though that one's name, preference and log be the greater."""
+    site = Site()
+    site.become("active")
+    for role in ("standby", "waiting"):
+        site.hear(role, term=2)
+        assert site.decide() == "stay"
+
+
+def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor_unit() -> None:
+    site = Site()
+
+    def is_cut_off() -> bool:
+        return site.election.is_cut_off(site.now_ns)
+
+    assert not is_cut_off(), "nobody was ever heard"
+    site.hear("active")
+    site.become("standby")
+    assert not is_cut_off(), "the active station is heard"
+    site.decide(LEASE_S)
+    assert is_cut_off()
+    site.hear_unit(0.1)
+    site.decide(1.0)
+    assert not is_cut_off(), "it is the other one that is gone"
+    site.become("active")
+    site.now_s += 60.0
+    assert not is_cut_off(), "it leads"
+
+
+def test_what_units_said_before_the_other_was_heard_again_is_no_witness() -> None:
+    site = Site()
+    site.hear("active")
+    site.become("standby")
+    site.hear_unit(1.0)
+    site.hear("active")
+    site.hear_unit(0.1)
+    assert site.decide(LEASE_S) == "stay", "nobody has been heard for longer than the other"
