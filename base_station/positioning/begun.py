@@ -26,10 +26,17 @@ def begin(
     if led is None:  # it has not gone anywhere yet
         return
     history.lead(led)
+    unlearn(state, unit.unit_id)
     points = history.arrays()
     places_m = np.column_stack((points.shown_m, points.down_m))
     since = [one for one in trail_of(state, points, places_m) if one.t_ns >= led.begin_ns]
     unit.change_plain_trail(led.begin_ns, since)
+
+
+def unlearn(state: StationState, unit_id: str) -> None:
+    """What was learnt of the building from somebody who was elsewhere."""
+    state.learnt_floors.unlearn(unit_id)
+    state.learnt_building = state.learnt_building.without(unit_id)
 
 
 def _led(begin_ns: int, unit: UnitState, fuser: Fuser, sunk_m: float) -> Led | None:

@@ -8,6 +8,7 @@ from base_station.fusion.port import Fuser
 from base_station.live_state import StationState, UnitState
 from base_station.pins.late import note_late
 from base_station.pins.pinning import Past, trail_of
+from base_station.positioning.begun import unlearn
 
 
 def move_fixes(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
@@ -23,6 +24,7 @@ def place_again(state: StationState, unit: UnitState, fuser: Fuser, past: Past) 
     if history is None or not history.is_refixed or history.begin_ns is None:
         return False
     history.is_refixed = False
+    unlearn(state, unit.unit_id)
     path = past.solve(state, unit.unit_id, history, ()).paths[unit.unit_id]
     fuser.settle(path.present)
     unit.change_plain_trail(0, trail_of(state, history.arrays(), path.places_m))

@@ -172,6 +172,10 @@ class LearntFloors(msgspec.Struct):
 
     def forget(self, unit_id: str) -> None:
         self.walks.pop(unit_id, None)
+        self.unlearn(unit_id)
+
+    def unlearn(self, unit_id: str) -> None:
+        """The unit was not where it was thought to be."""
         self._keep_only(lambda landing: landing.unit_id != unit_id)
 
     def trim(self, before_ns: int) -> None:

@@ -243,6 +243,7 @@ def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None
     script.act(SetStart(unit_id, 0.0, 0.0, -3.2, -0.7, 0.5, 0.05))
     assert walk.worst_m(unit_id) < 9.0, "what its heading drifted"
     assert {step.floor for step in walk.trail(unit_id)} == {3}
+    assert not script.pipeline.state.learnt_floors.buildings, "it was not there that it walked"
     assert off_m(script.console.trails[unit_id], script.joined().trails[unit_id]) == 0.0
     before = walk.trail(unit_id).copy()
     walk.go(20)
