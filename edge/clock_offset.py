@@ -53,7 +53,7 @@ class ClockEstimate(NamedTuple):
 
 
 class ClockOffset:
-    """``note`` exchanges in the order in which they were asked."""
+    """``note`` exchanges as they come; one that was overtaken by a later one is not used."""
 
     def __init__(self) -> None:
         self._round_trips_s: deque[float] = deque(maxlen=_RECENT)
@@ -68,9 +68,11 @@ class ClockOffset:
         if exchange.round_trip_s < 0.0 or exchange.sent_utc_ns < exchange.received_utc_ns:
             return False
         middle_ns = (exchange.asked_ns + exchange.answered_ns) // 2
-        if self._base_ns is None or middle_ns < self._t_ns:
+        if self._base_ns is None:
             self._begin(exchange, middle_ns)
             return True
+        if middle_ns < self._t_ns:
+            return False
         state, cov = self._predicted(middle_ns)
         innovation_s = (exchange.offset_ns - self._base_ns) / NS_PER_S - float(state[0])
         most_s = exchange.round_trip_s / 2.0 + _SIGMAS * math.sqrt(cov[0, 0]) + _SLACK_S

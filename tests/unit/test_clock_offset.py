@@ -1,0 +1,114 @@
+"""What a unit makes of its exchanges with the station: how far off its clock is, and how sure."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from edge.clock_offset import ClockEstimate, ClockOffset, Exchange
+from shared.clock import NS_PER_S
+
+OFFSET_S = 1_800_000_000.0
+HOUR_S = 3600.0
+
+
+def exchange(
+    at_s: float, there_s: float = 0.005, back_s: float = 0.005, offset_s: float = OFFSET_S
+) -> Exchange:
+    """Asked at this monotonic time, with this long on the way there and back."""
+    asked, answered = at_s, at_s + there_s + back_s
+    at_station = asked + there_s + offset_s
+    asked_ns, station_ns, answered_ns = (round(t * 1e9) for t in (asked, at_station, answered))
+    return Exchange(asked_ns, station_ns, station_ns, answered_ns)
+
+
+def estimate(offset: ClockOffset, at_s: float) -> ClockEstimate:
+    found = offset.at(round(at_s * NS_PER_S))
+    assert found is not None
+    return found
+
+
+def off_s(offset: ClockOffset, at_s: float) -> float:
+    """By how much the estimate is wrong."""
+    return (estimate(offset, at_s).offset_ns - round(OFFSET_S * NS_PER_S)) / NS_PER_S
+
+
+@pytest.fixture
+def settled() -> ClockOffset:
+    offset = ClockOffset()
+    for at_s in range(10):
+        assert offset.note(exchange(float(at_s)))
+    return offset
+
+
+def test_before_the_first_exchange_nothing_is_known() -> None:
+    assert ClockOffset().at(0) is None
+
+
+def test_the_first_exchange_is_as_sure_as_its_round_trip_allows() -> None:
+    offset = ClockOffset()
+    offset.note(exchange(0.0, 0.1, 0.1))
+    within_s = 0.1  # half the round trip, evenly; once of the exchange, once of the two ways
+    assert estimate(offset, 0.1).std_s == pytest.approx(within_s * math.sqrt(2 / 3), rel=0.01)
+
+
+@pytest.mark.parametrize("wrong", [(-0.1, 0.0), (0.0, -0.1)])
+def test_an_exchange_that_took_less_than_no_time_is_not_used(wrong: tuple[float, float]) -> None:
+    offset = ClockOffset()
+    assert not offset.note(exchange(0.0, *wrong))
+    assert offset.at(0) is None
+
+
+def test_one_that_was_sent_before_it_was_received_is_not_used() -> None:
+    asked, received, sent, answered = exchange(0.0)
+    offset = ClockOffset()
+    assert not offset.note(Exchange(asked, received + 1_000_000, sent, answered))
+
+
+def test_one_that_was_held_up_on_the_way_moves_it_little(settled: ClockOffset) -> None:
+    std_s = estimate(settled, 10.0).std_s
+    assert settled.note(exchange(10.0, there_s=8.0))
+    assert abs(off_s(settled, 20.0)) < 0.01
+    assert estimate(settled, 20.0).std_s == pytest.approx(std_s, rel=0.5)
+
+
+def test_an_answer_that_comes_after_a_later_one_changes_nothing(settled: ClockOffset) -> None:
+    before = estimate(settled, 20.0)
+    assert not settled.note(exchange(4.0, there_s=4.0))
+    assert estimate(settled, 20.0) == before
+
+
+def test_what_is_impossible_is_believed_the_third_time_in_a_row(settled: ClockOffset) -> None:
+    wrong_s = OFFSET_S + HOUR_S
+    for at_s in (10.0, 11.0):
+        assert not settled.note(exchange(at_s, offset_s=wrong_s))
+    assert settled.note(exchange(12.0))  # and then one that is possible
+    for at_s in (13.0, 14.0):
+        assert not settled.note(exchange(at_s, offset_s=wrong_s))
+        assert abs(off_s(settled, at_s)) < 0.01
+    assert settled.note(exchange(15.0, offset_s=wrong_s))
+    assert off_s(settled, 15.0) == pytest.approx(HOUR_S, abs=0.01)
+    assert settled.note(exchange(16.0, offset_s=wrong_s))
+
+
+def test_it_learns_how_the_clocks_drift_and_is_less_sure_with_time() -> None:
+    offset, drift = ClockOffset(), 3e-5
+    for number in range(60):
+        at_s = 15.0 * number
+        assert offset.note(exchange(at_s, offset_s=OFFSET_S + drift * at_s))
+    last_s = 15.0 * 59
+    assert estimate(offset, last_s).drift == pytest.approx(drift, rel=0.1)
+    later_s = last_s + 600.0
+    error_s = off_s(offset, later_s) - drift * later_s
+    assert abs(error_s) < 3.0 * estimate(offset, later_s).std_s
+    assert abs(error_s) < 0.005
+    stds_s = [estimate(offset, last_s + wait_s).std_s for wait_s in (0.0, 600.0, 86_400.0)]
+    assert stds_s == sorted(stds_s)
+    assert stds_s[-1] > 2.0 * stds_s[0]
+
+
+def test_the_quickest_of_them_says_how_far_the_two_ways_can_differ(settled: ClockOffset) -> None:
+    for at_s in range(10, 40):
+        settled.note(exchange(float(at_s), 0.2, 0.2))
+    assert estimate(settled, 40.0).std_s < 0.01
