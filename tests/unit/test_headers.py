@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from shared.channels import TEMPERATURE
+from shared.channels import OPERATOR, TEMPERATURE
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import decode, encode, header_of
 from shared.envelope import Stamper
 from shared.errors import WireError
-from shared.messages import Header, Temperature
+from shared.messages import STATION_ID, Header, OperatorAction, Temperature
+from shared.messages.muster.v1 import station_pb2
+from shared.messages.station import RegisterUnit
 
 
 @pytest.mark.parametrize(("schema", "unit_id"), [(0, "FF-01"), (1, "")])
@@ -18,6 +20,16 @@ def test_what_does_not_say_who_or_how_is_no_message(schema: int, unit_id: str) -
     assert header_of(payload) is None
     with pytest.raises(WireError, match="no header"):
         decode(TEMPERATURE, payload)
+
+
+def test_what_can_be_read_and_makes_no_sense_is_refused_in_words() -> None:
+    """An action of a newer program; nobody is to act on the half of it that is known."""
+    header = Header(STATION_ID, 7, 1, 5)
+    known = encode(OperatorAction(header, "a1", "chief", RegisterUnit("FF-01", "")))
+    wire = station_pb2.OperatorAction.FromString(known)
+    wire.ClearField("register_unit")
+    with pytest.raises(WireError, match="makes no sense"):
+        decode(OPERATOR, wire.SerializeToString())
 
 
 def test_who_said_it_is_known_where_the_rest_is_not() -> None:
