@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    walk_m_per_sqrt_m: float = 0.04  # the own path's error by distance, each axis
+    walk_m_per_sqrt_m: float = 0.03  # the own path's error by distance, each axis
     turn_rad_per_sqrt_m: float = 0.004  # its heading's wander by distance
     turn_part: float = 0.004  # and by turning
     scale_std: float = 0.015

@@ -1,4 +1,4 @@
-"""Beside a wall there is no room for half a body."""
+"""Beside a wall there is no room for half a body; and of a path's scale walls tell nothing."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from base_station.site.plan import read_plan
 
 CORRIDOR_M, LONG_M = 2.0, 30.0
 NOISE = 0.03**2, 0.004**2
+SCALE_STD = 0.015
 
 
 def corridor() -> FloorGrid:
@@ -41,6 +42,7 @@ def walked_north(east_m: float, std_m: float) -> WallCloud:
     mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
     mean[[0, 1, 2]] = 5.0, east_m, 1.0
     covariance[[0, 1], [0, 1]] = std_m**2
+    covariance[2, 2] = SCALE_STD**2
     covariance[[3, 4, 5, 6, 7], [3, 4, 5, 6, 7]] = 0.01**2, 1.0, 1.0, 1.0, 1.0
     cloud, grid = WallCloud(mean, covariance, 1), corridor()
     for _ in range(30):
@@ -57,3 +59,11 @@ def test_nobody_walks_with_a_shoulder_in_the_wall() -> None:
 
 def test_to_be_close_to_a_wall_does_not_speak_against_the_plan() -> None:
     assert not walked_north(0.1, 0.05).is_contradicted
+
+
+def test_who_leaves_the_walls_knows_the_scale_no_better_than_before() -> None:
+    cloud = walked_north(1.0, 0.3)
+    for one in (cloud, WallCloud.restore(cloud.save())):
+        mean, covariance = one.moments()
+        along = mean[2:4] / np.linalg.norm(mean[2:4])
+        assert math.sqrt(along @ covariance[2:4, 2:4] @ along) >= SCALE_STD

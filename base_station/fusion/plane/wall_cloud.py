@@ -26,7 +26,7 @@ GUESSES = 400
 MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
 UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
 THROUGH_WALL = 0.02  # what is left of a guess's weight
-BESIDE_WALL = 0.2  # the same where there is no room for half a body
+BESIDE_WALL = 0.5  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
@@ -46,6 +46,7 @@ class SavedCloud(msgspec.Struct, frozen=True):
     pending: list[float]
     contradiction: float
     random: tuple[str, str, int, int]
+    scale_var: float = 0.0
 
 
 class WallCloud:
@@ -54,6 +55,8 @@ class WallCloud:
     def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
         self._rng = np.random.Generator(np.random.PCG64(seed))
         self._scale = float(np.hypot(mean[2], mean[3]))
+        along = mean[2:4] / self._scale
+        self._scale_var = float(along @ covariance[2:4, 2:4] @ along)  # walls tell nothing of it
         own, slow = PATH, list(range(STATES))[SLOW]
         spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
         root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
@@ -84,6 +87,7 @@ class WallCloud:
             self._pending.tolist(),
             self._contradiction,
             (str(inner["state"]), str(inner["inc"]), random["has_uint32"], random["uinteger"]),
+            self._scale_var,
         )
 
     @staticmethod
@@ -93,7 +97,7 @@ class WallCloud:
         cloud._log_weights = np.frombuffer(saved.weights).copy()
         cloud._slow = np.frombuffer(saved.slow).reshape(GUESSES, 4).copy()
         cloud._slow_covariance = np.array(saved.slow_covariance)
-        cloud._scale = saved.scale
+        cloud._scale, cloud._scale_var = saved.scale, saved.scale_var
         cloud._pending = np.array(saved.pending)
         cloud._contradiction = saved.contradiction
         state, inc, has_uint32, uinteger = saved.random
@@ -225,6 +229,8 @@ class WallCloud:
             covariance = (apart * weights[:, None]).T @ apart
             covariance[SLOW, SLOW] += self._slow_covariance
             covariance[[0, 1], [0, 1]] += FLOOR_VAR_M2
+            along = mean[2:4] / np.linalg.norm(mean[2:4])
+            covariance[2:4, 2:4] += self._scale_var * np.outer(along, along)
             self._moments = mean, covariance
         mean, covariance = self._moments
         north_m, east_m = float(self._pending[0]), float(self._pending[1])

@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 THROUGH_WALL = 0.02  # what is left of a place's weight: plans lack doors
-BESIDE_WALL = 0.2  # the same where there is no room for half a body
+BESIDE_WALL = 0.5  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
 UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
