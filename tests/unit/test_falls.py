@@ -1,0 +1,118 @@
+"""A drop, a blow, and nobody who walks on: where each of them begins and ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from edge.motion.falls import FallDetector
+from edge.samples import ImuBatch
+from shared.clock import NS_PER_S
+
+RATE_HZ = 100
+WEIGHT_MPS2 = 9.81
+
+
+class Wearer:
+    """Feels one force after another, each in a batch of its own."""
+
+    def __init__(self) -> None:
+        self.falls = FallDetector()
+        self.now_s = 10.0
+
+    def feels(self, force_mps2: float, duration_s: float) -> None:
+        count = round(duration_s * RATE_HZ)
+        t_ns = np.arange(count) * (NS_PER_S // RATE_HZ) + round(self.now_s * NS_PER_S)
+        accel_mps2 = np.tile([0.0, 0.0, force_mps2], (count, 1))
+        self.falls.push(ImuBatch(t_ns, accel_mps2, np.zeros((count, 3))))
+        self.now_s += duration_s
+
+    def drops(self, force_mps2: float = 0.5, duration_s: float = 0.4) -> None:
+        self.feels(force_mps2, duration_s)
+
+    def strikes(self, force_mps2: float = 60.0) -> None:
+        self.feels(force_mps2, 0.03)
+
+    def confirmed(self, after_s: float, motionless_s: float) -> bool:
+        """``after_s`` from now."""
+        return self.falls.confirm(round((self.now_s + after_s) * NS_PER_S), motionless_s)
+
+
+@pytest.fixture
+def wearer() -> Wearer:
+    return Wearer()
+
+
+@pytest.fixture
+def fallen(wearer: Wearer) -> Wearer:
+    wearer.drops()
+    wearer.strikes()
+    return wearer
+
+
+@pytest.mark.parametrize(
+    ("force_mps2", "duration_s", "falls"),
+    [(3.5, 0.3, True), (4.5, 0.3, False), (0.5, 0.28, True), (0.5, 0.2, False)],
+)
+def test_a_drop_is_a_quarter_of_a_second_with_hardly_any_weight(
+    wearer: Wearer, force_mps2: float, duration_s: float, falls: bool
+) -> None:
+    wearer.drops(force_mps2, duration_s)
+    assert not wearer.falls.falling, "not before the blow"
+    wearer.strikes()
+    assert wearer.falls.falling is falls
+
+
+@pytest.mark.parametrize(
+    ("force_mps2", "after_s", "falls"),
+    [(35.0, 0.0, True), (25.0, 0.0, False), (60.0, 0.4, True), (60.0, 0.6, False)],
+)
+def test_the_blow_is_three_times_the_weight_and_follows_at_once(
+    wearer: Wearer, force_mps2: float, after_s: float, falls: bool
+) -> None:
+    wearer.drops()
+    wearer.feels(WEIGHT_MPS2, after_s)
+    wearer.strikes(force_mps2)
+    assert wearer.falls.falling is falls
+
+
+def test_two_hops_are_no_drop(wearer: Wearer) -> None:
+    """Between them the foot stood, in a batch that has nothing else in it."""
+    wearer.drops(duration_s=0.2)
+    wearer.feels(WEIGHT_MPS2, 0.2)
+    wearer.drops(duration_s=0.2)
+    wearer.strikes()
+    assert not wearer.falls.falling
+
+
+def test_who_stirs_for_some_seconds_and_then_lies_still_has_fallen(fallen: Wearer) -> None:
+    for second in range(8):
+        assert not fallen.confirmed(float(second), 0.0)
+        assert fallen.falls.falling
+    assert not fallen.confirmed(7.5, 1.9)
+    assert fallen.confirmed(7.9, 2.0)
+
+
+def test_a_fall_is_confirmed_once(fallen: Wearer) -> None:
+    assert fallen.confirmed(2.5, 2.0)
+    assert not fallen.falls.falling
+    assert not fallen.confirmed(3.0, 2.5)
+
+
+def test_who_still_moves_after_eight_seconds_got_up(fallen: Wearer) -> None:
+    assert not fallen.confirmed(8.5, 0.0)
+    assert not fallen.falls.falling
+    assert not fallen.confirmed(60.0, 30.0), "resting, a minute later"
+
+
+def test_a_clock_that_was_set_back_keeps_nobody_falling(fallen: Wearer) -> None:
+    assert not fallen.confirmed(-5.0, 0.0)
+    assert not fallen.falls.falling
+
+
+def test_samples_that_say_nothing_are_neither_drop_nor_blow(wearer: Wearer) -> None:
+    wearer.drops()
+    wearer.strikes(float("nan"))
+    assert not wearer.falls.falling
+    wearer.strikes()
+    assert wearer.falls.falling, "the drop was no less one"
