@@ -21,6 +21,8 @@ BIAS_RADPS = np.radians(0.5)
 ACCEL_SCALE = 0.03
 CLIPPED_AT = 0.7  # of the recording's largest reading
 LOST = 0.01
+HOLE_AT_S = 10.0
+HOLE_S = 0.15
 JITTER = 0.5  # of a sample interval
 
 
@@ -116,6 +118,12 @@ def samples_lost(description: SensorDescription, imu: ImuBatch, rng: np.random.G
     return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
 
 
+def hole(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+    since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+    kept = np.abs(since_s - HOLE_AT_S) > HOLE_S / 2.0
+    return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+
+
 def late_stamps(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
     late_ns = JITTER * 1e9 / description.rate_hz * rng.random(len(imu))
     t_ns = np.maximum.accumulate(imu.t_ns + late_ns.astype(np.int64))
@@ -157,6 +165,7 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("the same, untold", gyro_clipped_untold),
     Perturbation("accelerometer clips at 70 %", accel_clipped),
     Perturbation("1 % of samples lost", samples_lost),
+    Perturbation("0.15 s lost at once", hole),
     Perturbation("stamps late by half a sample", late_stamps),
     Perturbation("100 Hz, filtered", slower(100.0, filtered=True)),
     Perturbation("66 Hz, filtered", slower(66.0, filtered=True)),

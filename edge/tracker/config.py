@@ -156,7 +156,11 @@ class EskfConfig(NamedTuple):
     start_still_std_mps: float = 0.02  # when it starts at rest
     start_window_s: float = 0.1
 
-    # A gap: what may have happened meanwhile.
+    # A gap: what may have happened meanwhile (gaps.py).
+    gap_bridged_s: float = 0.35  # a swing
+    gap_around_s: float = 0.5  # where rate and force are looked at
+    gap_rate_s: float = 0.07  # for which a rate goes its way
+    gap_force_s: float = 0.05  # the same of a force
     gap_speed_std_mps: float = 1.5
     gap_turn_std_radps: float = 1.0
 

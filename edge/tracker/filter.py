@@ -17,14 +17,13 @@ from edge.tracker.error_model import (
     GYRO_BIAS,
     GYRO_WARMTH,
     LEVER,
-    POSITION,
-    SIZE,
     VELOCITY,
     propagate,
 )
 from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
+from edge.tracker.gaps import doubt_hole, stand_over
 from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
@@ -126,9 +125,10 @@ def _predict(
     before = (k - 1) & mask
     dt_s = ring[slot].t_s - ring[before].t_s
     ring[slot].interval_s = 0.0
-    if ring[slot].flags & SAMPLE_GAP:
+    hole = ring[slot].flags & SAMPLE_GAP != 0
+    if hole and dt_s > config.gap_bridged_s:
         ring[slot].interval_s = -1.0
-        _bridge_gap(ring, progress, state, k, dt_s, config)
+        stand_over(ring, progress, state, k, dt_s, config)
         return
     if dt_s == 0.0:
         return
@@ -152,6 +152,8 @@ def _predict(
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     _add_noise(ring, progress, state, k, dt_s, config)
+    if hole:
+        doubt_hole(ring, progress, state, k, dt_s, config)
     ring[slot].interval_s = dt_s
     for i in range(3):
         step.force_n_mps2[i] = state.force_n_mps2[i]
@@ -203,39 +205,6 @@ def _doubt_axis(state: FilterState, errors: int, axis: int, variance: float) -> 
             state.covariance[errors + i, errors + j] += (
                 rotation[i, axis] * rotation[j, axis] * variance
             )
-
-
-@njit()
-def _bridge_gap(
-    ring: Ring,
-    progress: Progress,
-    state: FilterState,
-    k: int,
-    dt_s: float,
-    config: EskfConfig,
-) -> None:
-    """Stand where the samples ceased, level anew, and say how far the foot may have gone."""
-    stop = min(progress.measured, reach(ring, k))
-    tilt_std_rad = level(ring, k, stop, config.lookahead_s, config, state.quaternion_nb)
-    rotation_matrix(state.quaternion_nb, state.rotation_nb)
-    turn_std_rad = min(config.gap_turn_std_radps * dt_s, math.pi)
-    for i in range(3):
-        state.velocity_n_mps[i] = 0.0
-        _forget(state, VELOCITY + i, config.gap_speed_std_mps**2)
-        position = POSITION + i
-        state.covariance[position, position] += (config.gap_speed_std_mps * dt_s) ** 2
-    for i in range(2):
-        _forget(state, ATTITUDE + i, tilt_std_rad**2)
-    heading = ATTITUDE + 2
-    state.covariance[heading, heading] += turn_std_rad**2
-
-
-@njit()
-def _forget(state: FilterState, index: int, variance: float) -> None:
-    for j in range(SIZE):
-        state.covariance[index, j] = 0.0
-        state.covariance[j, index] = 0.0
-    state.covariance[index, index] = variance
 
 
 @njit()

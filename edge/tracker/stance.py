@@ -25,6 +25,8 @@ MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 def stand(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Use the pseudo-measurements of one still sample."""
     interval_s = max(ring[slot].interval_s, MIN_INTERVAL_S)
+    if interval_s > config.gap_s:
+        interval_s = ring[slot].period_s  # it tells of its own moment, not of the hole
     motion = ring[slot].motion_m2ps4
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]

@@ -65,7 +65,7 @@ RING = np.dtype(
         ("rate_sum_radps", np.float64, 3),  # the same
         ("rate_square_sum_rad2ps2", np.float64),  # the same
         ("unrest_m2ps4", np.float64),  # the same over a longer time, whatever the bias
-        ("interval_s", np.float64),  # since the sample before; negative after a gap
+        ("interval_s", np.float64),  # since the sample before; negative after a long gap
     ],
     align=True,
 )

@@ -106,6 +106,20 @@ def test_a_gap_is_flagged_widens_the_uncertainty_and_heals():
     assert lost_m < 2.5 * std_m
 
 
+@pytest.mark.parametrize("begin_s", [IN_SWING - 0.2, IN_SWING, IN_STANCE])
+def test_a_hole_shorter_than_a_swing_is_bridged(begin_s):
+    t_ns, accel, gyro = copy()
+    first, stop = index(begin_s), index(begin_s + 0.14)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep])
+    whole = run(*copy())
+    assert flagged(rows, Reason.SAMPLE_GAP)[first]
+    off_m = np.linalg.norm(rows.position_n_m[-1] - whole.position_n_m[-1])
+    assert off_m < 0.2
+    variances_m2 = np.diagonal(rows.position_cov_m2[-1] - whole.position_cov_m2[-1])
+    assert off_m < 3.0 * np.sqrt(variances_m2.sum())
+
+
 def test_a_gap_makes_no_heading_surer():
     t_ns, accel, gyro = copy()
     description = SensorDescription("clipping", 200.0, gyro_full_scale_radps=0.4)  # much doubt
