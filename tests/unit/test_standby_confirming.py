@@ -67,6 +67,25 @@ class TestConfirming:
         copy.note(Place(5, 1))
         assert told.done()
 
+    def test_each_is_told_once_whatever_the_standby_says_after_it(self, copy: OtherCopy) -> None:
+        copy.note(Place(4, 1))
+        first = self.act(copy)
+        self.place = Place(6, 1)
+        second = self.act(copy)
+        for place in (Place(5, 1), Place(5, 1), Place(6, 1)):
+            copy.note(place)
+            copy.check()
+            assert first.done()
+        assert second.done()
+
+    def test_when_the_station_ends_nobody_is_left_waiting(self, copy: OtherCopy) -> None:
+        copy.note(Place(4, 1))
+        told = [self.act(copy) for _ in range(3)]
+        assert not any(one.done() for one in told)
+        copy.close()
+        assert all(one.done() for one in told)
+        copy.check()
+
     def test_it_does_not_wait_for_long_and_that_is_said(
         self, copy: OtherCopy, clock: ManualClock
     ) -> None:
