@@ -101,6 +101,17 @@ class TestConfirming:
         copy.check()
         assert copy.is_behind
 
+    def test_what_a_station_that_stops_does_not_do_is_said(self, copy: OtherCopy) -> None:
+        class Stopping:
+            def submit(self, by: str, action: Action) -> Future[ActionDone]:
+                done: Future[ActionDone] = Future()
+                done.set_exception(StoreError("the station is stopping"))
+                return done
+
+        told = LeadersGate(Stopping(), copy, lambda: None).submit("ada", CloseIncident("i"))
+        with pytest.raises(StoreError, match="stopping"):
+            told.result(0.0)
+
     def test_nobody_acts_at_a_standby(self, copy: OtherCopy) -> None:
         with pytest.raises(StoreError, match="this is the standby"):
             self.act(copy, "this is the standby").result(0.0)
