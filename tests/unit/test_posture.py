@@ -1,0 +1,183 @@
+"""How the foot is held: standing, tipped over, lying, on hands and knees, gone down suddenly."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from edge.motion.body_motion import WINDOW_NS, MotionWindow
+from edge.motion.posture import Posture
+from edge.motion.strides import Stride
+from edge.samples import Floats
+
+WEIGHT_MPS2 = 9.81
+KNEELING_DEG, ON_THE_BACK_DEG = 80.0, -90.0
+
+
+class Foot:
+    """Held at an angle to standing, half a second at a time."""
+
+    def __init__(self) -> None:
+        self.posture = Posture()
+        self.now_ns = 0
+        self.still = 0  # windows
+        self.held(0.0, 1.0)
+
+    def held(self, angle_deg: float, duration_s: float, rate_radps: float | None = None) -> None:
+        """Still, or moving at a rate."""
+        for _ in range(round(2.0 * duration_s)):
+            self.now_ns += WINDOW_NS
+            moving = rate_radps is not None
+            self.still = 0 if moving else self.still + 1
+            window = MotionWindow(
+                self.now_ns, moving, WEIGHT_MPS2 * up(angle_deg), rate_radps or 0.01
+            )
+            self.posture.take_window(window, self.still / 2.0)
+
+    def steps(self, angle_deg: float, length_m: float = 0.4) -> None:
+        stride = Stride(self.now_ns, 1.0, length_m, 0.0, up(angle_deg))
+        self.posture.take_stride(stride)
+
+
+def up(angle_deg: float) -> Floats:
+    angle_rad = math.radians(angle_deg)
+    return np.array([math.sin(angle_rad), 0.0, math.cos(angle_rad)])
+
+
+@pytest.fixture
+def foot() -> Foot:
+    return Foot()
+
+
+@pytest.mark.parametrize(
+    ("angle_deg", "still_s", "lying"),
+    [(60.0, 2.0, True), (60.0, 1.5, False), (50.0, 20.0, False), (-60.0, 2.0, True)],
+)
+def test_a_foot_that_rests_tipped_over_for_two_seconds_is_lying(
+    foot: Foot, angle_deg: float, still_s: float, lying: bool
+) -> None:
+    foot.held(angle_deg, 3.0, 1.0)
+    foot.held(angle_deg, still_s)
+    assert foot.posture.lying is lying
+
+
+def test_who_turns_over_is_still_lying_and_who_stands_up_is_not(foot: Foot) -> None:
+    foot.held(80.0, 3.0)
+    foot.held(80.0, 3.0, 1.5)
+    lying = [foot.posture.lying]
+    foot.held(10.0, 0.5, 1.5)
+    lying.append(foot.posture.lying)
+    assert lying == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("rate_radps", "going_down_s", "still_s", "collapsed"),
+    [
+        (3.0, 1.0, 1.0, True),
+        (3.0, 1.0, 0.5, False),  # not at rest yet
+        (2.0, 1.0, 4.0, False),  # as somebody lies down
+        (3.0, 2.0, 1.0, True),
+        (3.0, 3.0, 4.0, False),  # crouched for a while: it was no collapse
+    ],
+)
+def test_who_goes_down_suddenly_and_does_not_move_has_collapsed(
+    foot: Foot, rate_radps: float, going_down_s: float, still_s: float, collapsed: bool
+) -> None:
+    foot.held(70.0, going_down_s, rate_radps)
+    foot.held(90.0, still_s)
+    assert foot.posture.collapsed is collapsed
+
+
+def test_strides_are_quick_and_lying_down_after_them_is_no_collapse(foot: Foot) -> None:
+    foot.held(0.0, 2.0, 6.0)
+    foot.held(70.0, 1.0, 1.0)
+    foot.held(90.0, 4.0)
+    assert not foot.posture.collapsed
+    assert foot.posture.lying
+
+
+def test_who_moves_again_has_not_collapsed_for_good(foot: Foot) -> None:
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 2.0)
+    collapsed = [foot.posture.collapsed]
+    foot.held(90.0, 0.5, 1.0)
+    collapsed.append(foot.posture.collapsed)
+    assert collapsed == [True, False]
+
+
+def test_a_unit_that_was_never_seen_standing_says_nothing() -> None:
+    posture = Posture()
+    for second in range(1, 20):
+        window = MotionWindow(second * WINDOW_NS, True, WEIGHT_MPS2 * up(90.0), 9.0)
+        posture.take_window(window, 0.0)
+    assert not any((posture.lying, posture.collapsed, posture.tipped))
+
+
+def test_one_tipped_step_is_a_stumble_and_two_alike_are_crawling(foot: Foot) -> None:
+    said = []
+    for angle_deg in (KNEELING_DEG, KNEELING_DEG, -KNEELING_DEG, -KNEELING_DEG, 10.0):
+        foot.steps(angle_deg)
+        said.append((foot.posture.tipped_step, foot.posture.crawling))
+    assert said == [(True, False), (True, True), (True, False), (True, True), (False, False)]
+
+
+@pytest.mark.parametrize(("angle_deg", "tipped"), [(35.0, False), (45.0, True)])
+def test_a_shoe_rolls_by_some_forty_degrees(foot: Foot, angle_deg: float, tipped: bool) -> None:
+    foot.steps(angle_deg)
+    assert foot.posture.tipped_step is tipped
+
+
+def test_nobody_makes_long_strides_on_hands_and_knees(foot: Foot) -> None:
+    foot.steps(KNEELING_DEG)
+    foot.steps(KNEELING_DEG)
+    foot.steps(KNEELING_DEG, length_m=0.9)
+    assert not foot.posture.crawling
+
+
+@pytest.mark.parametrize(
+    ("rests_deg", "still_s", "lying"),
+    [
+        (KNEELING_DEG, 5.5, False),
+        (KNEELING_DEG, 6.0, True),
+        (ON_THE_BACK_DEG, 1.5, False),
+        (ON_THE_BACK_DEG, 2.0, True),
+    ],
+)
+def test_who_crawls_may_rest_on_hands_and_knees_and_not_on_the_back(
+    foot: Foot, rests_deg: float, still_s: float, lying: bool
+) -> None:
+    foot.held(KNEELING_DEG, 4.0, 1.0)
+    foot.steps(KNEELING_DEG)
+    foot.steps(KNEELING_DEG)
+    foot.held(rests_deg, still_s)
+    assert foot.posture.lying is lying
+
+
+def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None:
+    foot.held(KNEELING_DEG, 1.0, 4.0)
+    foot.steps(KNEELING_DEG)
+    foot.steps(KNEELING_DEG)
+    foot.held(KNEELING_DEG, 4.0)
+    assert not foot.posture.collapsed
+
+
+def test_tipped_is_longer_than_a_swing(foot: Foot) -> None:
+    tipped = []
+    for _ in range(4):
+        foot.held(70.0, 0.5, 1.0)
+        tipped.append(foot.posture.tipped)
+    foot.held(0.0, 0.5, 1.0)
+    tipped.append(foot.posture.tipped)
+    assert tipped == [False, False, False, True, False]
+
+
+def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
+    """It was strapped on while its wearer sat, thirty degrees aside."""
+    foot = Foot()
+    foot.held(30.0, 0.5, 1.0)
+    for _ in range(30):
+        foot.steps(30.0, length_m=1.3)
+    foot.held(-40.0, 3.0)
+    assert foot.posture.lying, "seventy degrees from how it stands"
