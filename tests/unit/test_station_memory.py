@@ -30,7 +30,7 @@ from shared.messages.station import Action, RegisterUnit, SetAnchor
 from tests.live_station import Screen, make_pipeline
 
 UNIT = "FF-01"
-FULL_S, LATE_S = 36 * 60, 72 * 60  # by then trails, and what a late fix is laid on, are full
+FULL_S, LATE_S = 45 * 60, 81 * 60  # by then trails, and what a late fix is laid on, are full
 BYTES_A_SECOND = 17.0  # half a megabyte a minute of 500 wearers
 NO_DATA = (type, ModuleType, FunctionType, BuiltinFunctionType)
 

@@ -35,10 +35,11 @@ class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
 class PathMemory(msgspec.Struct):
     """The last half hour, in the unit's monotonic time; finer in the last minute.
 
-    A unit is remembered in some ten thousand numbers; packed, they are not as many objects.
+    A unit is remembered in some ten thousand numbers; packed, they are not as many objects.  Pieces
+    of much the same size come and go, where one that grew would leave ever larger holes behind.
     """
 
-    packed: bytes = b""  # rows, in order
+    packed: list[bytes] = msgspec.field(default_factory=list)  # rows, in order, a minute or so each
     points: list[OwnPlace] = msgspec.field(default_factory=list)  # behind the packed ones
 
     def note(self, position: Position) -> None:
@@ -60,7 +61,7 @@ class PathMemory(msgspec.Struct):
         if self.packed and point.t_ns < self.points[0].t_ns:
             rows = self._rows()
             at = np.searchsorted(rows["t_ns"], point.t_ns)
-            self.packed = np.insert(rows, at, _packed([point])).tobytes()
+            self.packed = [np.insert(rows, at, _packed([point])).tobytes()]
         else:
             self.points.insert(self._after(point.t_ns), point)
 
@@ -97,21 +98,25 @@ class PathMemory(msgspec.Struct):
         return bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
 
     def _rows(self) -> NDArray[np.void]:
-        return np.frombuffer(self.packed, PLACE_ROW)
+        return np.frombuffer(b"".join(self.packed), PLACE_ROW)
 
     def _pack(self, now_ns: int) -> None:
         """What has become older than a minute is thinned, and what is too old goes."""
-        rows = self._rows()
-        rows = rows[np.searchsorted(rows["t_ns"], now_ns - KEPT_NS) :]
         kept: list[OwnPlace] = []
-        last_ns = int(rows["t_ns"][-1]) if len(rows) else now_ns - KEPT_NS
+        last_ns = _end_ns(self.packed[-1]) if self.packed else now_ns - KEPT_NS
         dense = self._after(now_ns - DENSE_NS)
         for point in self.points[:dense]:
             if point.t_ns - last_ns >= COARSE_NS:
                 kept.append(point)
                 last_ns = point.t_ns
-        self.packed = rows.tobytes() + _packed(kept).tobytes()
+        if kept:
+            self.packed.append(_packed(kept).tobytes())
+        self.packed = [piece for piece in self.packed if _end_ns(piece) >= now_ns - KEPT_NS]
         del self.points[:dense]
+
+
+def _end_ns(piece: bytes) -> int:
+    return int(np.frombuffer(piece[-PLACE_ROW.itemsize :], PLACE_ROW)["t_ns"][0])
 
 
 def _packed(points: list[OwnPlace]) -> NDArray[np.void]:
