@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
-from base_station.events import Received, TrailFilled, event_of
+from base_station.events import Received, Rejected, TrailFilled, event_of
 from base_station.fusion import FUSERS
 from base_station.pipeline import StationPipeline
 from shared.channels import EVENT, POSITION, backfilled_key
@@ -93,3 +93,16 @@ def test_a_run_of_the_program_that_nobody_heard_is_not_taken_for_the_present_one
     key = backfilled_key("FF-01", POSITION.suffix)
     walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
     assert [boot.boot_id for boot in walked.unit.boots] == [6, 7]
+
+
+def test_what_cannot_be_read_has_come_all_the_same(walked):
+    """Of a newer program, or damaged: it is not fetched from the journal again and again."""
+    payload = encode(walked.position(15))
+    key = POSITION.key("FF-01")
+    unread = Rejected(START_NS + 31 * NS_PER_S, key, "of a newer program", ("FF-01", 7, 16))
+    assert not walked.unit.has(7, 16)
+    walked.pipeline.step(unread)
+    assert walked.unit.has(7, 16)
+    assert walked.pipeline.state.counts.undecodable == 1
+    late = event_of(START_NS + 32 * NS_PER_S, backfilled_key("FF-01", POSITION.suffix), payload)
+    assert walked.pipeline.step(late) == []

@@ -9,6 +9,8 @@ import pytest
 
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
+from shared.channels import SIGHTING, backfilled_key
+from shared.codec import encode
 from shared.messages import Sighting, SightingKind
 from shared.messages.pins import (
     PlaceBeacon,
@@ -51,6 +53,20 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     walk.script.act(RemoveBeacon("door-3"))
     assert walk.state(pin.pin_id) == "waiting"
     assert walk.now_off_m("FF-01") == before_m
+
+
+def test_a_beacon_that_was_passed_out_of_reach_counts_when_the_journal_tells_of_it(
+    walk: Walk,
+) -> None:
+    script, passed_s = walk.script, walk.walked_s - 100
+    script.act(PlaceBeacon("b1", "door", *truth(passed_s), None, 0.2, 3.0))
+    before_m = walk.worst_m("FF-01")
+    seen = Sighting(script.header("FF-01", float(passed_s)), SightingKind.BEACON, "b1", 0.5)
+    script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(seen))
+    (pin,) = script.pipeline.state.pins.values()
+    assert walk.state(pin.pin_id) == "used"
+    assert pin.t_ns == script.t_ns - 100 * 10**9
+    assert walk.worst_m("FF-01") < 0.7 * before_m
 
 
 def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
