@@ -46,3 +46,20 @@ def test_nobody_but_units_is_kept(feed: StandbyFeed) -> None:
     feed.offer("muster/v1/u/command/send", b"the other station said it")
     feed.lead()
     assert list(feed.take(0.0)) == []
+
+
+def test_what_is_kept_of_the_bus_is_bounded(feed: StandbyFeed) -> None:
+    size = 1_000_000
+    for number in range(40):
+        feed.offer(POSITION.key("u"), number.to_bytes(2, "big") + bytes(size))
+    feed.lead()
+    kept = [int.from_bytes(payload[:2], "big") for _, _, payload in feed.take(1.0)]
+    assert kept == list(range(kept[0], 40)), "the newest"
+    assert 10 <= len(kept) <= 17
+
+
+def test_who_waits_for_events_can_be_woken(feed: StandbyFeed) -> None:
+    feed.wake()
+    assert list(feed.take(3600.0)) == []
+    feed.deliver(EVENTS)
+    assert list(feed.take(3600.0)) == EVENTS

@@ -105,3 +105,14 @@ def test_linked_units_are_counted(ends: Ends) -> None:
     assert ends.hearing.units == 1
     token.close()
     assert ends.hearing.units == 0
+
+
+def test_another_station_that_said_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
+    token = ends.speaker.declare_alive(key_of("b", "alive"))
+    own = ends.speaker.declare_alive(key_of("a", "alive"))
+    ends.beat()
+    own.close()
+    ends.clock.advance(2.0)
+    assert ends.election.is_there(ends.clock.monotonic_ns()), "its own token says nothing of it"
+    token.close()
+    assert not ends.election.is_there(ends.clock.monotonic_ns())
