@@ -19,6 +19,7 @@ from base_station.api.hub import Client, Hub
 from base_station.bench.rig.units import Wearer
 from base_station.data_folder import DataFolder
 from base_station.db.projection import SqlProjection
+from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.drive import StationDrive
 from base_station.fusion import FUSERS
@@ -26,6 +27,7 @@ from base_station.live.surroundings import Record, Surroundings
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
+from base_station.segment_index import SegmentIndex
 from base_station.views import StationFacts
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock, SystemClock
@@ -59,6 +61,8 @@ class CompressedStation:
         store = closing.enter_context(Store(data.database))
         projection = SqlProjection(store)
         closing.callback(projection.close)
+        index = SegmentIndex(Records(store, clock), {})
+        closing.callback(lambda: index.update(recorder.segments()))
         hub = Hub()
         drive = StationDrive(
             StationPipeline(ALARMS, FUSERS[0]),
