@@ -22,6 +22,7 @@ from shared.clock import NS_PER_S
 
 SUFFIX = ".checkpoint"
 _PART = "saving.part"
+_NOT_OURS = frozenset({"node_modules", "__pycache__"})  # in a checkout; npm may be replacing them
 KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
 KEPT_BYTES = 2_000_000_000
@@ -112,21 +113,9 @@ def _program() -> int:
     return total
 
 
-def _modules(package: Path) -> Iterator[Path]:
-    """In a checkout there are other folders, the console's parts with tens of thousands of files."""
-    for path in sorted(package.iterdir()):
+def _modules(folder: Path) -> Iterator[Path]:
+    for path in sorted(folder.iterdir()):
         if path.suffix == ".py":
             yield path
-        elif (path / "__init__.py").is_file():
+        elif path.is_dir() and path.name not in _NOT_OURS:
             yield from _modules(path)
-
-
-def _read(path: Path, program: int) -> SavedState | None:
-    try:
-        file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
-    except (OSError, msgspec.MsgspecError, UnicodeDecodeError):
-        return None
-    if file.program != program or zlib.crc32(file.pipeline) != file.crc32:
-        return None
-    checkpoint = read_checkpoint(zstandard.ZstdDecompressor().decompress(file.pipeline))
-    return SavedState(file.t_ns, file.events_at_t, checkpoint) if checkpoint else None
