@@ -119,3 +119,14 @@ def _modules(folder: Path) -> Iterator[Path]:
             yield path
         elif path.is_dir() and path.name not in _NOT_OURS:
             yield from _modules(path)
+
+
+def _read(path: Path, program: int) -> SavedState | None:
+    try:
+        file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
+    except (OSError, msgspec.MsgspecError, UnicodeDecodeError):
+        return None
+    if file.program != program or zlib.crc32(file.pipeline) != file.crc32:
+        return None
+    checkpoint = read_checkpoint(zstandard.ZstdDecompressor().decompress(file.pipeline))
+    return SavedState(file.t_ns, file.events_at_t, checkpoint) if checkpoint else None
