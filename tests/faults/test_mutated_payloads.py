@@ -111,7 +111,7 @@ class Said:
 class Written:
     """A ``Log`` that counts, and keeps the first records."""
 
-    problem = ""
+    problem = little_room = ""
     is_behind = False
 
     def __init__(self) -> None:
