@@ -11,7 +11,7 @@ from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
 _NUMBER = re.compile(r"\d+")
-_NAMED_WHEN_FAILING = ("drive", "pipeline", "bus", "checkpoint")
+_HEARD_OF_WHEN_FAILING = ("drive", "pipeline", "bus", "checkpoint")  # by ``note`` and ``failed``
 log = logging.getLogger(__name__)
 
 
@@ -44,7 +44,7 @@ class SelfWatch:
         reported, perhaps by an earlier run of the program.  Parts that others watch are left to
         them.
         """
-        now = {**dict.fromkeys(_NAMED_WHEN_FAILING, ""), **seen, **self._failed}
+        now = {**dict.fromkeys(_HEARD_OF_WHEN_FAILING, ""), **seen, **self._failed}
         self._failed = {}
         for part, text in now.items():
             if text:

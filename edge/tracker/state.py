@@ -203,10 +203,7 @@ FILTER = np.dtype(
         ("landing_off", np.float64),  # mean velocity that a landing is off, m/s for each radian
         ("strike_off", np.float64),  # ... of the vertical velocity: what heel strikes have left
         ("strikes", np.float64),  # from which that is known
-        (
-            "faultless_var_m2ps2",
-            np.float64,
-        ),  # of a velocity since it stood, without what faults add
+        ("faultless_var_m2ps2", np.float64),  # of a velocity since it stood, but for faults
         ("landings", np.float64),  # from which landing_off is known
         ("swing_speed_mps", np.float64),  # the foot's highest since it stood
         ("gain_off", np.float64),  # mean of landings that tell of the gains, at an ordinary speed

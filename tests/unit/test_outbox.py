@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sized
+from contextlib import contextmanager
 from functools import partial
 
 import pytest
@@ -21,6 +22,22 @@ def spool(tmp_path):
     spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
     yield spool
     spool.close()
+
+
+@pytest.fixture
+def full_disk(spool, monkeypatch):
+    """While it is entered, the disk takes nothing."""
+
+    def refuse(messages):
+        raise StoreError("the disk is full")
+
+    @contextmanager
+    def full():
+        with monkeypatch.context() as patch:
+            patch.setattr(spool, "append", refuse)
+            yield
+
+    return full
 
 
 def test_everything_is_sent_in_order_and_was_on_disk_before(spool, stamper):
@@ -63,20 +80,14 @@ def test_what_is_on_disk_is_not_written_again(spool, stamper, monkeypatch):
     assert outbox.never_saved == 0
 
 
-def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monkeypatch):
+def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, full_disk):
     sent = []
     outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
-    append = spool.append
-
-    def refuse(messages):
-        raise StoreError("the disk is full")
-
-    monkeypatch.setattr(spool, "append", refuse)
-    outbox.put((Temperature(stamper.header(), 20.0), Temperature(stamper.header(), 21.0)))
-    until(lambda: len(sent) == 2)
-    assert "the disk is full" in str(outbox.storage_fault)
-    assert outbox.is_working
-    monkeypatch.setattr(spool, "append", append)
+    with full_disk():
+        outbox.put((Temperature(stamper.header(), 20.0), Temperature(stamper.header(), 21.0)))
+        until(lambda: len(sent) == 2)
+        assert "the disk is full" in str(outbox.storage_fault)
+        assert outbox.is_working
     outbox.put((Temperature(stamper.header(), 22.0),))
     outbox.close()
     assert [entry.payload for entry in spool.read(spool.boot_id, 1, 9)] == sent
@@ -84,40 +95,29 @@ def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, monk
     assert not outbox.storage_fault
 
 
-def test_an_alert_is_not_ousted_by_what_came_after_it(spool, stamper, monkeypatch):
+def test_an_alert_is_not_ousted_by_what_came_after_it(spool, stamper, monkeypatch, full_disk):
     """Neither a disk nor a link for minutes: the mayday is what must not be missing."""
-
-    def refuse(messages):
-        raise StoreError("the disk is full")
-
     monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
     sent = []
     outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
-    append = spool.append
-    monkeypatch.setattr(spool, "append", refuse)
-    outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
-    outbox.put(Temperature(stamper.header(), degc) for degc in range(5))
-    until(partial(holds, sent, 6))
-    monkeypatch.setattr(spool, "append", append)
+    with full_disk():
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        outbox.put(Temperature(stamper.header(), degc) for degc in range(5))
+        until(partial(holds, sent, 6))
     outbox.put((Temperature(stamper.header(), 5.0),))
     outbox.close()
     assert [entry.seq for entry in spool.read(spool.boot_id, 1, 9)] == [1, 5, 6, 7]
     assert outbox.never_saved == 3
 
 
-def test_what_a_full_disk_cost_is_counted_and_said(spool, stamper, monkeypatch, caplog):
-    def refuse(messages):
-        raise StoreError("the disk is full")
-
+def test_what_a_full_disk_cost_is_counted_and_said(spool, stamper, monkeypatch, caplog, full_disk):
     monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
     sent = []
     outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
-    append = spool.append
-    monkeypatch.setattr(spool, "append", refuse)
-    for number in range(1, 6):
-        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
-        until(partial(holds, sent, number))
-    monkeypatch.setattr(spool, "append", append)
+    with full_disk():
+        for number in range(1, 6):
+            outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+            until(partial(holds, sent, number))
     outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
     outbox.close()
     assert [entry.payload for entry in spool.read(spool.boot_id, 1, 9)] == sent[3:]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
 from base_station.fusion.plane.state import DRIFT, PATH, SLOW, STATES
+from base_station.fusion.ways import BESIDE_WALL, CLIMBS, OFF_STAIRS, THROUGH_WALL, UNSEEN_M
 from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
 
@@ -24,11 +25,6 @@ Floats = NDArray[np.float64]
 
 GUESSES = 400
 MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
-UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
-THROUGH_WALL = 0.02  # what is left of a guess's weight
-BESIDE_WALL = 0.5  # the same where there is no room for half a body
-OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
-CLIMBS = 0.25  # rise over way from which a path climbs
 KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
 SHAKEN_M = 0.05  # and how far their places are shaken
 FLOOR_VAR_M2 = 0.2**2  # of any place: people do not walk on lines, and plans lie decimetres aside

@@ -21,17 +21,13 @@ from numpy.typing import NDArray
 from base_station.fusion.path.points import BREAK, RESTART
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
 from base_station.fusion.smoother.equations import Equations
+from base_station.fusion.ways import BESIDE_WALL, CLIMBS, OFF_STAIRS, THROUGH_WALL, UNSEEN_M
 from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-THROUGH_WALL = 0.02  # what is left of a place's weight: plans lack doors
-BESIDE_WALL = 0.5  # the same where there is no room for half a body
-OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
-CLIMBS = 0.25  # rise over way from which a path climbs
-UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
 LOOKS = 11  # places each way, within
 WIDE = 2.5  # standard deviations
 SHARPEST_M = 0.01  # nothing is told better
