@@ -58,7 +58,8 @@ def test_what_is_longer_ago_is_not(hour: PathMemory) -> None:
 
 def test_it_stays_small(hour: PathMemory) -> None:
     assert len(hour.points) < MOST_POINTS
-    assert len(b"".join(hour.packed)) < 20 * (KEPT_NS // COARSE_NS + MOST_POINTS)
+    size = len(hour.loose) + sum(len(chunk.columns) for chunk in hour.packed.chunks)
+    assert size < 8 * (KEPT_NS // COARSE_NS)
 
 
 def test_the_newest_counts_for_what_is_to_come(hour: PathMemory) -> None:

@@ -6,9 +6,9 @@ from bisect import bisect_left
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from shared.clock import NS_PER_S
+from base_station.fusion.path.packed import CHUNK, Packed, Records
+from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Position
 
 KEPT_NS = 30 * 60 * NS_PER_S
@@ -18,7 +18,7 @@ COARSE_NS = 2 * NS_PER_S
 MOST_POINTS = 600  # that are not packed; a minute has half as many
 NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known
 PLACE_ROW = np.dtype(
-    [("t_ns", "<i8"), ("north_mm", "<i4"), ("east_mm", "<i4"), ("distance_mm", "<i4")]
+    [("t_ms", "<i8"), ("north_mm", "<i8"), ("east_mm", "<i8"), ("distance_mm", "<i8")]
 )
 _MOST_MM = 2**31 - 1
 
@@ -33,14 +33,11 @@ class OwnPlace(msgspec.Struct, frozen=True, array_like=True):
 
 
 class PathMemory(msgspec.Struct):
-    """The last half hour, in the unit's monotonic time; finer in the last minute.
+    """The last half hour, in the unit's monotonic time; finer in the last minute, packed before."""
 
-    A unit is remembered in some ten thousand numbers; packed, they are not as many objects.  Pieces
-    of much the same size come and go, where one that grew would leave ever larger holes behind.
-    """
-
-    packed: list[bytes] = msgspec.field(default_factory=list)  # rows, in order, a minute or so each
-    points: list[OwnPlace] = msgspec.field(default_factory=list)  # behind the packed ones
+    packed: Packed = msgspec.field(default_factory=Packed)
+    loose: bytes = b""  # rows, behind the packed ones
+    points: list[OwnPlace] = msgspec.field(default_factory=list)  # behind the loose ones
 
     def note(self, position: Position) -> None:
         """Points come in order; where they come too fast, the newest replaces its neighbour."""
@@ -58,10 +55,10 @@ class PathMemory(msgspec.Struct):
         near = [one for one in self._around(point.t_ns) if one is not None]
         if not near or any(abs(one.t_ns - point.t_ns) < STEP_NS for one in near):
             return
-        if self.packed and point.t_ns < self.points[0].t_ns:
+        if self.loose and point.t_ns < self.points[0].t_ns:
             rows = self._rows()
-            at = np.searchsorted(rows["t_ns"], point.t_ns)
-            self.packed = [np.insert(rows, at, _packed([point])).tobytes()]
+            at = np.searchsorted(rows["t_ms"], point.t_ns // NS_PER_MS)
+            self.packed, self.loose = Packed(), np.insert(rows, at, _rows_of([point])).tobytes()
         else:
             self.points.insert(self._after(point.t_ns), point)
 
@@ -87,51 +84,55 @@ class PathMemory(msgspec.Struct):
         points, at = self.points, self._after(t_ns)
         before = points[at - 1] if at > 0 else None
         after = points[at] if at < len(points) else None
-        if before is None and self.packed:
+        if before is None:
             rows = self._rows()
-            row = int(np.searchsorted(rows["t_ns"], t_ns))
-            before = _unpacked(rows[row - 1]) if row > 0 else None
-            after = _unpacked(rows[row]) if row < len(rows) else after
+            row = int(np.searchsorted(rows["t_ms"], t_ns / NS_PER_MS))
+            before = _place(rows[row - 1]) if row > 0 else None
+            after = _place(rows[row]) if row < len(rows) else after
         return before, after
 
     def _after(self, t_ns: int) -> int:
         return bisect_left(self.points, t_ns, key=lambda point: point.t_ns)
 
-    def _rows(self) -> NDArray[np.void]:
-        return np.frombuffer(b"".join(self.packed), PLACE_ROW)
+    def _rows(self) -> Records:
+        return np.concatenate((self.packed.rows(PLACE_ROW), self._loose()))
+
+    def _loose(self) -> Records:
+        return np.frombuffer(self.loose, PLACE_ROW)
 
     def _pack(self, now_ns: int) -> None:
         """What has become older than a minute is thinned, and what is too old goes."""
         kept: list[OwnPlace] = []
-        last_ns = _end_ns(self.packed[-1]) if self.packed else now_ns - KEPT_NS
+        rows, oldest_ns = self._loose(), now_ns - KEPT_NS
+        last_ns = int(rows["t_ms"][-1]) * NS_PER_MS if len(rows) else oldest_ns
         dense = self._after(now_ns - DENSE_NS)
         for point in self.points[:dense]:
             if point.t_ns - last_ns >= COARSE_NS:
                 kept.append(point)
                 last_ns = point.t_ns
-        if kept:
-            self.packed.append(_packed(kept).tobytes())
-        self.packed = [piece for piece in self.packed if _end_ns(piece) >= now_ns - KEPT_NS]
         del self.points[:dense]
+        rows = np.concatenate((rows, _rows_of(kept)))
+        self.packed.cut(oldest_ns // NS_PER_MS, PLACE_ROW)
+        rows = rows[rows["t_ms"] >= oldest_ns // NS_PER_MS]
+        while len(rows) > CHUNK:
+            self.packed.add(rows[:CHUNK], lambda rows: rows[::2])
+            rows = rows[CHUNK:]
+        self.loose = rows.tobytes()
 
 
-def _end_ns(piece: bytes) -> int:
-    return int(np.frombuffer(piece[-PLACE_ROW.itemsize :], PLACE_ROW)["t_ns"][0])
-
-
-def _packed(points: list[OwnPlace]) -> NDArray[np.void]:
+def _rows_of(points: list[OwnPlace]) -> Records:
     """To a millimetre; what is farther than a number holds is at its end."""
     rows = np.zeros(len(points), PLACE_ROW)
-    rows["t_ns"] = [point.t_ns for point in points]
+    rows["t_ms"] = [point.t_ns // NS_PER_MS for point in points]
     for name in ("north", "east", "distance"):
         metres = np.array([getattr(point, f"{name}_m") for point in points])
         rows[f"{name}_mm"] = np.rint(np.clip(metres * 1e3, -_MOST_MM, _MOST_MM))
     return rows
 
 
-def _unpacked(row: np.void) -> OwnPlace:
-    t_ns, *lengths_mm = row.item()
-    return OwnPlace(t_ns, *(length_mm * 1e-3 for length_mm in lengths_mm))
+def _place(row: np.void) -> OwnPlace:
+    t_ms, *lengths_mm = row.item()
+    return OwnPlace(t_ms * NS_PER_MS, *(length_mm * 1e-3 for length_mm in lengths_mm))
 
 
 def _point(position: Position) -> OwnPlace:
