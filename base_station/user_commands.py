@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+_BY_COMMAND = "muster base users"  # in the audit
+
 users = typer.Typer(help="Who may log in.", no_args_is_help=True)
 
 
@@ -18,7 +20,8 @@ def list_users(data: Path = Path("muster-data")) -> None:
     from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
-        for user in open_accounts(data, closing).users():
+        accounts, _ = open_accounts(data, closing)
+        for user in accounts.users():
             typer.echo(f"{user.username}\t{user.role}")
 
 
@@ -33,7 +36,10 @@ def add_user(
     from base_station.db.principals import Role  # noqa: PLC0415
 
     with ExitStack() as closing:
-        open_accounts(data, closing).add_user(name, _ask_password(), Role.of(role))
+        accounts, records = open_accounts(data, closing)
+        given = Role.of(role)
+        accounts.add_user(name, _ask_password(), given)
+        records.audit(_BY_COMMAND, "AddedUser", f"{name} as {given.word}")
 
 
 @users.command("password")
@@ -42,7 +48,9 @@ def change_password(name: str, data: Path = Path("muster-data")) -> None:
     from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
-        open_accounts(data, closing).change_user(name, _ask_password(), None)
+        accounts, records = open_accounts(data, closing)
+        accounts.change_user(name, _ask_password(), None)
+        records.audit(_BY_COMMAND, "ChangedUser", f"{name}: password")
 
 
 @users.command("remove")
@@ -51,7 +59,9 @@ def remove_user(name: str, data: Path = Path("muster-data")) -> None:
     from base_station.app.folder import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
-        open_accounts(data, closing).remove_user(name)
+        accounts, records = open_accounts(data, closing)
+        accounts.remove_user(name)
+        records.audit(_BY_COMMAND, "RemovedUser", name)
 
 
 def _ask_password() -> str:

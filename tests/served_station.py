@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from shared.messages import Position
@@ -44,6 +45,17 @@ def prepare(browser: Browser) -> str:
 def watch(browser: Browser, path: str = "/live") -> ClientConnection:
     address = browser.address.replace("http", "ws", 1)
     return connect(f"{address}/api/v1{path}", additional_headers={"Cookie": browser.cookie()})
+
+
+def close_code(socket_: ClientConnection) -> int | None:
+    """With which the station ends it, which is to take seconds; None where it did not."""
+    end_s = time.monotonic() + 10.0
+    try:
+        while time.monotonic() < end_s:
+            socket_.recv(10.0)
+    except ConnectionClosed as closed:
+        return None if closed.rcvd is None else closed.rcvd.code
+    return None
 
 
 def snapshot(browser: Browser, path: str = "/live") -> dict[str, Any]:

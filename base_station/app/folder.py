@@ -124,7 +124,7 @@ def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
     return LookBack(hindsight, records, incident, wearers(Roster(store, clock), incident))
 
 
-def open_accounts(data: Path, closing: ExitStack) -> Accounts:
-    """The accounts of a folder's database, beside a running station or without one."""
+def open_accounts(data: Path, closing: ExitStack) -> tuple[Accounts, Records]:
+    """Accounts and audit of a folder's database, beside a running station or without one."""
     store = closing.enter_context(Store(DataFolder(data).require_database()))
-    return Accounts(store, SystemClock())
+    return Accounts(store, SystemClock()), Records(store, SystemClock())

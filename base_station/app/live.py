@@ -217,7 +217,9 @@ class _LiveStation:
         opened, records, hindsight = self._opened, self._disk.records, self._services.hindsight
         recoveries = {one.path: str(one) for one in opened.recorder.recoveries}
         index = SegmentIndex(records, recoveries)
-        enrolled = EnrolledUnits(opened.pki, self._gate, self._disk.roster.registered_units)
+        enrolled = EnrolledUnits(
+            opened.pki, self._gate, self._disk.roster.registered_units, records
+        )
 
         def keep_house() -> None:
             index.update(opened.recorder.segments())

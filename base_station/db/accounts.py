@@ -5,7 +5,7 @@ the database cannot log in with it.
 
 Of two stations each has sessions of its own, and one table of users.  So what ends a user's
 sessions begins a new *generation* of them in that table: it ends those at the other station too,
-which copies it.
+which copies it.  Nobody who gets a removed user's name gets that one's generation.
 """
 
 from __future__ import annotations
@@ -53,22 +53,24 @@ class Accounts:
                     password_hash=password_hash,
                     role=role.word,
                     created_ns=self._clock.utc_ns(),
-                    generation=0,
+                    generation=secrets.randbelow(1 << 53),
                 )
             )
 
     def change_user(self, username: str, password: str | None, role: Role | None) -> None:
-        """A new password ends the user's sessions and tokens."""
+        """Another role ends the user's sessions, a new password the tokens, too."""
         password_hash = "" if password is None else self._passwords.hash(password)
         with self._store.write() as session:
             user = _user(session, username)
             if role is not None and role is not Role.ADMINISTRATOR:
                 _keep_an_administrator(session, user)
+            changed = password is not None or (role is not None and role.word != user.role)
+            if changed:
+                _end_sessions(session, user)
             if role is not None:
                 user.role = role.word
             if password is not None:
                 user.password_hash = password_hash
-                _end_sessions(session, user)
                 session.execute(delete(ApiToken).where(ApiToken.username == username))
 
     def remove_user(self, username: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 from sqlalchemy import ColumnElement, delete, exists, func, select
@@ -198,6 +198,16 @@ class Records:
                     detail=detail,
                 )
             )
+
+    def audit_once(self, by: str, done: Mapping[str, tuple[str, str]]) -> None:
+        """Action and detail by the id of their entry; what has an entry already keeps it."""
+        t_ns = self._clock.utc_ns()
+        rows = [
+            {"entry_id": entry_id, "t_ns": t_ns, "by": by, "action": action, "detail": detail}
+            for entry_id, (action, detail) in done.items()
+        ]
+        with self._store.write() as session:
+            session.execute(insert(AuditEntry).on_conflict_do_nothing(), rows)
 
     def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
         """What was done in the window, newest first (``pages.newest``)."""

@@ -240,3 +240,22 @@ async def test_an_administrator_ends_sessions(
         assert (await administrator.delete("/users/commander/sessions")).status_code == 204
         assert (await administrator.delete("/users/nobody/sessions")).status_code == 409
     assert (await browser.get("/me")).status_code == 401
+
+
+async def test_another_role_ends_the_logins_and_binds_the_tokens(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    token = (await browser.post("/tokens", json={"name": "t", "role": "commander"})).json()["token"]
+    async with (
+        station.client(Role.ADMINISTRATOR) as administrator,
+        station.client() as program,
+    ):
+        program.headers["authorization"] = f"Bearer {token}"
+        same = {"role": "commander"}
+        assert (await administrator.put("/users/commander", json=same)).status_code == 204
+        assert (await browser.get("/me")).status_code == 200
+        lower = {"role": "viewer"}
+        assert (await administrator.put("/users/commander", json=lower)).status_code == 204
+        assert (await browser.get("/me")).status_code == 401
+        assert (await program.get("/me")).json()["role"] == "viewer"
+        assert (await program.post("/people", json={"name": "Ada"})).status_code == 403

@@ -52,6 +52,21 @@ def sides(tmp_path: Path) -> Iterator[tuple[Side, Side]]:
         yield Side(folders[0], one), Side(folders[1], other)
 
 
+def test_a_user_of_a_removed_one_s_name_has_none_of_that_one_s_logins(
+    sides: tuple[Side, Side],
+) -> None:
+    active, standby = sides
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    active.accounts.add_user("bo", PASSWORD, Role.ADMINISTRATOR)
+    standby.copy(active)
+    session = standby.accounts.log_in("ada", PASSWORD)
+    assert session is not None
+    active.accounts.remove_user("ada")
+    active.accounts.add_user("ada", "another long password", Role.COMMANDER)
+    standby.copy(active)  # which never saw that there was none
+    assert standby.accounts.of_session(session) is None
+
+
 def test_the_same_people_log_in_with_the_same_passwords_tokens_and_sessions(
     sides: tuple[Side, Side],
 ) -> None:

@@ -76,6 +76,12 @@ def test_a_unit_is_enrolled_and_revoked_while_the_station_runs(
             unit.publish(key, encode(make_position()), Qos.LIVE)
             until(lambda: browser.call("GET", "/health")["messages"] >= 2, "it is heard")
         assert browser.call("GET", "/health")["messages"] == 2  # not what was said in between
+
+        def revoked() -> list[str]:
+            audit = browser.call("GET", "/audit")
+            return [one["detail"] for one in audit if one["action"] == "RevokedCertificate"]
+
+        until(lambda: [one.partition(", at")[0] for one in revoked()] == ["unit FF-01 as FF-01"])
     assert station.stop() == 0
 
 

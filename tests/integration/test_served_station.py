@@ -11,6 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from base_station.api.routes.live import NOT_LOGGED_IN
 from base_station.bench.rig import said
 from base_station.bench.rig.station import free_port
 from base_station.pki.certificates import issue, make_authority
@@ -21,6 +22,7 @@ from shared.messages import EventKind, UnitEvent
 from shared.messages.status import Activity
 from tests.served_station import (
     MakePosition,
+    close_code,
     greet,
     prepare,
     snapshot,
@@ -164,6 +166,17 @@ def test_users_are_added_while_the_station_runs(
     with Browser(address, data) as browser:
         credentials = {"username": "mia", "password": "a long password"}
         assert browser.call("POST", "/login", json=credentials)["role"] == "viewer"
+        with watch(browser) as socket_:
+            flags = ("users", "remove", "mia", "--data", str(data))
+            with Command(tmp_path / "remove.txt", *flags) as removing:
+                assert removing.wait() == 0, removing.said()
+            assert close_code(socket_) == NOT_LOGGED_IN
+    with Browser(address, data) as browser:
+        entries = browser.call("GET", "/audit")
+    by_command = [
+        (one["action"], one["detail"]) for one in entries if one["by"].startswith("muster")
+    ]
+    assert by_command == [("RemovedUser", "mia"), ("AddedUser", "mia as viewer")]
     assert station.stop() == 0
 
 

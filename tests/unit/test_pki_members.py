@@ -6,9 +6,13 @@ from concurrent.futures import Future
 
 import pytest
 
+from base_station.db.records import EVER, Records
+from base_station.db.store import Store
 from base_station.live.sinks import ActionDone
 from base_station.pki.folder import PkiFolder
 from base_station.pki.members import EnrolledUnits
+from shared.clock import ManualClock
+from shared.enrolment import Holder
 from shared.messages.station import Action, RegisterUnit
 
 
@@ -29,9 +33,15 @@ def pki(tmp_path):
     return folder
 
 
-def test_each_enrolled_unit_is_registered_once(pki):
+@pytest.fixture
+def records(tmp_path):
+    with Store(tmp_path / "station.sqlite") as store:
+        yield Records(store, ManualClock())
+
+
+def test_each_enrolled_unit_is_registered_once(pki, records):
     gate = Gate()
-    units = EnrolledUnits(pki, gate, lambda: ["FF-02"])
+    units = EnrolledUnits(pki, gate, lambda: ["FF-02"], records)
     pki.enroll("FF-01")
     pki.enroll("FF-02")
     units.update()
@@ -42,27 +52,59 @@ def test_each_enrolled_unit_is_registered_once(pki):
     assert gate.registered == ["FF-01", "FF-03"]
 
 
-def test_a_revoked_unit_is_not_registered(pki):
+def test_a_revoked_unit_is_not_registered(pki, records):
     pki.enroll("FF-01")
     pki.revoke("FF-01")
     gate = Gate()
-    EnrolledUnits(pki, gate, list).update()
+    EnrolledUnits(pki, gate, list, records).update()
     assert gate.registered == []
 
 
-def test_a_damaged_registry_is_read_again_later(pki):
+def test_a_damaged_registry_is_read_again_later(pki, records):
     pki.enroll("FF-01")
     written = pki.registry_path.read_bytes()
     pki.registry_path.write_bytes(b"rubbish")
     gate = Gate()
-    units = EnrolledUnits(pki, gate, list)
+    units = EnrolledUnits(pki, gate, list, records)
     units.update()
     pki.registry_path.write_bytes(written)
     units.update()
     assert gate.registered == ["FF-01"]
 
 
-def test_a_station_without_an_authority_registers_nobody(tmp_path):
+def test_a_station_without_an_authority_registers_nobody(tmp_path, records):
     gate = Gate()
-    EnrolledUnits(PkiFolder(tmp_path), gate, list).update()
+    EnrolledUnits(PkiFolder(tmp_path), gate, list, records).update()
     assert gate.registered == []
+    assert records.audit_entries(EVER) == []
+
+
+def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):
+    def audited() -> list[tuple[str, str]]:
+        """Oldest first."""
+        entries = reversed(records.audit_entries(EVER))
+        return [(one.action, " ".join(one.detail.split()[:4]).rstrip(",")) for one in entries]
+
+    units = EnrolledUnits(pki, Gate(), list, records)
+    units.update()
+    pki.enroll("FF-01")
+    pki.enroll("chief", Holder.OPERATOR)
+    units.update()
+    pki.revoke("chief", Holder.OPERATOR)
+    pki.revoke("FF-01")
+    pki.enroll("FF-01")
+    pki.renew("FF-01")
+    for _ in range(2):
+        units.update()
+        units = EnrolledUnits(pki, Gate(), list, records)  # the station begins again
+    assert audited()[:3] == [
+        ("IssuedCertificate", "station station as station"),
+        ("IssuedCertificate", "unit FF-01 as FF-01"),
+        ("IssuedCertificate", "operator chief as operator:chief"),
+    ]
+    assert sorted(audited()[3:]) == [
+        ("IssuedCertificate", "unit FF-01 as FF-01#2"),
+        ("RevokedCertificate", "operator chief as operator:chief"),
+        ("RevokedCertificate", "unit FF-01 as FF-01"),
+    ]
+    assert {one.by for one in records.audit_entries(EVER)} == {"muster pki"}
