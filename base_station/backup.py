@@ -9,11 +9,12 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from base_station.data_folder import DataFolder
-from base_station.db.store import copy_database
+from base_station.db.store import copy_database, known_segments
 from base_station.pki.folder import PkiFolder
 from base_station.standby.setting_aside import APART
 from shared.errors import LogError, UserError
@@ -47,23 +48,23 @@ def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> B
     _refuse_foreign(source, copy)
     try:
         target.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
-        part = copy.database.with_suffix(_PART)
-        part.unlink(missing_ok=True)
-        copy_database(source.database, part)
-        if part.exists():
-            _finish(part, copy.database)
+        with _part_of(copy.database) as part:
+            copy_database(source.database, part)
         return _copy_files(source, copy, on_progress)
     except OSError as error:
-        raise LogError(f"the backup to {target} is not complete: {error}") from error
+        raise LogError(
+            f"the backup to {target} is not complete ({error.strerror or error}): make room or "
+            "choose another place, and give the command again; what is there stays, and is of use"
+        ) from error
 
 
 def _refuse_foreign(source: DataFolder, copy: DataFolder) -> None:
     here, there = source.path.resolve(), copy.path.resolve()
     if here == there or here in there.parents or there in here.parents:
         raise UserError(f"{copy.path} is not apart from the station's folder; choose another")
-    if not copy.path.exists() or not any(copy.path.iterdir()):
-        return
-    kept = {path.name for path in segment_paths(copy.log)}
+    if all(path.suffix == _PART for path in copy.path.rglob("*") if path.is_file()):
+        return  # nothing, or what a kill left of a first run
+    kept = {path.name for path in segment_paths(copy.log)} | known_segments(copy.database)
     if not kept & {path.name for path in segment_paths(source.log)}:
         raise UserError(
             f"{copy.path} holds something else than a backup of this station; give an empty "
@@ -82,9 +83,8 @@ def _copy_files(
         size = path.stat().st_size
         if not _is_current(path, target):
             target.parent.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
-            part = target.with_name(target.name + _PART)
-            shutil.copy2(path, part)
-            _finish(part, target)
+            with _part_of(target) as part:
+                shutil.copy2(path, part)
             copied, copied_bytes = copied + 1, copied_bytes + size
         passed += size
         on_progress(passed / total)
@@ -109,8 +109,19 @@ def _is_current(path: Path, target: Path) -> bool:
     return now.st_size == then.st_size and abs(now.st_mtime_ns - then.st_mtime_ns) < _MTIME_STEP_NS
 
 
-def _finish(part: Path, target: Path) -> None:
-    """Give the copy its name once it is on the disk; until then an older one stands there."""
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
-    part.replace(target)
+@contextmanager
+def _part_of(target: Path) -> Iterator[Path]:
+    """Where a copy is made.  It gets its name when it is on the disk, until then an older one
+    stands there; where it does not come to that, nothing is left of it.
+    """
+    part = target.with_name(target.name + _PART)
+    try:
+        part.unlink(missing_ok=True)
+        yield part
+        if part.exists():
+            with part.open("rb") as written:
+                os.fsync(written.fileno())
+            part.replace(target)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise

@@ -15,6 +15,7 @@ import typer
 from base_station import collector
 from base_station.recordings.command import fetch_recording
 from base_station.user_commands import users
+from shared.out_file import writable
 
 if TYPE_CHECKING:
     from base_station.config import StationConfig
@@ -175,7 +176,8 @@ def smooth(
             )
     for unit_id, track in made.tracks.items():
         typer.echo(f"{unit_id}\t{len(track)} points")
-    kept = "kept" if past.incident.closed_ns is not None else "not kept: the incident is open"
+    why = "the incident is open" if past.incident.closed_ns is None else "the disk takes nothing"
+    kept = "kept" if made.is_kept else f"not kept: {why}"
     typer.echo(f"{len(made.tracks)} trails by {made.smoother}; {kept}")
 
 
@@ -184,7 +186,8 @@ def assess(
     incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
     data: Path = Path("muster-data"),
     json_file: Annotated[
-        Path | None, typer.Option("--json", help="Also write all of it to this file.")
+        Path | None,
+        typer.Option("--json", help="Also write all of it to this file.", callback=writable),
     ] = None,
 ) -> None:
     """How good an incident's positions were, in the terms of ISO/IEC 18305."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from base_station.db.models import LogSegment
 from base_station.db.records import Records
-from shared.errors import StoreError
+from base_station.trouble import Trouble
 from shared.mcap_log import SegmentInfo
 
 _log = logging.getLogger(__name__)
@@ -19,6 +19,7 @@ class SegmentIndex:
         """``notes``: what recovery had to say of segments."""
         self._records = records
         self._notes = notes
+        self._trouble = Trouble(_log, "the list of log segments is not up to date")
         self._written: dict[Path, SegmentInfo] = {}
 
     def update(self, segments: Iterable[SegmentInfo]) -> None:
@@ -26,12 +27,9 @@ class SegmentIndex:
         changed = [one for one in segments if self._written.get(one.path) != one]
         if not changed:
             return
-        try:
+        with self._trouble:
             self._records.put_segments(map(self._row, changed))
-        except StoreError as error:
-            _log.warning("the list of log segments is not up to date: %s", error)
-            return
-        self._written |= {one.path: one for one in changed}
+            self._written |= {one.path: one for one in changed}
 
     def _row(self, segment: SegmentInfo) -> LogSegment:
         return LogSegment(

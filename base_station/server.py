@@ -17,6 +17,7 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from base_station import collector
+from base_station.trouble import Trouble
 from shared.errors import ConfigError
 
 _GRACE_S = 5
@@ -151,15 +152,17 @@ async def serve_until_stopped(
     if starting.done() and not serving.done():  # it may have been stopped as it began
         announce(f"ready {server.address}")
     starting.cancel()
+    trouble = Trouble(_log, "the station's housekeeping failed; it is tried again")
     while not serving.done():
-        await asyncio.to_thread(_keep_house, housekeeping)
+        await asyncio.to_thread(_keep_house, housekeeping, trouble)
         await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
     await serving
 
 
-def _keep_house(housekeeping: Callable[[], None]) -> None:
+def _keep_house(housekeeping: Callable[[], None], trouble: Trouble) -> None:
     try:
-        housekeeping()
+        with trouble:
+            housekeeping()
     except Exception:  # noqa: BLE001  # people are on the screen: the next time may do
         _log.exception("the station's housekeeping failed; it is tried again")
 

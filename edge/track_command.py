@@ -17,7 +17,7 @@ from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality, TrackBatch
 from edge.tracker.rows import join_rows
 from shared.mcap_log import segment_paths
-from shared.out_file import not_written, writable
+from shared.out_file import whole, writable
 
 COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
 
@@ -77,7 +77,5 @@ def write_csv(rows: TrackBatch, out: Path) -> None:
     table = np.column_stack(
         (rows.t_ns * 1e-9, rows.position_n_m, std_m, rows.heading_std_rad, rows.quality)
     )
-    try:
-        np.savetxt(out, table, "%.6f" + ",%.4f" * 6 + ",%.5f,%d", header=COLUMNS, comments="")
-    except OSError as error:
-        raise not_written(out, error) from error
+    with whole(out) as making:
+        np.savetxt(making, table, "%.6f" + ",%.4f" * 6 + ",%.5f,%d", header=COLUMNS, comments="")

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from shared.out_file import writable
+from shared.out_file import whole, writable
 
 FiguresFile = Annotated[
     Path | None,
@@ -20,4 +20,6 @@ FiguresFile = Annotated[
 def write_figures(path: Path | None, figures: object) -> None:
     """As JSON, where a file was asked for; ``figures`` may be or hold dataclasses."""
     if path is not None:
-        path.write_text(json.dumps(figures, indent=2, default=asdict) + "\n", encoding="utf-8")
+        with whole(path) as making:
+            text = json.dumps(figures, indent=2, default=asdict)
+            making.write_text(text + "\n", encoding="utf-8")

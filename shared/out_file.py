@@ -1,8 +1,12 @@
-"""A file that a command writes at its end: that it cannot be written is said at the beginning."""
+"""A file that a command writes at its end: that it cannot be written is said at the beginning, and
+no half of it is left.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from shared.errors import ConfigError, UserError
@@ -22,12 +26,31 @@ def writable(path: Path | None) -> Path | None:
         if is_new:
             path.unlink()
     except OSError as error:
-        raise not_written(path, error) from error
+        raise _not_written(path, error) from error
     return path
 
 
-def not_written(path: Path, error: OSError) -> UserError:
-    return UserError(f"cannot write {path}: {error.strerror}; choose another place")
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Where to write it; it is at ``path`` when all of it is written, and not at all otherwise.
+
+    Raises UserError where the disk does not take it.
+    """
+    is_file = path.is_file() or not path.exists()  # what is no file is written as it comes
+    making = path.with_name(f".part-{path.name}") if is_file else path
+    try:
+        yield making
+        if is_file:
+            making.replace(path)
+    except OSError as error:
+        raise _not_written(path, error) from error
+    finally:
+        if is_file:
+            making.unlink(missing_ok=True)
+
+
+def _not_written(path: Path, error: OSError) -> UserError:
+    return UserError(f"cannot write {path}: {error.strerror or error}; choose another place")
 
 
 def write_secret(path: Path, text: str, again: str) -> None:

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from base_station.assessment.figures import Figures
 from base_station.assessment.report import IncidentReport, UnitReport
+from shared.out_file import whole
 
 
 def print_report(report: IncidentReport) -> None:
@@ -19,7 +20,9 @@ def print_report(report: IncidentReport) -> None:
 
 
 def write_report(report: IncidentReport, path: Path) -> None:
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(report)) + b"\n")
+    """Raises UserError where the disk does not take it."""
+    with whole(path) as making:
+        making.write_bytes(msgspec.json.format(msgspec.json.encode(report)) + b"\n")
 
 
 def _errors_table(report: IncidentReport) -> Table:

@@ -30,6 +30,7 @@ _PRAGMAS = (
     "secure_delete = ON",  # what is deleted is overwritten
 )
 _DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+_NO_ROOM = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 _NOT_OURS = (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
 
 
@@ -107,6 +108,8 @@ class Store:
                 "backup or move it away: what the log knows is made again at the next start, "
                 "people and users are not"
             )
+        if code in _NO_ROOM:
+            return f"{cause}; free or mend the disk"
         remedy = "; see that file and folder can be written" if code in _NOT_OURS else ""
         return f"{cause}{remedy}"
 
@@ -123,7 +126,10 @@ class Store:
 
 
 def copy_database(source: Path, target: Path) -> None:
-    """Copy a database that a running station may be writing to; without one, do nothing."""
+    """Copy a database that a running station may be writing to; without one, do nothing.
+
+    Raises StoreError where it cannot be read or ``target`` not be written.
+    """
     if not source.exists():
         return
     try:
@@ -133,7 +139,20 @@ def copy_database(source: Path, target: Path) -> None:
         ):
             reading.backup(writing)
     except sqlite3.Error as error:
+        if error.sqlite_errorcode & 0xFF in _NO_ROOM:
+            raise StoreError(
+                f"{source} cannot be copied ({error}): see that there is room beside {target}"
+            ) from error
         raise StoreError(f"{source} cannot be read as the station's database: {error}") from error
+
+
+def known_segments(path: Path) -> set[str]:
+    """Of which log a copied database tells, by the names of its segments."""
+    try:
+        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as reading:
+            return {row[0] for row in reading.execute("SELECT name FROM log_segments")}
+    except sqlite3.Error:  # there is none, or something else
+        return set()
 
 
 def _engine(path: Path) -> Engine:

@@ -26,6 +26,7 @@ from base_station.past.playback import Archive, Playback
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pinning import floors_along
 from base_station.site.floor_grid import FloorGrid
+from base_station.trouble import Trouble
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.quality import Quality
 
@@ -34,6 +35,7 @@ Progress = Callable[[float], None]
 Tracks = Mapping[str, Sequence[TrackSample]]
 Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
+_AGAIN_NS = 300 * NS_PER_S  # after what it came to could not be kept: it may have taken long
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 
@@ -45,6 +47,7 @@ class Smoothed:
     smoother: str
     made_ns: int
     tracks: Tracks  # by unit
+    is_kept: bool = True  # else it is worked out again when somebody asks
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,9 @@ class Hindsight:
         self._clock = clock
         self._working = threading.RLock()
         self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
+        self._again_ns = 0  # not before then
+        self._keeping = Trouble(_log, "what is known of an incident afterwards cannot be kept")
+        self._catching_up = Trouble(_log, "an incident that closed cannot be looked back on")
 
     def smoothed(self, incident: Incident) -> Smoothed:
         """As it was made when the incident had closed; made now where it was not."""
@@ -77,32 +83,38 @@ class Hindsight:
         return self._keep(incident, self.known(incident, on_progress))
 
     def _keep(self, incident: Incident, known: Known) -> Smoothed:
-        made = Smoothed(
-            incident.incident_id,
-            self._smoother.name,
-            self._clock.utc_ns(),
-            _without_empty(_smoothed_tracks(incident, known)),
-        )
+        incident_id, smoother = incident.incident_id, self._smoother.name
+        made_ns = self._clock.utc_ns()
+        tracks = _without_empty(_smoothed_tracks(incident, known))
+        is_kept = False
         if incident.closed_ns is not None:
             raw = _without_empty(_raw_tracks(incident, known))
-            self._store.put(made.incident_id, made.smoother, made.made_ns, made.tracks, raw)
-        return made
+            with self._keeping:
+                self._store.put(incident_id, smoother, made_ns, tracks, raw)
+                is_kept = True
+        return Smoothed(incident_id, smoother, made_ns, tracks, is_kept)
 
     def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
         """Smooth and assess an incident that closed lately and was not yet, so that it is there
         when somebody asks; ``shown`` gives what was.
         """
         now_ns = self._clock.utc_ns()
+        if now_ns < self._again_ns:
+            return
         for incident in incidents:
             incident_id = incident.incident_id
             lately = incident.closed_ns is not None and now_ns - incident.closed_ns < LATELY_NS
             if not lately or incident_id in self._given_up or self._store.has(incident_id):
                 continue
+            self._again_ns = now_ns + _AGAIN_NS
             try:
-                self.assess(incident, shown(incident))
+                with self._catching_up:
+                    self.assess(incident, shown(incident))
             except Exception:  # noqa: BLE001  # the station goes on without these trails
                 _log.exception("the trails of %s cannot be smoothed", incident_id)
                 self._given_up.add(incident_id)
+            if incident_id in self._given_up or self._store.has(incident_id):
+                self._again_ns = 0
             return
 
     def raw(self, incident: Incident) -> Tracks:
@@ -157,9 +169,9 @@ class Hindsight:
             _smoothed_tracks(incident, known),
             _raw_tracks(incident, known),
         )
-        if incident.closed_ns is not None:
-            self._keep(incident, known)
-            self._store.put_report(incident.incident_id, msgspec.msgpack.encode(report))
+        if incident.closed_ns is not None and self._keep(incident, known).is_kept:
+            with self._keeping:
+                self._store.put_report(incident.incident_id, msgspec.msgpack.encode(report))
         return report
 
     def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> Known:

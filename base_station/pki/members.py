@@ -11,8 +11,8 @@ from base_station.db.records import Records
 from base_station.live.sinks import OperatorGate
 from base_station.pki.folder import PkiFolder
 from base_station.pki.registry import Entry, Registry
+from base_station.trouble import Trouble
 from shared.enrolment import Holder
-from shared.errors import ConfigError, StoreError
 from shared.messages import STATION_ID
 from shared.messages.station import RegisterUnit
 
@@ -37,6 +37,7 @@ class EnrolledUnits:
         self._gate = gate
         self._registered = registered
         self._records = records
+        self._trouble = Trouble(_log, "who is enrolled could not be taken up")
         self._done: set[str] = set()
         self._audited: set[str] = set()
 
@@ -44,12 +45,10 @@ class EnrolledUnits:
         """Nothing where there is no authority; what cannot be read now is read the next time."""
         if not self._pki.exists():
             return
-        try:
+        with self._trouble:
             registry = self._pki.registry()
             self._register_new(registry)
             self._audit_new(registry)
-        except (ConfigError, StoreError) as error:
-            _log.warning("enrolled units could not be registered: %s", error)
 
     def _register_new(self, registry: Registry) -> None:
         enrolled = {

@@ -65,6 +65,10 @@ class _HopelessError(Exception):
     """It makes no sense to go on; the text is for a person."""
 
 
+class _NoRoomError(Exception):
+    """It goes on when there is room; the text is for a person."""
+
+
 class Fetch:
     """``step`` it until ``state`` is over, then ``close`` it."""
 
@@ -96,6 +100,9 @@ class Fetch:
             next(self._steps, None)
         except _HopelessError as error:
             self.state, self.problem = FetchState.FAILED, str(error)
+        except _NoRoomError as error:
+            self.state, self.problem = FetchState.WAITING, str(error)
+            self._steps = self._run()
         except OSError as error:
             self.state = FetchState.FAILED
             self.problem = (
@@ -138,14 +145,17 @@ class Fetch:
             )
         if not all(_is_safe(one.path) for one in index.files):
             raise _HopelessError(f"{unit_id} names files that no unit has; is it really {unit_id}?")
-        needed = sum(one.size_bytes for one in index.files) - sum(
-            path.stat().st_size for path in self.folder.rglob("*.mcap*")
-        )
-        free = shutil.disk_usage(self.folder).free - _SPARED_BYTES
-        if needed > free:
-            raise _HopelessError(
-                f"the recording needs {needed / 1e6:.0f} MB and {max(free, 0) / 1e6:.0f} MB can be "
-                f"spared at {self.folder}: free the disk or choose a shorter window"
+        here = sum(path.stat().st_size for path in self.folder.rglob("*.mcap*"))
+        self._require_room(sum(one.size_bytes for one in index.files) - here)
+
+    def _require_room(self, needed_bytes: int) -> None:
+        """The log goes first."""
+        free_bytes = shutil.disk_usage(self.folder).free - _SPARED_BYTES
+        if needed_bytes > free_bytes:
+            raise _NoRoomError(
+                f"the recording needs {needed_bytes / 1e6:.0f} MB and "
+                f"{max(free_bytes, 0) / 1e6:.0f} MB can be spared at {self.folder}: it goes on "
+                "when the disk is freed; or stop it and choose a shorter window"
             )
 
     def _file(self, file: RecordedFile, before_bytes: int) -> Steps[bool]:
@@ -179,6 +189,7 @@ class Fetch:
         with part.open("ab") as written:
             while (offset := written.tell()) < file.size_bytes:
                 self.done_bytes = before_bytes + offset
+                self._require_room(file.size_bytes - offset)
                 length = min(self._pace.answer_bytes, file.size_bytes - offset)
                 question = f"piece?path={file.path};offset={offset};length={length}"
                 asked_ns = self._clock.monotonic_ns()

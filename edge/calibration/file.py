@@ -12,17 +12,15 @@ import msgspec
 
 from edge.calibration.model import Calibration
 from shared.errors import ConfigError
-from shared.out_file import not_written
+from shared.out_file import whole
 
 _HEADLINE = "# Made by `muster edge calibrate`; units are in the names.\n"
 
 
 def write_calibration(calibration: Calibration, path: Path) -> None:
     """Write the file; raises UserError where that is not possible."""
-    try:
-        path.write_text(to_toml(calibration), encoding="utf-8")
-    except OSError as error:
-        raise not_written(path, error) from error
+    with whole(path) as making:
+        making.write_text(to_toml(calibration), encoding="utf-8")
 
 
 def read_calibration(path: Path) -> Calibration:

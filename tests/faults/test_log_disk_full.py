@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import os
-import resource
-import signal
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -29,24 +26,12 @@ from shared.mcap_log import (
 from shared.messages import Header, Position
 from shared.messages.station import RegisterUnit
 from shared.sequence_set import Run
+from tests.full_disk import files_of_at_most
 from tests.live_station import LiveStation, make_pipeline
 from tests.waiting import until
 
 KEY = POSITION.key("anna")
 T0_NS = 1_700_000_000 * NS_PER_S
-
-
-@contextmanager
-def files_of_at_most(size_bytes: int) -> Iterator[None]:
-    """The kernel refuses to let files grow: the same calls fail as on a full disk."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-        signal.signal(signal.SIGXFSZ, handler)
 
 
 def write_seconds(writer: SegmentWriter, seconds: range) -> int:

@@ -67,11 +67,35 @@ def test_questions_that_make_no_sense_are_not_answered(unit: RecordedUnit, quest
 def test_a_disk_that_has_no_room_is_said_before_anything_is_pulled(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fetching, "_SPARED_BYTES", 1 << 62)
-    fetch = finish(begin(unit, tmp_path))
-    assert fetch.state is FetchState.FAILED
-    assert "free the disk" in fetch.problem
-    assert "piece" not in unit.questions
+    fetch = begin(unit, tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        for _ in range(5):
+            fetch.step()
+        assert fetch.state is FetchState.WAITING
+        assert "when the disk is freed" in fetch.problem
+        assert "piece" not in unit.questions
+    assert finish(fetch).state is FetchState.DONE
+
+
+def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
+    unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fetch = begin(unit, tmp_path)
+    for _ in range(15):
+        fetch.step()
+    asked = unit.questions.count("piece")
+    assert 0 < fetch.done_bytes < fetch.total_bytes
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        for _ in range(5):
+            fetch.step()
+        assert fetch.state is FetchState.WAITING
+        assert unit.questions.count("piece") <= asked + 1  # which was asked before
+    fetch = finish(fetch)
+    assert fetch.state is FetchState.DONE
+    for one in unit.boot.iterdir():
+        assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
 
 def test_a_disk_that_gets_full_on_the_way_is_said_and_what_came_is_kept(

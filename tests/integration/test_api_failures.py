@@ -6,6 +6,8 @@ import pytest
 
 from base_station.db.principals import Role
 from base_station.db.records import Records
+from base_station.exporters import EXPORTERS
+from base_station.exporters.port import Exporter
 from shared.errors import LogError, MusterError, StoreError
 from tests.station import DeskStation
 
@@ -35,3 +37,23 @@ async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskSta
         answer = await viewer.get("/incidents")
     assert answer.status_code == 503
     assert "the database cannot be read" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda one: one.name)
+async def test_on_a_full_disk_nothing_is_exported_that_the_audit_does_not_say(
+    station: DeskStation, exporter: Exporter, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await commander.put("/site/anchor", json={"lat_deg": 50.0, "lon_deg": 8.0})
+        opened = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
+        path = f"/incidents/{opened['incident_id']}/export/{exporter.name}"
+        with monkeypatch.context() as patched:
+            patched.setattr(Records, "audit", full)
+            answer = await commander.get(path)
+        assert answer.status_code == 503
+        assert "the audit cannot say: the disk is full" in answer.json()["detail"]
+        assert (await commander.get(path)).status_code == 200
+
+
+def full(*_: object) -> None:
+    raise StoreError("the disk is full")

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 import sqlite3
 from pathlib import Path
 
 import pytest
 
 from base_station.backup import Backup, back_up
+from base_station.db.models import LogSegment
+from base_station.db.records import Records
 from base_station.db.store import Store
-from shared.errors import LogError, UserError
+from shared.clock import ManualClock
+from shared.errors import LogError, StoreError, UserError
+from tests.full_disk import files_of_at_most
 
 FIRST, SECOND = "000001-20261121T100000Z.mcap", "000002-20261121T101500Z.mcap"
 
@@ -124,6 +130,54 @@ def test_where_it_cannot_be_written_it_says_so(data: Path, tmp_path: Path) -> No
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(LogError, match="not complete"):
         run(data, tmp_path / "file" / "backup")
+
+
+def full(*_: object) -> None:
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("copied", [0, 1, 3])
+def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, copied: int
+) -> None:
+    target, copy, left = tmp_path / "backup", shutil.copy2, copied
+
+    def copy_while_there_is_room(source: Path, part: Path) -> None:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            part.write_bytes(source.read_bytes()[:1])
+            full()
+        copy(source, part)
+
+    with Store(data / "station.sqlite") as store:
+        Records(store, ManualClock()).put_segments(
+            [LogSegment(name=FIRST, first_ns=1, last_ns=2, messages=1, size_bytes=6, note="")]
+        )
+    with monkeypatch.context() as patched:
+        patched.setattr(shutil, "copy2", copy_while_there_is_room)
+        with pytest.raises(LogError, match=r"No space left on device\): make room"):
+            run(data, target)
+    assert not [name for name in files(target) if name.endswith(".part")]
+    assert len(files(target)) == copied + 1  # with the database
+    assert run(data, target).copied == 5 - copied
+
+
+def test_a_database_for_which_there_is_no_room_leaves_nothing(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    with files_of_at_most(8000), pytest.raises(StoreError, match="see that there is room beside"):
+        run(data, target)
+    assert files(target) == set()
+    assert run(data, target).copied == 5
+
+
+def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: Path) -> None:
+    target = tmp_path / "backup"
+    (target / "log").mkdir(parents=True)
+    for name in ("station.sqlite.part", f"log/{FIRST}.part"):
+        (target / name).write_text("half")
+    assert run(data, target).copied == 5
+    assert not [name for name in files(target) if name.endswith(".part")]
 
 
 def test_a_folder_without_a_station_has_nothing_to_copy(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -23,6 +24,7 @@ from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive, Record
 from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
+from shared.errors import StoreError
 from shared.messages.station import CloseIncident
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
@@ -124,6 +126,45 @@ def test_what_closed_lately_is_smoothed_without_being_asked(
     assert made is not None
     assert made[0] == SMOOTHERS[0].name
     assert past.kept.report("i1") is not None
+
+
+class FullStore(SmoothedTracks):
+    """Of a disk that takes nothing."""
+
+    full = True
+    tries = 0
+
+    def put(self, *what: Any) -> None:
+        self.tries += 1
+        if self.full:
+            raise StoreError("the disk is full")
+        super().put(*what)
+
+
+def test_on_a_full_disk_it_is_answered_told_once_and_kept_when_there_is_room(
+    past: Past, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    kept, clock = FullStore(Store(tmp_path / "station.sqlite")), ManualClock(utc_ns=0)
+    hindsight = Hindsight(past.archive, SMOOTHERS[0], kept, clock)
+
+    def catch_up() -> None:
+        hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
+
+    for _ in range(3):
+        catch_up()
+    assert kept.tries == 1  # it may take minutes, and a full disk is busy enough
+    made = hindsight.smoothed(past.incident)
+    assert (made.is_kept, set(made.tracks)) == (False, {"FF-01", "FF-02"})
+    assert hindsight.assess(past.incident, past.records.tracks_of(past.incident)).units
+    assert hindsight.raw(past.incident)
+    assert [one.exc_info for one in caplog.records] == [None]
+    assert "cannot be kept: the disk is full" in caplog.text
+    kept.full = False
+    clock.advance(301.0)
+    catch_up()
+    assert hindsight.smoothed(past.incident).is_kept
+    assert kept.report("i1") is not None
+    assert [one.message.partition(":")[0] for one in caplog.records][1:] == ["over"]
 
 
 def test_raw_is_the_own_path_from_its_start(past: Past) -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import errno
+import os
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from edge.cli import app
 from shared.errors import ConfigError, UserError
-from shared.out_file import writable, write_secret
+from shared.out_file import whole, writable, write_secret
+from tests.full_disk import files_of_at_most
 
 
 def test_a_place_that_can_be_written_is_left_as_it_is(tmp_path):
@@ -54,3 +58,27 @@ def test_of_a_secret_for_which_there_is_no_room_nothing_is_left(tmp_path, monkey
     ):
         write_secret(path, "key", "`muster pki renew FF-01`")
     assert not path.exists()
+
+
+def test_no_half_of_a_file_is_left_and_what_was_there_stays(tmp_path):
+    path = tmp_path / "report.json"
+    for text in ("first", "second"):
+        with whole(path) as making:
+            making.write_text(text)
+    with (
+        files_of_at_most(1000),
+        pytest.raises(UserError, match="choose another place"),
+        whole(path) as making,
+    ):
+        making.write_bytes(bytes(5000))
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_text() == "second"
+    with suppress(KeyboardInterrupt), whole(path) as making:
+        making.write_text("th")
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_is_no_file_is_written_as_it_comes():
+    with whole(Path(os.devnull)) as making:
+        assert making == Path(os.devnull)

@@ -13,6 +13,7 @@ from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
+from shared.errors import StoreError
 
 router = APIRouter(tags=["exports"])
 
@@ -46,9 +47,12 @@ def export_incident(
     incident = incident_or_404(station, incident_id)
     _, trails = trails_of(station, incident, kind)
     body = exporter.export(incident_tracks(station.records, station.roster, incident, trails))
-    station.records.audit(
-        who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
-    )
+    try:
+        station.records.audit(
+            who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
+        )
+    except StoreError as error:
+        raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
     file_name = f"{incident_id}.{exporter.suffix}"
     headers = {"Content-Disposition": f'attachment; filename="{file_name}"'}
     return Response(body, media_type=exporter.media_type, headers=headers)
