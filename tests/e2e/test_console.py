@@ -21,9 +21,6 @@ from tests.e2e.enlisting import INCIDENT, NAME
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 
-# The tests end with the station's death; a page that waits longer than this is broken.
-pytestmark = pytest.mark.timeout(300)
-
 
 def test_a_wrong_password_is_refused(chromium: Browser, station: StationProcess) -> None:
     stranger = chromium.new_page()

@@ -22,8 +22,6 @@ from tests.e2e.console_page import (
 )
 from tests.e2e.enlisting import INCIDENT, NAME
 
-pytestmark = pytest.mark.timeout(300)
-
 
 def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
     account = menu(page, "Account")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 
-import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e.console_page import (
@@ -18,8 +17,6 @@ from tests.e2e.console_page import (
 )
 from tests.e2e.enlisting import NAME
 from tests.e2e.wearable import Wearable
-
-pytestmark = pytest.mark.timeout(300)
 
 
 def test_a_roll_call_is_received_and_acknowledged(

@@ -26,8 +26,6 @@ from tests.e2e.console_page import (
 )
 from tests.e2e.enlisting import NAME
 
-pytestmark = pytest.mark.timeout(300)
-
 
 def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()

@@ -23,8 +23,6 @@ from shared.envelope import Stamper
 from shared.mcap_log import read_log
 from shared.messages import Header
 
-pytestmark = pytest.mark.timeout(200)
-
 EVIL = "evil"
 SECONDS = 4
 FLOOD_S = 0.01

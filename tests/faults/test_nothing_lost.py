@@ -10,8 +10,6 @@ from contextlib import closing
 from functools import partial
 from pathlib import Path
 
-import pytest
-
 from base_station.bench.rig.station import free_port
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
@@ -67,7 +65,6 @@ def has_logged(data: Path, count: int) -> bool:
     return len(logged(data)[0]) >= count
 
 
-@pytest.mark.timeout(400)
 def test_every_message_is_in_the_log_once_whoever_was_killed(tmp_path: Path) -> None:
     chance = random.Random(11)
     data, bus = tmp_path / "station", f"tcp/127.0.0.1:{free_port()}"

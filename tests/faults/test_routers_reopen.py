@@ -29,8 +29,6 @@ SEED = 4
 SPREAD_S = 1.0  # a router looks once a second whether it is to open again
 LINKED_S = 30.0
 
-pytestmark = pytest.mark.timeout(300)
-
 
 @dataclass
 class End:

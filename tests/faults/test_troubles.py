@@ -14,7 +14,6 @@ PATIENCE_S = 90.0
 SHORT = [fault for fault in FAULTS if not isinstance(fault, BadLink) and not fault.is_long]
 
 
-@pytest.mark.timeout(400)
 @pytest.mark.parametrize("fault", SHORT, ids=lambda fault: fault.name)
 def test_every_message_is_in_the_log_once(troubled: Site, fault: Fault) -> None:
     report = suffer(troubled, fault, PATIENCE_S)

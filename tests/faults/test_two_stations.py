@@ -23,8 +23,6 @@ from shared.errors import BusError
 from shared.messages import Header
 from tests.set_clock import MachineClock
 
-pytestmark = pytest.mark.timeout(300)
-
 APART_S = 3.0
 DAY_S, HOUR_S = 86_400.0, 3_600.0
 OLD_BOOT, BACKLOG = 0xABCD, 40_000

@@ -14,8 +14,6 @@ import pytest
 from base_station.bench.rig.station import free_port
 from tests.waiting import until
 
-pytestmark = pytest.mark.timeout(300)
-
 
 def start_demo(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     ports = ("--http-port", str(free_port()), "--bus-port", str(free_port()))

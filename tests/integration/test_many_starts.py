@@ -7,8 +7,6 @@ from collections import Counter
 from contextlib import ExitStack, closing
 from pathlib import Path
 
-import pytest
-
 from base_station.bench.rig.said import position
 from base_station.journals.backfill import Backfill
 from base_station.sender import STARTS
@@ -27,7 +25,6 @@ MESSAGES = 5
 RUNS = STARTS + 9  # so quickly after each other that some are left to the journal
 
 
-@pytest.mark.timeout(120)
 def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
     tmp_path: Path,
 ) -> None:

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import msgspec
-import pytest
 
 from base_station.journals.backfill import Backfill
 from edge.journal_server import JournalServer
@@ -77,7 +76,6 @@ def kept(station: LiveStation, unit: Unit) -> list[int]:
     return [counts[payload] for payload in unit.kept]
 
 
-@pytest.mark.timeout(120)
 def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
