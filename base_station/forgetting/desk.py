@@ -17,7 +17,7 @@ from threading import Event, Thread
 
 import msgspec
 
-from base_station.forgetting.forgetter import Forgetter
+from base_station.forgetting.forgetter import Forgetter, Tally
 from base_station.wishes import Wishes
 from shared.errors import MusterError, UserError
 
@@ -76,6 +76,7 @@ class ForgettingDesk:
         self._wishes = Wishes(kept, Forgetting)
         self._obstacle = obstacle
         self._on_done = on_done
+        self._told = ""  # why it waits, as last logged
         self._changed = Event()
         self._closed = Event()
         self._thread = Thread(target=self._run, name="forgetting", daemon=True)
@@ -136,32 +137,40 @@ class ForgettingDesk:
 
     def _work(self, wish: Forgetting) -> bool:
         """False where it is to be tried again later."""
-        again = wish.began
+        tally = Tally(wish.records, wish.files, again=wish.began)
         self._note(wish, state=ForgettingState.WORKING, problem="", began=True)
         forget = self._forgetter.person if wish.kind == "person" else self._forgetter.incident
-        done: dict[str, object] = {}
+        problem = ""
         try:
-            what = forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share))
-            done = {"records": what.records, "files": what.files}
+            forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share, tally), tally)
         except _Ended:
             return False
         except UserError as error:
-            done = {"problem": str(error)}
-            if not (again or wish.told):  # else nothing was left to be done
-                self._note(wish, state=ForgettingState.FAILED, **done)
+            problem = str(error)
+            if not wish.told:  # else nothing was left to be done
+                self._note(wish, state=ForgettingState.FAILED, problem=problem)
                 return True
         except (MusterError, OSError) as error:
-            _log.warning("forgetting waits: %s", error)
-            self._note(wish, problem=f"it is tried again: {error}")
+            if str(error) != self._told:
+                _log.warning("forgetting waits, and is tried again: %s", error)
+                self._told = str(error)
+            self._note(wish, problem=f"it is tried again: {error}", **_counts(tally))
             return False
+        self._told = ""
         self._on_done(msgspec.structs.replace(wish))
-        self._note(wish, state=ForgettingState.DONE, share=1.0, **done)
+        self._note(wish, state=ForgettingState.DONE, share=1.0, problem=problem, **_counts(tally))
         return True
 
-    def _go_on(self, wish: Forgetting, share: float) -> None:
+    def _go_on(self, wish: Forgetting, share: float, tally: Tally) -> None:
+        """What was taken out is on the disk before more is: the audit is to say it in the end."""
+        more = tally.files != wish.files
+        self._wishes.note(wish, save=more, share=share, **_counts(tally))
         if self._closed.is_set():
             raise _Ended
-        self._wishes.note(wish, save=False, share=share)
 
     def _note(self, wish: Forgetting, **now: object) -> None:
         self._wishes.note(wish, save=True, **now)
+
+
+def _counts(tally: Tally) -> dict[str, int]:
+    return {"records": tally.records, "files": tally.files}

@@ -70,13 +70,22 @@ class Pulls(Protocol):
         ...
 
 
+@dataclass(slots=True)
+class Tally:
+    """What was taken out so far, by the tries that were cut short, too."""
+
+    records: int = 0  # of the log that changed or went
+    files: int = 0  # that were written anew or removed
+    again: bool = False  # it was tried before
+
+
 @dataclass(frozen=True, slots=True)
 class Forgotten:
-    """What became of it."""
+    """What became of it, over all tries."""
 
     what: str  # "person 1f.." or "incident 20..", for the audit
-    records: int  # of the log that changed or went
-    files: int  # that were written anew or removed
+    records: int
+    files: int
 
     def __str__(self) -> str:
         return f"{self.what}: {self.records} records of the log in {self.files} files"
@@ -118,54 +127,68 @@ class Forgetter:
         self._pulls = pulls
         self._act = act
 
-    def person(self, by: str, person_id: str, on_progress: Progress = lambda _: None) -> Forgotten:
-        """UserError where nobody has ever heard of that person."""
+    def person(
+        self,
+        by: str,
+        person_id: str,
+        on_progress: Progress = lambda _: None,
+        tally: Tally | None = None,
+    ) -> Forgotten:
+        """UserError where nobody has ever heard of that person; tried again, everything may be
+        gone but for the entry in the audit.
+        """
+        tally = tally or Tally()
         with self._store.read() as session:
             names = known_names(session, person_id)
         found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
         everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
         erasure = msgspec.structs.replace(found, names=tuple(everything))
-        if not erasure.wearings and not erasure.names:
+        if not (erasure.wearings or erasure.names or tally.again):
             raise UserError(f"neither the roster nor the log knows a person {person_id}")
-        return self._forget(by, erasure, f"person {person_id}", on_progress)
+        return self._forget(by, erasure, f"person {person_id}", on_progress, tally)
 
     def incident(
-        self, by: str, incident_id: str, on_progress: Progress = lambda _: None
+        self,
+        by: str,
+        incident_id: str,
+        on_progress: Progress = lambda _: None,
+        tally: Tally | None = None,
     ) -> Forgotten:
         """UserError where there is no such incident, or it is open."""
         erasure = erasure_of_incident(self._actions(), incident_id)
-        return self._forget(by, erasure, f"incident {incident_id}", on_progress)
+        return self._forget(by, erasure, f"incident {incident_id}", on_progress, tally or Tally())
 
-    def _forget(self, by: str, erasure: Erasure, what: str, on_progress: Progress) -> Forgotten:
+    def _forget(
+        self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: Tally
+    ) -> Forgotten:
         for unit_id in sorted(erasure.unit_ids):
             self._act(by, ForgetWearers(unit_id))
         self._checkpoints.clear()
-        records, files = self._rewrite_log(erasure, on_progress)
-        done = Forgotten(what, records, files)
+        self._rewrite_log(erasure, on_progress, tally)
         with self._store.write() as session:
             forget_in(session, erasure)
         self._store.compact()
         self._checkpoints.clear()  # one that was being written meanwhile
+        done = Forgotten(what, tally.records, tally.files)
         kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
         return done
 
-    def _rewrite_log(self, erasure: Erasure, on_progress: Progress) -> tuple[int, int]:
+    def _rewrite_log(self, erasure: Erasure, on_progress: Progress, tally: Tally) -> None:
         segments = [*self._log.complete_segments(), *self._set_aside()]
         redactor = Redactor(erasure, self._clocks(erasure))
-        records = 0
-        files = self._remove_recordings(erasure) + sum(map(remove_torn, self._folders(segments)))
+        self._remove_recordings(erasure, tally)
+        tally.files += sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
             with self._log.rewriting:
                 changed = rewrite_segment(path, redactor)
-            records += changed
+            tally.records += changed
             if changed:
-                files += 1
+                tally.files += 1
                 self._log.note_rewritten(path)
         on_progress(1.0)
-        return records, files
 
     def _set_aside(self) -> list[Path]:
         """Parts of logs that stand beside the log in the station's folder."""
@@ -180,17 +203,16 @@ class Forgetter:
     def _folders(self, segments: list[Path]) -> set[Path]:
         return {self._log.folder, *(path.parent for path in segments)}
 
-    def _remove_recordings(self, erasure: Erasure) -> int:
+    def _remove_recordings(self, erasure: Erasure, tally: Tally) -> None:
         """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
         way finds its folder gone, and ends.
         """
         self._pulls.forget(erasure.unit_ids)
         recordings = DataFolder(self._log.folder.parent).recordings
-        gone = [recordings / unit_id for unit_id in erasure.unit_ids]
-        count = sum(1 for folder in gone for path in folder.rglob("*") if path.is_file())
-        for folder in gone:
+        for folder in (recordings / unit_id for unit_id in sorted(erasure.unit_ids)):
+            files = sum(1 for path in folder.rglob("*") if path.is_file())
             _remove(folder)
-        return count
+            tally.files += files
 
     def _actions(self) -> Collection[tuple[int, str, bytes]]:
         return list(read_log(self._log.folder, keys={OPERATOR.key(STATION_ID)}))

@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any, cast
 
 import msgspec
 import pytest
 
 from base_station.data_folder import DataFolder
 from base_station.db.principals import Role
-from base_station.db.records import Records
+from base_station.db.records import EVER, Records
+from base_station.db.roster import Roster
 from base_station.db.store import Store
-from base_station.forgetting.forgetter import ClosedLog, Forgetter
+from base_station.forgetting import forgetter as forgetter_module
+from base_station.forgetting.desk import ForgettingDesk
+from base_station.forgetting.forgetter import ClosedLog, Forgetter, Tally
 from base_station.past.checkpoints import Checkpoints
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import FetchState, Wanted
 from shared.clock import ManualClock, SystemClock
-from shared.mcap_log import SegmentWriter, read_log
+from shared.errors import StoreError, UserError
+from shared.mcap_log import SegmentWriter, read_log, rewrite_segment
 from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
 from shared.messages.station import (
     Assign,
@@ -142,6 +147,79 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
     assert names_in(story.stored(), ANA) == []
     assert [payload for payload in story.ana_said if payload in story.stored()] == []
     assert 0 < sum(1 for _ in read_log(data.log)) < whole
+
+
+def forgotten_in_tries(folder: Path, cut_at: Collection[str]) -> list[str]:
+    """What the audit says of it, where the store fails at these steps, each once."""
+    story = Story(folder)
+    data = DataFolder(story.folder)
+    _split(data.log, 4)
+    with Store(data.database) as store:
+        records = Records(store, SystemClock())
+        forgetter = Forgetter(
+            ClosedLog(data.log), store, Checkpoints(data.checkpoints), records, SystemClock(),
+            NoPulls(),
+        )  # fmt: skip
+        desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
+        desk.add("ada", "person", "p-77")
+        for step in cut_at:
+            with pytest.MonkeyPatch.context() as patched:
+                patched.setattr(*BROKEN[step](store, records))
+                assert not desk._work_on_one(desk._wishes.under_way())
+            desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
+        assert desk._work_on_one(desk._wishes.under_way())
+        assert names_in(story.stored(), ANA) == []
+        return [one.detail for one in records.audit_entries(EVER) if one.action == "ForgotPerson"]
+
+
+def _fails(*_: object) -> None:
+    raise StoreError("the disk is full")
+
+
+def _third_segment() -> Callable[..., int]:
+    done: list[Path] = []
+
+    def rewrite(path: Path, redactor: Any) -> int:
+        done.append(path)
+        return rewrite_segment(path, redactor) if len(done) < 3 else cast("int", _fails())
+
+    return rewrite
+
+
+BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
+    "log": lambda _store, _records: (forgetter_module, "rewrite_segment", _third_segment()),
+    "store": lambda _store, _records: (forgetter_module, "forget_in", _fails),
+    "compact": lambda store, _records: (store, "compact", _fails),
+    "audit": lambda _store, records: (records, "audit", _fails),
+}
+
+
+@pytest.mark.parametrize("cut_at", [["log"], ["store"], ["compact"], ["audit"], [*BROKEN]])
+def test_the_audit_says_what_all_tries_took_out(tmp_path: Path, cut_at: list[str]) -> None:
+    (whole,) = forgotten_in_tries(tmp_path / "at once", [])
+    (tried,) = forgotten_in_tries(tmp_path / "tried again", cut_at)
+    assert tried == whole
+    assert int(whole.split()[2]) > 10
+
+
+def test_who_wore_nothing_and_is_gone_already_is_in_the_audit(tmp_path: Path) -> None:
+    (tmp_path / "log").mkdir()
+    with Store(tmp_path / "station.sqlite") as store:
+        records = Records(store, SystemClock())
+        forgetter = Forgetter(
+            ClosedLog(tmp_path / "log"), store, Checkpoints(tmp_path / "checkpoints"), records,
+            SystemClock(), NoPulls(),
+        )  # fmt: skip
+        person_id = Roster(store, SystemClock()).add_person(ANA, "", "").person_id
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(records, "audit", _fails)
+            with pytest.raises(StoreError):
+                forgetter.person("ada", person_id)
+        with pytest.raises(UserError, match="knows a person"):
+            forgetter.person("ada", person_id)
+        forgetter.person("ada", person_id, tally=Tally(again=True))
+        (entry,) = records.audit_entries(EVER)
+    assert entry.detail == f"person {person_id}: 0 records of the log in 0 files"
 
 
 def _split(folder: Path, parts: int) -> None:

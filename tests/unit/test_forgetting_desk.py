@@ -10,7 +10,7 @@ from typing import cast
 import pytest
 
 from base_station.forgetting.desk import Forgetting, ForgettingDesk, ForgettingState
-from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress
+from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress, Tally
 from shared.errors import StoreError, UserError
 from tests.waiting import until
 
@@ -21,12 +21,16 @@ class Worker:
     def __init__(self) -> None:
         self.go = Event()
         self.half = Event()
-        self.fails: list[Exception] = []
+        self.fails: list[BaseException] = []
         self.began: list[str] = []
+        self.again: list[bool] = []
         self.done: list[str] = []
 
-    def person(self, by: str, person_id: str, on_progress: Progress) -> Forgotten:
+    def person(self, by: str, person_id: str, on_progress: Progress, tally: Tally) -> Forgotten:
         self.began.append(person_id)
+        self.again.append(tally.again)
+        on_progress(0.1)
+        tally.records, tally.files = tally.records + 7, tally.files + 2
         if self.fails:
             raise self.fails.pop(0)
         on_progress(0.5)
@@ -34,7 +38,7 @@ class Worker:
         self.go.wait()
         on_progress(1.0)
         self.done.append(person_id)
-        return Forgotten(f"person {person_id} by {by}", 7, 2)
+        return Forgotten(f"person {person_id} by {by}", tally.records, tally.files)
 
 
 def desk(
@@ -86,14 +90,28 @@ def test_a_station_that_ends_in_the_middle_goes_on_when_it_is_back(tmp_path: Pat
     assert worker.done == ["p-1"]
 
 
-def test_what_was_done_before_a_kill_and_not_written_down_is_done(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kill", [False, True])
+def test_what_all_tries_took_out_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kill: bool
+) -> None:
+    monkeypatch.setattr("base_station.forgetting.desk._AGAIN_S", 0.01)
     worker = Worker()
-    desk(worker, tmp_path).add("ada", "person", "p-1")
-    text = (tmp_path / "kept.json").read_text().replace('"began":false', '"began":true')
-    (tmp_path / "kept.json").write_text(text)
-    worker.fails = [UserError("nobody knows that person")]
-    with desk(worker, tmp_path) as again:
-        until(lambda: again.all()[0].state is ForgettingState.DONE)
+    worker.fails = [SystemExit() if kill else StoreError("the disk is full")]
+    worker.go.set()
+    if kill:
+        one = desk(worker, tmp_path)
+        one.add("ada", "person", "p-1")
+        with pytest.raises(SystemExit):
+            one._work_on_one(one._wishes.under_way())
+        worker.fails = [StoreError("the disk is full")]
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ForgettingState.DONE)
+        (done,) = one.all()
+    # What a try had taken out when it was killed, and had not yet gone on from, is not known.
+    assert (done.records, done.files) == (14, 4)
+    assert worker.again == [False, True, True][: len(worker.began)]
+    assert len(worker.began) == (3 if kill else 2)
 
 
 def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
@@ -105,15 +123,18 @@ def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
         assert one.all()[0].problem == "nobody knows that person"
 
 
-def test_a_store_that_fails_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_store_that_fails_is_tried_again_and_told_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
     monkeypatch.setattr("base_station.forgetting.desk._AGAIN_S", 0.01)
     worker = Worker()
-    worker.fails = [StoreError("the disk is full")]
+    worker.fails = [StoreError("the disk is full") for _ in range(3)]
     worker.go.set()
     with desk(worker, tmp_path) as one:
         one.add("ada", "person", "p-1")
         until(lambda: one.all()[0].state is ForgettingState.DONE)
-    assert worker.began == ["p-1", "p-1"]
+    assert worker.began == ["p-1"] * 4
+    assert caplog.text.count("the disk is full") == 1
 
 
 def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
