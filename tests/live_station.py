@@ -30,8 +30,7 @@ from shared.envelope import Stamper
 from shared.mcap_log import SegmentPolicy
 from shared.messages import STATION_ID, Message
 from shared.messages.station import Action
-
-PATIENCE_S = 20.0
+from tests.waiting import PATIENCE_S
 
 
 def make_pipeline(checkpoint: Checkpoint | None = None) -> StationPipeline:

@@ -16,9 +16,8 @@ from shared.clock import SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
 from shared.messages import Message
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
-PATIENCE_S = 60.0
 # As ``shared.command_line.main`` does it, without the entry points of an installed program.
 RUN = """
 import sys

@@ -50,7 +50,7 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
             found.extend(reader.take())
             return len(found) >= len(told)
 
-        until(all_there, "every fix", 20.0)
+        until(all_there, "every fix")
         assert reader.take_faults() == ()
         assert reader.garbled == 0
         return found

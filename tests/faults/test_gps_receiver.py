@@ -58,10 +58,10 @@ class Heard:
         return self._faults
 
     def hears(self, words: str) -> None:
-        until(lambda: any(words in fault for fault in self.faults), words, 20.0)
+        until(lambda: any(words in fault for fault in self.faults), words)
 
     def has(self, count: int) -> None:
-        until(lambda: len(self.fixes) >= count, f"{count} fixes", 20.0)
+        until(lambda: len(self.fixes) >= count, f"{count} fixes")
 
 
 class Ears:

@@ -27,7 +27,6 @@ from tests.waiting import until
 ROUNDS = 10
 SEED = 4
 SPREAD_S = 1.0  # a router looks once a second whether it is to open again
-LINKED_S = 30.0
 
 
 @dataclass
@@ -60,7 +59,7 @@ class End:
 
 def wait_heard(one: End, other: End, words: str) -> None:
     what = f"{one.name} hears {other.name} in {words}"
-    until(lambda: one.hears(other, words), what, LINKED_S)
+    until(lambda: one.hears(other, words), what)
 
 
 @pytest.fixture

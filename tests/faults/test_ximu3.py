@@ -51,7 +51,7 @@ class Listener:
         return np.concatenate([batch.imu.t_ns for batch in self.batches])
 
     def hears(self, words: str) -> None:
-        until(lambda: any(words in fault for fault in self.faults), words, 15.0)
+        until(lambda: any(words in fault for fault in self.faults), words)
 
     def close(self) -> None:
         self.source.close()

@@ -174,7 +174,7 @@ class Story:
         assert answer.status_code < 300, (route, answer.text)
         self.done.add(route)
         if route not in LOOKING_ON:
-            until(lambda: len(self._authors()) > before, f"an entry of {route}", patience_s=5.0)
+            until(lambda: len(self._authors()) > before, f"an entry of {route}")
             assert set(self._authors()[before:]) == {"administrator"}, route
         return answer.json() if answer.content else None
 

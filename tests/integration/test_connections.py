@@ -12,9 +12,9 @@ from starlette.responses import PlainTextResponse
 
 from base_station import server
 from base_station.server import ConsoleServer, allow_many_files, bind
+from tests.waiting import PATIENCE_S
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
-PATIENCE_S = 60.0
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 

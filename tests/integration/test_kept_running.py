@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.station_command import Agent, Command
-
-PATIENCE_S = 60.0
+from tests.waiting import PATIENCE_S
 
 
 @pytest.fixture

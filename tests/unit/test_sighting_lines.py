@@ -23,8 +23,7 @@ from edge.sources.sighting_lines import sighting_of
 from edge.sources.sighting_reader import SightingReader, open_reader
 from shared.clock import SystemClock
 from shared.errors import ConfigError, WireError
-
-PATIENCE_S = 20.0
+from tests.waiting import PATIENCE_S
 
 
 def test_a_line_says_what_was_seen_and_how_far_away() -> None:
