@@ -207,7 +207,10 @@ class GpsInertialFuser:
         """``height`` with its variance."""
         memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
         tracker = memory.last.quality if memory.last is not None else Quality.GOOD
-        quality, reason = quality_of(self._kind, placed, tracker, assumed=memory.assumed)
+        split = self._horizontal.is_split
+        quality, reason = quality_of(
+            self._kind, placed, tracker, assumed=memory.assumed, split=split
+        )
         return Estimate(  # by place: every position comes through here
             t_mono_ns,
             placed.north_m,

@@ -10,12 +10,12 @@ from shared.quality import Quality
 
 
 def quality_of(
-    kind: Parameters, placed: Placed, tracker: Quality, *, assumed: bool
+    kind: Parameters, placed: Placed, tracker: Quality, *, assumed: bool, split: bool
 ) -> tuple[Quality, str]:
     """Quality and the first reason against it.
 
     ``tracker``: as the unit says of its own path; ``assumed``: nothing ties the own frame to the
-    incident frame.
+    incident frame; ``split``: walls leave more than one place open.
     """
     if tracker is Quality.LOST:
         return Quality.LOST, "the unit's tracker is lost"
@@ -26,6 +26,8 @@ def quality_of(
         return Quality.LOST, f"within {2.0 * std_m:.0f} m"
     if placed.turn_std_rad > kind.aligned_rad:
         return Quality.DEGRADED, "heading not known yet"
+    if split:
+        return Quality.DEGRADED, "walls leave more than one place open"
     if std_m > kind.unsure_m:
         return Quality.DEGRADED, f"within {2.0 * std_m:.0f} m"
     unsure = tracker is Quality.DEGRADED

@@ -7,14 +7,18 @@ from functools import partial
 
 import numpy as np
 from numba import njit
-from numba.core.types import float64, uint8, void
+from numba.core.types import UniTuple, boolean, float64, uint8, void
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ground = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
 
 FREE, BESIDE, WALL = 0, 1, 2  # what a square is; beside a wall there is no room for half a body
 
+Costs = tuple[float, float, float, float]  # of what a square is, and of a climb beside stairs
+
+_COSTS = UniTuple(float64, 4)  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 
@@ -51,3 +55,67 @@ def meet_moved(
                 if most == WALL:
                     break
             worst[one, move] = most
+
+
+@_compiled(
+    void(
+        uint8[:, ::1],
+        boolean[:, ::1],
+        float64[:, ::1],
+        float64[:, ::1],
+        _COSTS,
+        float64,
+        float64,
+        float64[::1],
+    )
+)
+def meet_behind(
+    ground: Ground,
+    stairs: Flags,
+    heads: Floats,
+    path: Floats,
+    costs: Costs,
+    look: float,
+    least: float,
+    logs: Floats,
+) -> None:
+    """What each head (n, 5) met on the way to where it is: its costs are added to ``logs`` (n,),
+    and it is put to where the way began, unless it has met so much that it is below ``least``.
+
+    A head is row and column, cosine and sine of its own frame's turn, and by how much that grows
+    in a second moving.  ``path`` (k, 4): rows and columns in the own frame, seconds moving, and
+    whether it climbs.
+    """
+    last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
+    for one in range(len(heads)):
+        row, column, cosine, sine, drift = heads[one]
+        log = logs[one]
+        for back in range(len(path)):
+            if log < least:
+                break
+            rows, columns, moving_s, climbs = path[len(path) - 1 - back]
+            way_row, way_column = cosine * rows - sine * columns, sine * rows + cosine * columns
+            from_row, from_column = row - way_row, column - way_column
+            looks = max(1, math.ceil(max(abs(way_row), abs(way_column)) / look))
+            most = 0
+            for step in range(1, looks + 1):
+                part = step / looks
+                at_row = math.floor(from_row + part * way_row + 0.5)
+                at_column = math.floor(from_column + part * way_column + 0.5)
+                at_row = min(max(at_row, 0), last_row)
+                at_column = min(max(at_column, 0), last_column)
+                most = max(most, ground[at_row, at_column])
+                if most == WALL:
+                    break
+            log += costs[most]
+            if climbs > 0.0:
+                at_row = min(max(math.floor(row + 0.5), 0), stairs.shape[0] - 1)
+                at_column = min(max(math.floor(column + 0.5), 0), stairs.shape[1] - 1)
+                if not stairs[at_row, at_column]:
+                    log += costs[3]
+            turned = drift * moving_s
+            less, more = math.cos(turned), math.sin(turned)
+            cosine, sine = cosine * less + sine * more, sine * less - cosine * more
+            row, column = from_row, from_column
+        heads[one, 0], heads[one, 1], heads[one, 2], heads[one, 3] = row, column, cosine, sine
+        logs[one] = log

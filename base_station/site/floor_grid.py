@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
-from base_station.site.crossing import BESIDE, FREE, WALL, Ground, meet_moved
+from base_station.site.crossing import BESIDE, FREE, WALL, Costs, Ground, meet_behind, meet_moved
 from base_station.site.plan import Plan, Ring
 from base_station.site.way_out import WayOut
 
@@ -19,6 +19,8 @@ CELL_M = 0.2
 MARGIN_M = 3.0  # of open ground about the building
 LOOK_M = 0.12  # how far apart a step is looked at: a wall is a square thick
 MOST_CELLS = 4_000_000
+_OPEN = np.zeros((1, 1), dtype=np.uint8)
+_EVERYWHERE = np.ones((1, 1), dtype=np.bool_)
 
 
 class FloorGrid:
@@ -37,6 +39,7 @@ class FloorGrid:
         floors = {wall.floor for wall in plan.walls}
         self._walls = {floor: self._walls_of(plan, floor) for floor in sorted(floors)}
         self._ground = {floor: _ground(walls) for floor, walls in self._walls.items()}
+        self._within = np.logical_or.reduce([self._ring(ring) for ring in plan.outlines])
         on_stairs = {stairs.floor for stairs in plan.stairs}
         self._stairs = {floor: self._stairs_of(plan, floor) for floor in sorted(on_stairs)}
 
@@ -73,6 +76,27 @@ class FloorGrid:
         meet_moved(self._ground[floor], begins, ways, moves_m / CELL_M, LOOK_M / CELL_M, worst)
         return worst
 
+    def go_back(
+        self,
+        floor: int | None,
+        heads: Floats,
+        path: Floats,
+        costs: Costs,
+        least: float,
+        logs: Floats,
+    ) -> None:
+        """Follow heads (n, 5) back over a path (k, 4) that was walked on one floor; as
+        ``meet_behind``, in metres.  A floor that is not known has no walls.
+        """
+        corner = np.array([self._north_m, self._east_m])
+        ground, stairs = _OPEN, _EVERYWHERE
+        if floor is not None:
+            ground, stairs = self._ground.get(floor, ground), self._stairs.get(floor, stairs)
+        heads[:, :2] = (heads[:, :2] - corner) / CELL_M
+        squares = path / (CELL_M, CELL_M, 1.0, 1.0)
+        meet_behind(ground, stairs, heads, squares, costs, LOOK_M / CELL_M, least, logs)
+        heads[:, :2] = corner + CELL_M * heads[:, :2]
+
     def has_stairs(self, floor: int) -> bool:
         return floor in self._stairs
 
@@ -80,6 +104,10 @@ class FloorGrid:
         """Which places (n, 2) lie where people change floor."""
         rows, columns = self._rows(place_m[:, 0]), self._columns(place_m[:, 1])
         return np.asarray(self._stairs[floor][rows, columns])
+
+    def is_within(self, place_m: Floats) -> Flags:
+        """Which places (n, 2) lie in a building."""
+        return np.asarray(self._within[self._rows(place_m[:, 0]), self._columns(place_m[:, 1])])
 
     def way_out(self, floor: int, north_m: float, east_m: float) -> WayOut | None:
         """From a place on one floor; None where the floor or the place is not on the plan."""
@@ -117,12 +145,15 @@ class FloorGrid:
     def _stairs_of(self, plan: Plan, floor: int) -> Flags:
         """The rings of a floor, even-odd, square by square."""
         stairs = np.zeros(self._shape, dtype=np.bool_)
-        north_m = self._north_m + CELL_M * np.arange(self._shape[0])[:, None]
-        east_m = self._east_m + CELL_M * np.arange(self._shape[1])[None, :]
         for one in plan.stairs:
             if one.floor == floor:
-                stairs |= _within(one.ring, north_m, east_m)
+                stairs |= self._ring(one.ring)
         return stairs
+
+    def _ring(self, ring: Ring) -> Flags:
+        north_m = self._north_m + CELL_M * np.arange(self._shape[0])[:, None]
+        east_m = self._east_m + CELL_M * np.arange(self._shape[1])[None, :]
+        return _within(ring, north_m, east_m)
 
 
 def _ground(walls: Flags) -> Ground:

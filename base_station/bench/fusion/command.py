@@ -26,7 +26,14 @@ from base_station.bench.fusion.recorded import print_recorded
 from base_station.bench.incident.bound import bound_m2, draw_errors_m
 from base_station.bench.incident.people import PEOPLE
 from base_station.bench.incident.run import Known, Person, Timing, draw_incident, fuse_all
-from base_station.bench.incident.scores import ERROR_STAGES, HELD_STAGES, FloorScores, Scores
+from base_station.bench.incident.scores import (
+    ASTRAY,
+    ERROR_STAGES,
+    FAR_M,
+    HELD_STAGES,
+    FloorScores,
+    Scores,
+)
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
@@ -52,6 +59,7 @@ class FusionReport:
     ce95_m: dict[str, dict[str, float]]
     seam_95_m: dict[str, float]  # jump on coming out, of 95 % of people at most
     held_95: dict[str, dict[str, float]]  # part of the time that the stated region held the truth
+    astray: dict[str, dict[str, float]]  # part of the time far off, and sure not to be
     floor_right: float  # part of the time inside, not on stairs
     floor_stated: float  # and the mean of the stated probability
     heading_walked_m: dict[str, float]  # walked with fixes until the heading is solved
@@ -143,6 +151,7 @@ class _Tally:
             held_95={
                 name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES} for name in KNOWN
             },
+            astray={name: {how: ways[name].part_astray(how) for how in ASTRAY} for name in KNOWN},
             floor_right=self._right.part_right(),
             floor_stated=self._right.part_stated(),
             heading_walked_m={
@@ -216,6 +225,9 @@ def _figures_table(report: FusionReport) -> Table:
     table.add_column("")
     table.add_column("measured", justify="right")
     table.add_column("to reach", justify="right")
+    for name, parts in report.astray.items():
+        for how, part in parts.items():
+            table.add_row(f"over {FAR_M:.0f} m off and {how}, {name}", f"{part:.2%}", "")
     table.add_row("floor right", f"{report.floor_right:.2%}", "99 %")
     table.add_row("floor right, as stated", f"{report.floor_stated:.2%}", "")
     for which, walked_m in report.heading_walked_m.items():

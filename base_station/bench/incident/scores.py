@@ -20,6 +20,8 @@ LEFT_M = 1.0  # from the engine: standing where one is known to be is not scored
 SETTLED_S = 30.0  # after coming out
 ON_FLOOR_M = 0.3  # nearer than this to a storey: not on the stairs
 SEAM_S = 20.0  # about the door
+FAR_M = 4.0  # off: in another room
+ASTRAY = {"outside of the region": 1.0, "of three times the region": 3.0}
 
 ERROR_STAGES = ("outside", "10 min inside", "back out")
 HELD_STAGES = ("outside", "at the door", "1 min", "5 min", "10 min inside", "back out")
@@ -58,6 +60,7 @@ class Scores:
         default_factory=lambda: {stage: [] for stage in HELD_STAGES}
     )
     seams_m: list[float] = field(default_factory=list)
+    astray: dict[str, list[Flags]] = field(default_factory=lambda: {how: [] for how in ASTRAY})
 
     def note(self, truth: Truth, places_m: Floats, normalised2: Floats | None) -> None:
         """``places_m`` (n, 2); ``normalised2`` (n,) where a region is stated."""
@@ -68,6 +71,10 @@ class Scores:
                 self.errors_m[stage].append(errors_m[rows])
             if normalised2 is not None:
                 self.held[stage].append(normalised2[rows] < CHI2_95_2DOF)
+        if normalised2 is not None:
+            for how, times in ASTRAY.items():
+                sure = normalised2 > times**2 * CHI2_95_2DOF
+                self.astray[how].append((errors_m > FAR_M) & sure)
         self.seams_m.append(_seam_m(truth, off_m))
 
     def ce_m(self, stage: str, percent: float) -> float:
@@ -75,6 +82,10 @@ class Scores:
 
     def held_95(self, stage: str) -> float:
         return float(np.concatenate(self.held[stage]).mean())
+
+    def part_astray(self, how: str) -> float:
+        """Of all the time: far off, and the stated region says that nobody is there."""
+        return float(np.concatenate(self.astray[how]).mean())
 
 
 @dataclass

@@ -15,8 +15,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.plane.drawing import draw
+from base_station.fusion.plane.elsewhere import look_elsewhere, picked
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
-from base_station.fusion.plane.state import DRIFT, PATH, SLOW, STATES
+from base_station.fusion.plane.state import DRIFT, SLOW, STATES
+from base_station.fusion.plane.walked import Move, Walked
 from base_station.fusion.ways import BESIDE_WALL, CLIMBS, OFF_STAIRS, THROUGH_WALL, UNSEEN_M
 from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
@@ -31,6 +34,10 @@ FLOOR_VAR_M2 = 0.2**2  # of any place: people do not walk on lines, and plans li
 LEFT = 0.1  # of the guesses, that agree with what was told: else the cloud begins anew
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
 MEMORY = 1.0 / 30.0  # of that mean, a move
+DOUBTFUL = -8.0  # log likelihood of the walls met of late: is somebody elsewhere likelier?
+LOOKED_M = 5.0  # walked until that is asked again
+LEAST_ODDS = -3.0  # logarithm; less is let be
+TOGETHER_M = 1.5  # standard deviation of a place below which one is left
 
 
 class SavedCloud(msgspec.Struct, frozen=True):
@@ -43,6 +50,9 @@ class SavedCloud(msgspec.Struct, frozen=True):
     contradiction: float
     random: tuple[str, str, int, int]
     scale_var: float = 0.0
+    walked: list[Move] = msgspec.field(default_factory=list)
+    to_doubt_m: float = 0.0
+    split: bool = False
 
 
 class WallCloud:
@@ -53,19 +63,11 @@ class WallCloud:
         self._scale = float(np.hypot(mean[2], mean[3]))
         along = mean[2:4] / self._scale
         self._scale_var = float(along @ covariance[2:4, 2:4] @ along)  # walls tell nothing of it
-        own, slow = PATH, list(range(STATES))[SLOW]
-        spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
-        root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
-        drawn = self._rng.normal(size=(GUESSES, 5)) @ root.T
-        gain = np.linalg.solve(spread, covariance[np.ix_(own, slow)]).T
-        self._slow = mean[slow] + drawn @ gain.T  # (n, 4)
-        self._slow_covariance = (
-            covariance[np.ix_(slow, slow)] - gain @ covariance[np.ix_(own, slow)]
-        )
-        state = mean[own] + drawn
-        self._guesses = np.column_stack(  # north, east, turn, drift
-            [state[:, :2], np.arctan2(state[:, 3], state[:, 2]), state[:, 4]]
-        )
+        drawn = draw(mean, covariance, self._rng, np.ones(GUESSES))
+        self._guesses, self._slow, self._slow_covariance = drawn
+        self._walked = Walked([])
+        self._to_doubt_m = 0.0
+        self._split = False
         self._log_weights = np.zeros(GUESSES)
         self._pending = np.zeros(4)  # own north and east, seconds moving, climbed
         self._contradiction = 0.0
@@ -84,6 +86,9 @@ class WallCloud:
             self._contradiction,
             (str(inner["state"]), str(inner["inc"]), random["has_uint32"], random["uinteger"]),
             self._scale_var,
+            self._walked.save(),
+            self._to_doubt_m,
+            self._split,
         )
 
     @staticmethod
@@ -96,6 +101,8 @@ class WallCloud:
         cloud._scale, cloud._scale_var = saved.scale, saved.scale_var
         cloud._pending = np.array(saved.pending)
         cloud._contradiction = saved.contradiction
+        cloud._walked, cloud._to_doubt_m = Walked(list(saved.walked)), saved.to_doubt_m
+        cloud._split = saved.split
         state, inc, has_uint32, uinteger = saved.random
         cloud._rng.bit_generator.state = {
             "bit_generator": "PCG64",
@@ -133,24 +140,66 @@ class WallCloud:
         guesses[:, :2] += self._turned(north_m, east_m)
         guesses[:, :2] += math.sqrt(noise[0] * way_m) * fresh[:, :2]
         self._moments = None
+        looked, told, climbs = None, 0.0, abs(climbed_m) > CLIMBS * way_m
         if floor is not None and grid.knows(floor) and way_m < UNSEEN_M:
-            climbs = abs(climbed_m) > CLIMBS * way_m
-            self._weigh_walls(grid, floor, from_m, climbs)
+            looked, told = floor, self._weigh_walls(grid, floor, from_m, climbs)
+        self._walked.note(Move(north_m, east_m, moving_s, climbs, looked, told))
+        self._to_doubt_m -= way_m
 
-    def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> None:
+    def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> float:
+        """How likely the walls met are, as a logarithm."""
         before = _normal(self._log_weights)
         met = grid.met(floor, from_m, self._guesses[:, :2])
         lost = math.log(THROUGH_WALL) * (met == WALL)
         if climbs and grid.has_stairs(floor):
             lost = lost + math.log(OFF_STAIRS) * ~grid.on_stairs(floor, self._guesses[:, :2])
-        self._log_weights = self._log_weights + lost + math.log(BESIDE_WALL) * (met == BESIDE)
+        all_lost = lost + math.log(BESIDE_WALL) * (met == BESIDE)
+        self._log_weights = self._log_weights + all_lost
         passed = float(before @ np.exp(lost))
         self._contradiction += MEMORY * (-math.log(passed) - self._contradiction)
         self._draw_anew()
+        return math.log(float(before @ np.exp(all_lost)))
+
+    @property
+    def is_doubtful(self) -> bool:
+        """It has just moved, and walls stood in the way of late."""
+        moved = not self._pending.any()
+        return moved and self._to_doubt_m <= 0.0 and self._walked.told < DOUBTFUL
+
+    @property
+    def is_split(self) -> bool:
+        """Somebody elsewhere may have walked like this, and what was walked since did not tell."""
+        if self._split:
+            _, covariance = self.moments()
+            self._split = bool(covariance[0, 0] + covariance[1, 1] > TOGETHER_M**2)
+        return self._split
+
+    def look_elsewhere(self, known: tuple[Floats, Floats], grid: FloorGrid) -> None:
+        """Hold the cloud against guesses drawn from what is known without walls (9,), (9, 9), by
+        the walls met of late, and keep both by the odds.  Only where it has just moved.
+        """
+        self._to_doubt_m = LOOKED_M
+        weights, told = _normal(self._log_weights), self._walked.told
+        inside = bool(grid.is_within((weights @ self._guesses[:, :2])[None])[0])
+        found = look_elsewhere(known, self._walked, self._scale, grid, self._rng, inside=inside)
+        if found is None or (odds := found.odds(told)) < LEAST_ODDS:
+            return
+        log_part, log_rest = -float(np.logaddexp(0.0, -odds)), -float(np.logaddexp(0.0, odds))
+        least = round(LEFT * GUESSES)
+        count = min(max(round(math.exp(log_part) * GUESSES), least), GUESSES - least)
+        kept = picked(weights, GUESSES - count, self._rng)
+        guesses, slow = found.pick(count, self._rng)
+        self._guesses = np.concatenate((guesses, self._guesses[kept]))
+        self._slow = np.concatenate((slow, self._slow[kept]))
+        self._slow_covariance = found.drawn.slow_covariance
+        logs = log_part - math.log(count), log_rest - math.log(GUESSES - count)
+        self._log_weights = np.repeat(logs, (count, GUESSES - count))
+        self._walked.retell(float(np.logaddexp(log_part + found.told, log_rest + told)))
+        self._split, self._moments = True, None
 
     def spread(self, variance_m2: float) -> None:
         self._guesses[:, :2] += math.sqrt(variance_m2) * self._rng.normal(size=(GUESSES, 2))
-        self._moments = None
+        self._walked, self._moments = Walked([]), None
 
     def fade(self, keeps: Floats) -> None:
         """Time went by for the fixes' slow errors (4,), of unit variance."""
@@ -188,6 +237,7 @@ class WallCloud:
         if 1.0 / float(after @ after) < LEFT * GUESSES:
             return False
         self._log_weights, self._moments, self._contradiction = log_weights, None, 0.0
+        self._walked = Walked([])
         self._draw_anew()
         return True
 
@@ -260,9 +310,8 @@ class WallCloud:
         self._log_weights -= self._log_weights.max()
         if 1.0 / float(weights @ weights) > 0.5 * GUESSES:
             return
-        at = (np.arange(GUESSES) + self._rng.random()) / GUESSES
-        picked = np.minimum(np.searchsorted(np.cumsum(weights), at), GUESSES - 1)
-        guesses = self._guesses[picked]
+        left = picked(weights, GUESSES, self._rng)
+        guesses = self._guesses[left]
         inner = guesses[:, 2:]
         middle = inner[0] + _wrapped(inner - inner[0]).mean(axis=0)
         off = _wrapped(inner - middle)
@@ -270,7 +319,7 @@ class WallCloud:
         shaken = math.sqrt(1.0 - KEPT**2) * off.std(axis=0) * fresh[:, 2:]
         guesses[:, 2:] = middle + KEPT * off + shaken
         guesses[:, :2] += SHAKEN_M * fresh[:, :2]
-        self._guesses, self._slow = guesses, self._slow[picked]
+        self._guesses, self._slow = guesses, self._slow[left]
         self._log_weights = np.zeros(GUESSES)
         self._moments = None
 

@@ -115,6 +115,11 @@ class WalledFilter:
         """No walls are heeded, and one heading is left."""
         return self._cloud is None and self._plain.is_linear
 
+    @property
+    def is_split(self) -> bool:
+        """Walls leave more than one place open."""
+        return self._cloud is not None and self._cloud.is_split
+
     def stand_then(self, north_m: float, east_m: float, place: Floats, covariance: Floats) -> None:
         """Where the wearer was before this much of own path was walked has come to be known as
         this; only where the filter is plain.
@@ -178,6 +183,8 @@ class WalledFilter:
             return
         if self._cloud is not None:
             self._cloud.walk(path, noise, self._grid, self._floor)
+            if self._cloud.is_doubtful and self._plain.is_linear:
+                self._cloud.look_elsewhere(self._plain.moments(), self._grid)
         self._to_walk_m -= math.hypot(north_m, east_m)
         if self._to_walk_m <= 0.0:
             self._to_walk_m = 1.0

@@ -1,0 +1,81 @@
+"""The last stretch of a path, to ask of any guess how well it fits the walls behind it."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.ways import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
+from base_station.site.floor_grid import FloorGrid
+
+Floats = NDArray[np.float64]
+
+KEPT_M = 30.0  # of path
+COSTS = 0.0, math.log(BESIDE_WALL), math.log(THROUGH_WALL), math.log(OFF_STAIRS)
+
+
+class Move(msgspec.Struct, frozen=True, array_like=True):
+    """From one look at the walls to the next."""
+
+    north_m: float  # of the own path
+    east_m: float
+    moving_s: float
+    climbs: bool
+    floor: int | None  # None: its walls were not looked at
+    told: float  # log likelihood of the walls met, by the cloud at the time
+
+
+class Walked:
+    """Moves, the last one last."""
+
+    def __init__(self, moves: list[Move]) -> None:
+        self._moves = moves
+        self._way_m = sum(_way_m(move) for move in moves)
+
+    def save(self) -> list[Move]:
+        return list(self._moves)
+
+    @property
+    def told(self) -> float:
+        """How likely the cloud at each time has found the walls met, as a logarithm."""
+        return sum(move.told for move in self._moves)
+
+    def note(self, move: Move) -> None:
+        self._moves.append(move)
+        self._way_m += _way_m(move)
+        while self._way_m > KEPT_M:
+            self._way_m -= _way_m(self._moves.pop(0))
+
+    def retell(self, told: float) -> None:
+        """The cloud is another now, and would have found them as likely as this."""
+        part = told / self.told
+        self._moves = [msgspec.structs.replace(move, told=part * move.told) for move in self._moves]
+
+    def retrace(self, guesses: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
+        """Log likelihood (n,) of the walls met on the way to guesses (n, 4) of north, east, turn
+        and drift; what is once below ``least`` is not followed further back.
+        """
+        turn, logs = guesses[:, 2], np.zeros(len(guesses))
+        heads = np.column_stack((guesses[:, :2], np.cos(turn), np.sin(turn), guesses[:, 3]))
+        for floor, moves in _by_floor(self._moves):
+            path = np.array([(m.north_m, m.east_m, m.moving_s, m.climbs) for m in moves])
+            path[:, :2] *= scale
+            grid.go_back(floor, heads, path, COSTS, least, logs)
+        return logs
+
+
+def _by_floor(moves: list[Move]) -> list[tuple[int | None, list[Move]]]:
+    """The last stretch first; in each the last move last."""
+    runs: list[tuple[int | None, list[Move]]] = []
+    for move in reversed(moves):
+        if not runs or runs[-1][0] != move.floor:
+            runs.append((move.floor, []))
+        runs[-1][1].insert(0, move)
+    return runs
+
+
+def _way_m(move: Move) -> float:
+    return math.hypot(move.north_m, move.east_m)
