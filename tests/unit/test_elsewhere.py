@@ -1,0 +1,164 @@
+"""A cloud that walls have confirmed in the wrong rooms is held against guesses from elsewhere."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from base_station.fusion.plane.drawing import draw
+from base_station.fusion.plane.state import STATES
+from base_station.fusion.plane.walked import COSTS, KEPT_M, Move, Walked
+from base_station.fusion.plane.wall_cloud import TOGETHER_M, WallCloud
+from base_station.site.crossing import WALL
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.plan import read_plan
+
+Floats = NDArray[np.float64]
+
+WIDTH_M, DEPTH_M = 24.0, 12.0
+CORRIDOR_M = 5.0, 7.0  # north of its walls
+DOOR_M = 3.0, 15.0  # east of their middles, in the corridor's northern wall
+BEGIN_M = 6.0, 9.0
+NOISE = 0.03**2, 0.004**2
+STEP_M = 0.5
+KNOWN_STD_M = 2.0
+# East along the corridor, through the second door, about in the room behind it, and out again.
+WALK = [(0.0, 1.0)] * 12 + [(1.0, 0.0)] * 7 + [(0.0, 1.0)] * 12 + [(0.0, -1.0)] * 24
+WALK += [(0.0, 1.0)] * 12 + [(-1.0, 0.0)] * 7 + [(0.0, 1.0)] * 8
+
+
+def building(*doors_m: float) -> FloorGrid:
+    """A corridor from west to east, and rooms to the north of it."""
+    (south_m, north_m), ends_m = CORRIDOR_M, [0.0]
+    for door_m in doors_m:
+        ends_m += [door_m - 0.5, door_m + 0.5]
+    ends_m.append(WIDTH_M)
+    ring = [[0.0, south_m], [WIDTH_M, south_m], [WIDTH_M, DEPTH_M], [0.0, DEPTH_M]]
+    ring.append(ring[0])
+    walls = [ring]
+    walls += [[[a, north_m], [b, north_m]] for a, b in zip(ends_m[::2], ends_m[1::2], strict=True)]
+    walls += [[[east_m, north_m], [east_m, DEPTH_M]] for east_m in (8.5, 21.5)]
+    shapes = [("outline", "Polygon", [ring]), *(("wall", "LineString", line) for line in walls)]
+    features = [
+        {
+            "type": "Feature",
+            "properties": {"kind": kind, "floor": 0},
+            "geometry": {"type": shape, "coordinates": coordinates},
+        }
+        for kind, shape, coordinates in shapes
+    ]
+    site = {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0}]}
+    plan = {"type": "FeatureCollection", "muster": site, "features": features}
+    grid = FloorGrid.of(read_plan(msgspec.json.encode(plan)))
+    assert grid is not None
+    return grid
+
+
+def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:
+    """Moments of a filter that goes by the path alone."""
+    mean, covariance = np.zeros(STATES), np.diag([*[1e-4] * 4, *[1.0] * 4, 1e-10])
+    mean[:3] = *place_m, 1.0
+    covariance[[0, 1], [0, 1]] = std_m**2
+    return mean, covariance
+
+
+def walked(grid: FloorGrid, off_east_m: float, *, looks: bool = True) -> tuple[WallCloud, Floats]:
+    """The walk from where it is taken to begin this far off, and where it has truly led."""
+    place_m = np.array(BEGIN_M)
+    taken_m = place_m + np.array((0.0, off_east_m))
+    cloud = WallCloud(*known(taken_m, 0.4), 1)
+    for direction in WALK:
+        step_m = STEP_M * np.array(direction)
+        place_m, taken_m = place_m + step_m, taken_m + step_m
+        cloud.walk((*step_m.tolist(), 0.5, 0.0), NOISE, grid, 0)
+        if looks and cloud.is_doubtful:
+            cloud.look_elsewhere(known(taken_m, KNOWN_STD_M), grid)
+    return cloud, place_m
+
+
+def off_m(cloud: WallCloud, place_m: Floats) -> float:
+    return math.dist(cloud.moments()[0][:2], place_m)
+
+
+def std_m(cloud: WallCloud) -> float:
+    _, covariance = cloud.moments()
+    return math.sqrt(covariance[0, 0] + covariance[1, 1])
+
+
+@pytest.mark.parametrize("off_east_m", [-4.0, 4.0])
+def test_whoever_is_held_beside_the_door_comes_to_the_right_room(off_east_m: float) -> None:
+    held, place_m = walked(building(*DOOR_M), off_east_m, looks=False)
+    assert off_m(held, place_m) > 2.0 * std_m(held)
+    found, place_m = walked(building(*DOOR_M), off_east_m)
+    assert off_m(found, place_m) < 1.5
+
+
+def test_while_two_places_are_open_it_says_so_and_where() -> None:
+    """Two rooms alike, and what is known without walls lies between them."""
+    grid, place_m = building(3.5, 12.5), np.array((6.0, 8.0))
+    cloud, taken_m, opened = WallCloud(*known(place_m, 0.15), 1), place_m, False
+    for direction in [(1.0, 0.0)] * 7 + [(-1.0, 0.0)] * 7 + [(1.0, 0.0)] * 7:
+        step_m = STEP_M * np.array(direction)
+        taken_m = taken_m + step_m
+        cloud.walk((*step_m.tolist(), 0.5, 0.0), NOISE, grid, 0)
+        if cloud.is_doubtful:
+            cloud.look_elsewhere(known(taken_m, KNOWN_STD_M), grid)
+            opened = True
+    assert opened
+    assert cloud.is_split
+    assert std_m(cloud) > TOGETHER_M
+
+
+@pytest.mark.parametrize("drawn_m", [DOOR_M, DOOR_M[:1]], ids=["plan right", "a door not drawn"])
+def test_whoever_is_right_is_left_alone(drawn_m: tuple[float, ...]) -> None:
+    grid = building(*drawn_m)
+    plain, _ = walked(grid, 0.0, looks=False)
+    looking, place_m = walked(grid, 0.0)
+    assert looking.save() == plain.save()
+    assert off_m(looking, place_m) < 2.0
+
+
+def test_the_way_back_meets_what_the_way_there_met() -> None:
+    grid, rng = building(*DOOR_M), np.random.default_rng(3)
+    begin = draw(*known(np.array(BEGIN_M), 1.0), rng, np.ones(50)).guesses
+    guesses, last, logs = begin.copy(), Walked([]), np.zeros(50)
+    for direction in WALK[:50]:
+        step_m = STEP_M * np.array(direction)
+        guesses[:, 2] += guesses[:, 3] * 0.5
+        cosine, sine = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
+        from_m = guesses[:, :2].copy()
+        guesses[:, 0] += cosine * step_m[0] - sine * step_m[1]
+        guesses[:, 1] += sine * step_m[0] + cosine * step_m[1]
+        logs += np.array(COSTS)[grid.met(0, from_m, guesses[:, :2])]
+        last.note(Move(*step_m.tolist(), 0.5, False, 0, 0.0))
+    back = last.retrace(guesses, 1.0, grid, -math.inf)
+    assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # but for squares that a rounding misses
+    assert (logs < COSTS[WALL]).any()
+    assert (logs > COSTS[WALL]).any()
+
+
+def test_only_the_last_stretch_is_kept() -> None:
+    last = Walked([])
+    for _ in range(400):
+        last.note(Move(0.5, 0.0, 0.5, False, 0, -0.1))
+    assert sum(move.north_m for move in last.save()) <= KEPT_M
+    assert last.told == pytest.approx(-0.1 * len(last.save()))
+    assert Walked(last.save()).save() == last.save()
+
+
+def test_an_unknown_floor_has_no_walls() -> None:
+    last = Walked([Move(0.0, 6.0, 6.0, False, None, 0.0), Move(6.0, 0.0, 6.0, False, 7, 0.0)])
+    guesses = np.array([[6.0, 9.0, 0.0, 0.0]])
+    assert last.retrace(guesses, 1.0, building(*DOOR_M), -math.inf) == pytest.approx([0.0])
+
+
+def test_saved_while_both_are_open_it_goes_on_with_the_very_same_numbers() -> None:
+    cloud, _ = walked(building(*DOOR_M), 4.0)
+    again = WallCloud.restore(
+        msgspec.msgpack.decode(msgspec.msgpack.encode(cloud.save()), type=type(cloud.save()))
+    )
+    assert again.save() == cloud.save()
