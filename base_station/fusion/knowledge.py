@@ -19,16 +19,17 @@ def quality_of(
     """
     if tracker is Quality.LOST:
         return Quality.LOST, "the unit's tracker is lost"
-    if assumed:
-        return Quality.DEGRADED, "start not known: shown about the unit's own start"
-    std_m = math.hypot(placed.std_north_m, placed.std_east_m)
-    if std_m > kind.lost_m:
+    std_m, reason = math.hypot(placed.std_north_m, placed.std_east_m), ""
+    if std_m > kind.lost_m and not assumed:
         return Quality.LOST, f"within {2.0 * std_m:.0f} m"
-    if placed.turn_std_rad > kind.aligned_rad:
-        return Quality.DEGRADED, "heading not known yet"
-    if split:
-        return Quality.DEGRADED, "walls leave more than one place open"
-    if std_m > kind.unsure_m:
-        return Quality.DEGRADED, f"within {2.0 * std_m:.0f} m"
-    unsure = tracker is Quality.DEGRADED
-    return (Quality.DEGRADED, "the unit's tracker is unsure") if unsure else (Quality.GOOD, "")
+    if assumed:
+        reason = "start not known: shown about the unit's own start"
+    elif placed.turn_std_rad > kind.aligned_rad:
+        reason = "heading not known yet"
+    elif split:
+        reason = "walls leave more than one place open"
+    elif std_m > kind.unsure_m:
+        reason = f"within {2.0 * std_m:.0f} m"
+    elif tracker is Quality.DEGRADED:
+        reason = "the unit's tracker is unsure"
+    return (Quality.DEGRADED, reason) if reason else (Quality.GOOD, "")

@@ -134,7 +134,8 @@ def test_the_way_back_meets_what_the_way_there_met() -> None:
         guesses[:, 0] += cosine * step_m[0] - sine * step_m[1]
         guesses[:, 1] += sine * step_m[0] + cosine * step_m[1]
         logs += np.array(COSTS)[grid.met(0, from_m, guesses[:, :2])]
-        last.note(Move(*step_m.tolist(), 0.5, False, 0, 0.0))
+        north_m, east_m = step_m.tolist()
+        last.note(Move(north_m, east_m, 0.5, False, 0, 0.0))
     back = last.retrace(guesses, 1.0, grid, -math.inf)
     assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # but for squares that a rounding misses
     assert (logs < COSTS[WALL]).any()

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.plane.drawing import Drawn, draw
 from base_station.fusion.plane.walked import Walked
+from base_station.fusion.plane.weighed import picked
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -64,9 +65,3 @@ def look_elsewhere(
     likely = np.exp(logs) * (grid.is_within(drawn.guesses[:, :2]) if inside else 1.0)
     total = float(likely.sum())
     return Elsewhere(drawn, likely / total, math.log(total / DRAWN)) if total > 0.0 else None
-
-
-def picked(weights: Floats, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Which are drawn, evenly."""
-    at = (np.arange(count) + rng.random()) / count
-    return np.minimum(np.searchsorted(np.cumsum(weights), at), len(weights) - 1)

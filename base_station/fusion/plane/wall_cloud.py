@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.plane.drawing import draw
-from base_station.fusion.plane.elsewhere import look_elsewhere, picked
+from base_station.fusion.plane.elsewhere import look_elsewhere
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
 from base_station.fusion.plane.state import DRIFT, SLOW, STATES
 from base_station.fusion.plane.walked import Move, Walked
+from base_station.fusion.plane.weighed import SHAKEN_M, normal, picked, shaken, squares
 from base_station.fusion.ways import BESIDE_WALL, CLIMBS, OFF_STAIRS, THROUGH_WALL, UNSEEN_M
 from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
@@ -28,8 +29,6 @@ Floats = NDArray[np.float64]
 
 GUESSES = 400
 MOVE_M = 0.35  # walked until the guesses are moved and walls looked at
-KEPT = 0.97  # how much of themselves guesses keep when drawn anew (Liu and West 2001)
-SHAKEN_M = 0.05  # and how far their places are shaken
 FLOOR_VAR_M2 = 0.2**2  # of any place: people do not walk on lines, and plans lie decimetres aside
 LEFT = 0.1  # of the guesses, that agree with what was told: else the cloud begins anew
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
@@ -148,7 +147,7 @@ class WallCloud:
 
     def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> float:
         """How likely the walls met are, as a logarithm."""
-        before = _normal(self._log_weights)
+        before = normal(self._log_weights)
         met = grid.met(floor, from_m, self._guesses[:, :2])
         lost = math.log(THROUGH_WALL) * (met == WALL)
         if climbs and grid.has_stairs(floor):
@@ -179,7 +178,7 @@ class WallCloud:
         the walls met of late, and keep both by the odds.  Only where it has just moved.
         """
         self._to_doubt_m = LOOKED_M
-        weights, told = _normal(self._log_weights), self._walked.told
+        weights, told = normal(self._log_weights), self._walked.told
         inside = bool(grid.is_within((weights @ self._guesses[:, :2])[None])[0])
         found = look_elsewhere(known, self._walked, self._scale, grid, self._rng, inside=inside)
         if found is None or (odds := found.odds(told)) < LEAST_ODDS:
@@ -220,7 +219,7 @@ class WallCloud:
         to_own[2, 2:4] = np.array([-s, c]) / (c * c + s * s)
         here = self._guesses.copy()
         here[:, :2] += self._turned(float(self._pending[0]), float(self._pending[1]))
-        weights = _normal(self._log_weights)
+        weights = normal(self._log_weights)
         turn_rad = math.atan2(
             float(weights @ np.sin(here[:, 2])), float(weights @ np.cos(here[:, 2]))
         )
@@ -231,9 +230,9 @@ class WallCloud:
         floor = np.diag([SHAKEN_M**2, SHAKEN_M**2, 1e-6, 1e-12])
         spread = (own * weights[:, None]).T @ own + floor
         told = to_own @ covariance @ to_own.T + floor
-        gain = 0.5 * (_squares(own, spread) - _squares(here - known, told))
+        gain = 0.5 * (squares(own, spread) - squares(here - known, told))
         log_weights = self._log_weights + gain
-        after = _normal(log_weights)
+        after = normal(log_weights)
         if 1.0 / float(after @ after) < LEFT * GUESSES:
             return False
         self._log_weights, self._moments, self._contradiction = log_weights, None, 0.0
@@ -244,7 +243,7 @@ class WallCloud:
     def distance2(self, sighting: Sighting) -> float:
         """From the cloud as a whole, chi-square of two degrees of freedom."""
         apart, spread = self._innovations(sighting)
-        weights = _normal(self._log_weights)
+        weights = normal(self._log_weights)
         middle = weights @ apart
         off = apart - middle
         whole = spread + (off * weights[:, None]).T @ off
@@ -264,7 +263,7 @@ class WallCloud:
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (9,) and covariance (9, 9) in the state of ``HorizontalFilter``."""
         if self._moments is None:
-            weights, guesses = _normal(self._log_weights), self._guesses
+            weights, guesses = normal(self._log_weights), self._guesses
             states = np.empty((GUESSES, STATES))
             states[:, :2] = guesses[:, :2]
             states[:, 2], states[:, 3] = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
@@ -306,34 +305,11 @@ class WallCloud:
 
     def _draw_anew(self) -> None:
         """Guesses that are hardly believed give way to others, shaken a little."""
-        weights = _normal(self._log_weights)
+        weights = normal(self._log_weights)
         self._log_weights -= self._log_weights.max()
         if 1.0 / float(weights @ weights) > 0.5 * GUESSES:
             return
         left = picked(weights, GUESSES, self._rng)
-        guesses = self._guesses[left]
-        inner = guesses[:, 2:]
-        middle = inner[0] + _wrapped(inner - inner[0]).mean(axis=0)
-        off = _wrapped(inner - middle)
-        fresh = self._rng.normal(size=(GUESSES, 4))
-        shaken = math.sqrt(1.0 - KEPT**2) * off.std(axis=0) * fresh[:, 2:]
-        guesses[:, 2:] = middle + KEPT * off + shaken
-        guesses[:, :2] += SHAKEN_M * fresh[:, :2]
-        self._guesses, self._slow = guesses, self._slow[left]
+        self._guesses, self._slow = shaken(self._guesses[left], self._rng), self._slow[left]
         self._log_weights = np.zeros(GUESSES)
         self._moments = None
-
-
-def _squares(apart: Floats, spread: Floats) -> Floats:
-    """Chi-squares (n,) of rows."""
-    return np.asarray(((apart @ np.linalg.inv(spread)) * apart).sum(axis=1))
-
-
-def _normal(log_weights: Floats) -> Floats:
-    weights = np.exp(log_weights - log_weights.max())
-    return np.asarray(weights / weights.sum())
-
-
-def _wrapped(turn_and_drift: Floats) -> Floats:
-    turn_and_drift[:, 0] = (turn_and_drift[:, 0] + math.pi) % (2.0 * math.pi) - math.pi
-    return turn_and_drift
