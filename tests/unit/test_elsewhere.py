@@ -9,13 +9,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from base_station.bench.rig import said
+from base_station.fusion import FUSERS
 from base_station.fusion.plane.drawing import draw
 from base_station.fusion.plane.state import STATES
 from base_station.fusion.plane.walked import COSTS, KEPT_M, Move, Walked
 from base_station.fusion.plane.wall_cloud import TOGETHER_M, WallCloud
+from base_station.fusion.port import Start
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
+from shared.messages import Header
+from shared.quality import Quality
 
 Floats = NDArray[np.float64]
 
@@ -111,6 +116,26 @@ def test_while_two_places_are_open_it_says_so_and_where() -> None:
     assert opened
     assert cloud.is_split
     assert std_m(cloud) > TOGETHER_M
+
+
+def test_the_fuser_says_why_and_then_knows_the_room() -> None:
+    """It began three standard deviations off."""
+    fuser, own_m = FUSERS[0].new(), np.zeros(2)
+    said_of_it, place_m = set(), (math.nan, math.nan)
+    fuser.consider(building(*DOOR_M))
+    fuser.start(Start(BEGIN_M[0], BEGIN_M[1] - 4.0, 0.0, 0.0, 1.3, 0.02))
+    for seq, direction in enumerate(WALK, start=1):
+        own_m = own_m + STEP_M * np.array(direction)
+        header = Header("FF-01", 1, seq, said.mono_ns(0.5 * seq))
+        fuser.advance(
+            said.position(header, north_m=own_m[0], east_m=own_m[1], distance_m=STEP_M * seq)
+        )
+        estimate = fuser.estimate()
+        assert estimate is not None
+        said_of_it.add((estimate.quality, estimate.quality_reason))
+        place_m = estimate.north_m, estimate.east_m
+    assert (Quality.DEGRADED, "walls leave more than one place open") in said_of_it
+    assert math.dist(place_m, BEGIN_M + own_m) < 1.5
 
 
 @pytest.mark.parametrize("drawn_m", [DOOR_M, DOOR_M[:1]], ids=["plan right", "a door not drawn"])
