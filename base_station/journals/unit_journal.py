@@ -72,7 +72,7 @@ class _Boot:
         self._known = _union(self._have, self._without_alert)
         self._settled_to = self.newest
         self.newest = max(self.newest, runs[-1].last if runs else 0)
-        self.complete.append(self._have.complete_to(1))
+        self.complete.append(self._have.complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
         """What the journal has of it came."""

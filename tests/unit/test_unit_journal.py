@@ -208,6 +208,18 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
     assert journal.next_question() is None
 
 
+def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() -> None:
+    """Or it would give up what nobody has, for what the station has had for long."""
+    journal = UnitJournal()
+    held = (Held(BOOT, (Run(51, 100),)),)
+    journal.report(held, 0)
+    indexed(journal, JournalBoot(BOOT, 51, 100, 0, 0))
+    for number in range(1, 4):
+        assert journal.next_question() is None
+        journal.report(held, number)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100})
+
+
 def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
     journal = journal_of(Run(1, 4), Run(8, 8), last=8)
     question = journal.next_question()
@@ -254,6 +266,48 @@ def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> 
     journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 3)
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+
+
+def test_nothing_is_told_to_be_safe_before_it_is_reported_anew() -> None:
+    journal = journal_of(Run(1, 10), last=20)
+    held = (Held(BOOT, (Run(1, 10),)),)
+    asked_in_turn(journal, held[0], 20)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 20})
+    journal.start_over()
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+    asked_of(journal)
+    assert journal.next_question() is None  # the log may have refused these, too
+
+
+def test_how_much_is_asked_for_follows_from_how_large_messages_are() -> None:
+    def numbers_of_a_piece(payload: bytes) -> int:
+        held = Held(BOOT, (Run(1, 1),))
+        journal = journal_of(Run(1, 1), last=100_000)
+        journal.report((held,), 1)
+        for _ in range(60):
+            what, asked = next_of(journal)
+            entry = JournalEntry(asked["to"], "up/position", payload)
+            first = asked["from"] if what == "urgent" else asked["to"]
+            entries = () if what == "urgent" else (entry,)
+            chunk = JournalChunk(BOOT, first, asked["to"], entries, urgent_only=what == "urgent")
+            question = journal.next_question()
+            assert question is not None
+            journal.take(question, chunk.to_bytes(), 1)
+            journal.end(question, NS_PER_S // 2)  # as long as is wanted: no more, no less
+        return asked["to"] - asked["from"] + 1
+
+    small, large = numbers_of_a_piece(bytes(20)), numbers_of_a_piece(bytes(500))
+    assert small > 10
+    assert large < small / 3
+
+
+def test_what_came_behind_all_that_the_journal_told_of_has_its_holes_filled() -> None:
+    journal = journal_of(Run(1, 100), last=100)
+    held = Held(BOOT, (Run(1, 100), Run(151, 160)))
+    journal.report((held,), 1)
+    pieces = asked_in_turn(journal, held, 20)
+    assert (pieces[-1][0], pieces[0][1]) == (101, 150)
 
 
 def test_an_answer_to_another_question_is_not_believed() -> None:
