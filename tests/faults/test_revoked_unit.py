@@ -1,10 +1,13 @@
-"""A unit is revoked while it speaks: nothing more of it comes in, and others lose nothing."""
+"""A unit is revoked while it speaks, and a program while it listens: nothing more comes of the one
+and to the other, and others lose nothing.
+"""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -12,9 +15,11 @@ import pytest
 from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.station import free_port, station_process
 from base_station.pki.folder import PkiFolder
-from shared.channels import Direction, parse_key
+from shared.bus_zenoh import ClientEndpoint, ZenohBus
+from shared.channels import ROOT, Direction, parse_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
+from shared.enrolment import Holder
 from shared.mcap_log import read_log
 from tests.station_command import Agent
 from tests.waiting import until
@@ -55,9 +60,17 @@ def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
     def said(unit_id: str) -> set[MessageOfUnit]:
         return said_by(tmp_path / "units" / unit_id / "journal.sqlite")
 
-    with station_process(tmp_path / "station", listen):
+    chief = pki.enroll("chief", Holder.OPERATOR)
+    shown_ns: list[int] = []
+    with (
+        station_process(tmp_path / "station", listen),
+        closing(ZenohBus(ClientEndpoint(chief.connect, chief.identity))) as program,
+    ):
+        program.subscribe(f"{ROOT}/**", lambda _key, _payload: shown_ns.append(time.time_ns()))
         until(lambda: set(logged(log)) == {LOST, OTHER}, "both are heard", COMPILING_S)
+        until(lambda: shown_ns, "an operator's program hears them")
         pki.revoke(LOST)
+        pki.revoke("chief", Holder.OPERATOR)
         revoked_ns = time.time_ns()
         before = len(said(LOST))
         until(lambda: len(said(LOST)) > before + 50, "the lost one speaks on")
@@ -69,6 +82,7 @@ def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
     assert set(heard.values()) == {1}
     assert said(LOST) - heard.keys()
     assert last_said_ns(log, LOST) < revoked_ns + REOPENED_S * NS_PER_S
+    assert shown_ns[-1] < revoked_ns + REOPENED_S * NS_PER_S
 
 
 def logged(log: Path) -> dict[str, Counter[MessageOfUnit]]:

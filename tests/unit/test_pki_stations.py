@@ -66,6 +66,22 @@ def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: Pk
     assert first.enroll("FF-01").identity.common_name() == "FF-01#2"
 
 
+def test_what_one_has_revoked_stays_so_though_the_other_renewed_it_meanwhile(
+    first: PkiFolder, second: PkiFolder, tmp_path: Path
+) -> None:
+    first.enroll("FF-01")
+    second.take_registry(first.registry())
+    second.revoke("FF-01")
+    later = PkiFolder(tmp_path / "first", lambda: datetime.now(UTC) + timedelta(hours=1))
+    later.renew("FF-01")
+    revoked, renewed = second.registry(), first.registry()
+    for merged in (revoked.merged(renewed), renewed.merged(revoked)):
+        (entry,) = (one for one in merged.entries if one.common_name == "FF-01")
+        assert entry.revoked is not None
+        assert entry.valid_from > revoked.entries[-1].valid_from
+        assert "FF-01" not in {one["id"] for one in access_control(merged)["subjects"]}
+
+
 def test_the_newer_certificate_stands_whoever_heard_of_it_first(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
