@@ -72,11 +72,25 @@ def test_a_damaged_registry_is_read_again_later(pki, records):
     assert gate.registered == ["FF-01"]
 
 
-def test_a_station_without_an_authority_registers_nobody(tmp_path, records):
+def test_a_station_without_an_authority_registers_nobody(tmp_path, records, caplog):
     gate = Gate()
     EnrolledUnits(PkiFolder(tmp_path), gate, list, records).update()
     assert gate.registered == []
+    assert caplog.text == ""  # over plain TCP nothing is wrong with that
     assert records.audit_entries(EVER) == []
+
+
+def test_what_is_in_the_audit_is_not_written_again_and_again(pki, records, monkeypatch, caplog):
+    written = []
+    monkeypatch.setattr(records, "audit_once", lambda _by, done: written.append(len(done)))
+    units = EnrolledUnits(pki, Gate(), list, records)
+    for _ in range(3):
+        units.update()
+    pki.enroll("FF-01")
+    for _ in range(3):
+        units.update()
+    assert written == [1, 1]
+    assert caplog.text == ""
 
 
 def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):

@@ -102,6 +102,47 @@ def test_nothing_stays_in_memory_of_who_is_to_be_forgotten(
     assert log.behind(log.place, 10**6) == []
 
 
+def test_of_a_long_log_the_newest_stay_at_hand_and_the_rest_is_said_to_be_on_the_disk(
+    recorder: Recorder, log: SharedLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("base_station.standby.shared_log._RECENT_BYTES", 100)
+    records = events(60)
+    written(recorder, log, records)
+    place, at_hand = BEGINNING, []
+    for done in range(len(records) + 1):
+        found = log.behind(place, 10**6)
+        assert found in (None, records[done:])
+        at_hand.append(found is not None)
+        if done < len(records):
+            place = place.then(records[done][0])
+    assert at_hand == sorted(at_hand)
+    kept_bytes = sum(len(payload) for _, _, payload in records[at_hand.index(True) :])
+    assert 80 < kept_bytes <= 200  # between what is left and what makes it forget
+
+
+def test_no_more_is_given_at_once_than_was_asked_for_but_always_something(
+    recorder: Recorder, log: SharedLog
+) -> None:
+    records = events(10)  # of seven bytes each
+    written(recorder, log, records)
+    given = [len(log.behind(BEGINNING, most) or []) for most in (0, 1, 7, 8, 14, 15)]
+    assert given == [1, 1, 1, 2, 2, 3]
+
+
+def test_the_term_is_that_of_the_last_take_over_also_one_that_came_later(
+    recorder: Recorder, log: SharedLog
+) -> None:
+    assert (log.term, log.take_overs) == (0, ())
+    log.begin(BEGINNING, T0, [TakeOver(3, "a", T0, 1)])
+    assert log.term == 3
+    action = OperatorAction(Header(STATION_ID, 1, 1, 5), "x", "b", TakeOver(4, "b", T0, 2))
+    log.write(T0 + 9, OPERATOR.key(STATION_ID), encode(action))
+    log.write(T0 + 9, OPERATOR.key(STATION_ID), b"\xff nobody can read this")
+    assert log.term == 4
+    assert [one.term for one in log.take_overs] == [3, 4]
+    assert recorder.flush()
+
+
 class Pairing:
     """An active log, and one that follows it."""
 
