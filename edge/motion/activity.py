@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 
 from edge.motion.air_height import AirHeight
-from edge.motion.body_motion import BodyMotion, MotionWindow
+from edge.motion.body_motion import BodyMotion, MotionWindow, by_window
 from edge.motion.falls import FallDetector
 from edge.motion.posture import Posture
 from edge.motion.strides import Stride, StrideCutter
@@ -69,8 +69,11 @@ class ActivityMonitor:
         if not len(imu):
             return 0
         self._air.push(imu)
-        self._falls.push(imu)
-        return sum(self._take_window(window) for window in self._motion.push(imu))
+        told = 0
+        for part in by_window(imu):  # in order: no blow is judged by what was before it
+            told += sum(self._take_window(window) for window in self._motion.push(part))
+            self._falls.push(part)
+        return told
 
     def cadence_hz(self, t_ns: int) -> float:
         """Steps a second over the last strides; 0 once the wearer has stopped."""

@@ -7,6 +7,7 @@ shifting weight; it does not see arms.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -51,20 +52,15 @@ class BodyMotion:
 
     def push(self, imu: ImuBatch) -> list[MotionWindow]:
         """Take samples; return the windows that they complete."""
-        samples = np.hstack((imu.accel_mps2, imu.gyro_radps))
-        cells = imu.t_ns // WINDOW_NS
-        starts = [0, *(np.flatnonzero(np.diff(cells)) + 1).tolist(), len(cells)]
         windows = []
-        for start, stop in pairwise(starts):
-            if start == stop:
-                continue
-            cell = int(cells[start])
+        for part in by_window(imu):
+            cell = int(part.t_ns[0]) // WINDOW_NS
             if cell != self._cell:
                 window = self._close_window()
                 if window is not None:
                     windows.append(window)
                 self._cell = cell
-            self._parts.append(samples[start:stop])
+            self._parts.append(np.hstack((part.accel_mps2, part.gyro_radps)))
         return windows
 
     def _close_window(self) -> MotionWindow | None:
@@ -90,6 +86,14 @@ class BodyMotion:
     def _has_turned(self, force_mps2: Floats) -> bool:
         before = self._force_before_mps2
         return before is not None and cosine(before, force_mps2) < _TURNED_COS
+
+
+def by_window(imu: ImuBatch) -> Iterator[ImuBatch]:
+    """The samples of each window by themselves; none is empty."""
+    borders = np.flatnonzero(np.diff(imu.t_ns // WINDOW_NS)) + 1
+    for start, stop in pairwise((0, *borders.tolist(), len(imu))):
+        if start < stop:
+            yield imu.part(slice(start, stop))
 
 
 def cosine(first: Floats, second: Floats) -> float:

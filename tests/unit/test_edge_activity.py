@@ -86,6 +86,36 @@ def test_a_fall_is_a_drop_a_blow_and_nobody_who_walks_on(
     assert monitor.activity(0) is not Activity.FALLING
 
 
+@pytest.mark.parametrize("batch_rows", [1, 5, 10, 50, 100])
+@pytest.mark.parametrize(
+    ("before_shake", "after_shake", "falls"),
+    [
+        (1.0, 0.0, 1),  # walks, falls, and stays down
+        (0.0, 3.0, 0),  # stands, jumps down, and walks on
+    ],
+)
+def test_a_fall_is_told_at_any_instant_and_however_samples_come(
+    batch_rows, before_shake, after_shake, falls
+):
+    for after_rows in range(0, 50, 3):
+        struck_s = 3.3 + after_rows / RATE_HZ
+        pieces = (
+            samples(struck_s - 0.3, 0.0, shake=before_shake),
+            samples(0.3, struck_s - 0.3, (0.0, 0.0, 0.5)),
+            samples(0.05, struck_s, (0.0, 0.0, 60.0)),
+            samples(5.0, struck_s + 0.05, shake=after_shake),
+        )
+        imu = ImuBatch(
+            np.concatenate([piece.t_ns for piece in pieces]),
+            np.vstack([piece.accel_mps2 for piece in pieces]),
+            np.vstack([piece.gyro_radps for piece in pieces]),
+        )
+        monitor = ActivityMonitor()
+        starts = range(0, len(imu), batch_rows)
+        parts = (imu.part(slice(start, start + batch_rows)) for start in starts)
+        assert sum(monitor.push(part, empty_rows()) for part in parts) == falls, struck_s
+
+
 def test_a_blow_without_a_drop_is_no_fall():
     falls = FallDetector()
     falls.push(samples(0.05, 0.0, (0.0, 0.0, 80.0)))
