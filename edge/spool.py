@@ -75,8 +75,12 @@ class Spool:
         with _in_words(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             self._writer = _connect(path)
-            self._writer.executescript(_SCHEMA)
-            self._boot, self.boot_id = self._begin_boot(new_boot_id, started_utc_ns)
+            try:
+                self._writer.executescript(_SCHEMA)
+                self._boot, self.boot_id = self._begin_boot(new_boot_id, started_utc_ns)
+            except sqlite3.Error:
+                self._writer.close()
+                raise
 
     @property
     def pending(self) -> int:
@@ -262,8 +266,12 @@ def _worth(channel: Channel) -> int:
 
 def _connect(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, check_same_thread=False, timeout=5.0)
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = FULL")
+    try:
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = FULL")
+    except sqlite3.Error:
+        connection.close()
+        raise
     return connection
 
 
