@@ -20,6 +20,7 @@ MESSAGE = struct.Struct("<BQHIQ")  # opcode, length, channel, sequence, log time
 MESSAGE_BYTES = 9 + 2 + 4 + 8 + 8  # up to the payload
 CHUNK_INDEX = struct.Struct("<QQQQI")  # start, end, offset, length, length of the index offsets
 INDEX_OFFSET = struct.Struct("<HQ")
+INDEX_HEAD = struct.Struct("<HI")  # channel, bytes of the entries
 INDEX_ENTRY = struct.Struct("<QQ")
 FOOTER_BYTES = 9 + 20 + len(MCAP0_MAGIC)
 CHUNK_BYTES_MAX = 1 << 30

@@ -11,6 +11,7 @@ from mcap.opcode import Opcode
 
 from shared.mcap_log.container import (
     INDEX_ENTRY,
+    INDEX_HEAD,
     INDEX_OFFSET,
     MESSAGE,
     MESSAGE_BYTES,
@@ -205,7 +206,10 @@ class SegmentReader:
 
     def _index_entries(self, topic: int, at: int, data: bytes) -> list[int]:
         _, length = self._file.record_at(at)
-        entries = list(INDEX_ENTRY.iter_unpack(self._file.read(at + 9, length)[6:]))
+        body = self._file.read(at + 9, length)
+        if INDEX_HEAD.unpack_from(body) != (topic, len(body) - INDEX_HEAD.size):
+            raise ValueError("it is another, or of another length")
+        entries = list(INDEX_ENTRY.iter_unpack(body[INDEX_HEAD.size :]))
         offsets = [offset for _, offset in entries]
         found = [MESSAGE.unpack_from(data, offset) for offset in offsets]
         if [(topic, t_ns) for t_ns, _ in entries] != [(head[2], head[4]) for head in found]:
