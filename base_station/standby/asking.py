@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from threading import Event, Thread
 
 from base_station.standby.words import key_of
+from base_station.trouble import Trouble
 from shared.bus import Bus, QueryHandler
-from shared.errors import MusterError
 
 logger = logging.getLogger(__name__)
 
@@ -46,6 +46,7 @@ class Rounds:
         self._every_s = every_s
         self._look = look
         self._failing = failing
+        self._trouble = Trouble(logger, failing)
         self._closing = Event()
         self._thread = Thread(target=self._run, name=name, daemon=True)
 
@@ -59,8 +60,7 @@ class Rounds:
     def _run(self) -> None:
         while not self._closing.wait(self._every_s):
             try:
-                self._look(self._closing)
-            except MusterError as error:
-                logger.warning("%s: %s", self._failing, error)
+                with self._trouble:
+                    self._look(self._closing)
             except Exception:
                 logger.exception("%s; it is tried again", self._failing)

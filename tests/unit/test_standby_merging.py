@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Event, Thread
@@ -11,14 +12,15 @@ import pytest
 from base_station.data_folder import DataFolder
 from base_station.live.sinks import ActionDone
 from base_station.recorder import Recorder
+from base_station.standby.asking import ask
 from base_station.standby.merging import Merging, PartServer
-from base_station.standby.places import BEGINNING
+from base_station.standby.places import BEGINNING, Record
 from base_station.standby.setting_aside import parts, set_aside
 from shared.bus_memory import MemoryRouter
-from shared.channels import EVENT, OPERATOR, backfilled_key
+from shared.channels import EVENT, OPERATOR, TICK, backfilled_key, unread_key
 from shared.clock import SystemClock
 from shared.codec import encode
-from shared.messages import STATION_ID, Header, OperatorAction
+from shared.messages import STATION_ID, Header, OperatorAction, Tick
 from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem
 from tests.waiting import until
 
@@ -36,8 +38,9 @@ class Leading:
         self.stop_after = 10**9  # messages
         self.there = True
         self.settled = True
+        self.bus = router.attach_station()
         self._merging = Merging(
-            router.attach_station(),
+            self.bus,
             self,
             self._bring,
             lambda: self.settled,
@@ -58,20 +61,28 @@ class Leading:
             self.stop.set()
 
 
+def leading_with(folder: Path, records: Sequence[Record]) -> Leading:
+    """It finds one part of these."""
+    recorder = Recorder(folder, SystemClock())
+    for record in records:
+        recorder.write(*record)
+    recorder.close()
+    set_aside(DataFolder(folder), BEGINNING)
+    router = MemoryRouter()
+    PartServer("b", router.attach_station(), folder)
+    return Leading(router)
+
+
+def closed_by(person: str) -> Record:
+    action = OperatorAction(Header(STATION_ID, 1, 1, 5), person, person, CloseIncident("i1"))
+    return T0 + UNITS, OPERATOR.key(STATION_ID), encode(action)
+
+
 @pytest.fixture
 def leading(tmp_path: Path) -> Leading:
-    """It finds one part: messages of a unit, and between them what Ada and the station did."""
-    recorder = Recorder(tmp_path, SystemClock())
-    for number in range(UNITS):
-        recorder.write(T0 + number, EVENT.key("u"), b"%d" % number)
-    for by in ("ada", STATION_ID):
-        action = OperatorAction(Header(STATION_ID, 1, 1, 5), by, by, CloseIncident("i1"))
-        recorder.write(T0 + UNITS, OPERATOR.key(STATION_ID), encode(action))
-    recorder.close()
-    set_aside(DataFolder(tmp_path), BEGINNING)
-    router = MemoryRouter()
-    PartServer("b", router.attach_station(), tmp_path)
-    return Leading(router)
+    """It finds messages of a unit, and behind them what Ada and the station did."""
+    said = [(T0 + number, EVENT.key("u"), b"%d" % number) for number in range(UNITS)]
+    return leading_with(tmp_path, [*said, closed_by("ada"), closed_by(STATION_ID)])
 
 
 ALL = [(backfilled_key("u", EVENT.suffix), b"%d" % number) for number in range(UNITS)]
@@ -128,3 +139,44 @@ def test_a_station_that_does_not_lead_asks_for_nothing(leading: Leading, tmp_pat
     leading.look()
     assert leading.brought == []
     assert len(parts(tmp_path)) == 1
+
+
+def test_only_what_people_did_is_written_down_and_only_then_is_there_an_alarm(
+    tmp_path: Path,
+) -> None:
+    tick, unread = encode(Tick(Header(STATION_ID, 1, 1, 5), T0)), unread_key("u", 7, 3, "up/later")
+    records = [
+        (T0, TICK.key(STATION_ID), tick),
+        (T0 + 1, OPERATOR.key(STATION_ID), b"\xff nobody can read this"),
+        (T0 + 2, unread, b"of a later version"),
+        (T0 + UNITS, *closed_by(STATION_ID)[1:]),
+    ]
+    leading = leading_with(tmp_path, records)
+    leading.look()
+    assert leading.brought == [(unread, b"of a later version")]
+    assert leading.done == []
+    assert parts(tmp_path) == []
+
+
+def test_a_station_that_ends_while_the_disk_does_not_take_it_tells_of_nothing(
+    leading: Leading, tmp_path: Path
+) -> None:
+    leading.settled = False
+    leading.stop_after = UNITS + 1  # not before all has come
+    looking = Thread(target=leading.look)
+    looking.start()
+    until(lambda: leading.brought == ALL)
+    leading.stop.set()
+    looking.join(10.0)
+    assert not looking.is_alive()
+    assert len(parts(tmp_path)) == 1
+
+
+@pytest.mark.parametrize("name", [b"", b"..", b"../log", b"20990101"])
+def test_what_was_not_set_aside_is_neither_given_nor_told_of(
+    leading: Leading, tmp_path: Path, name: bytes
+) -> None:
+    before = sorted(tmp_path.rglob("*"))
+    assert list(ask(leading.bus, "b", "apart/records", name + b" 0")) == []
+    assert list(ask(leading.bus, "b", "apart/told", name)) == []
+    assert sorted(tmp_path.rglob("*")) == before
