@@ -87,6 +87,7 @@ class Fetch:
         self._clock = clock
         self._pace = Pace()
         self._hashes: dict[str, str] = {}
+        self._unproven = 0  # files whose hash the unit could not be asked for
         self._lock = FolderLock(
             self.folder, "pull of this unit's recording", "let that one end, or stop it"
         )
@@ -126,8 +127,13 @@ class Fetch:
             self.done_bytes = before_bytes
         self._write_hashes()
         self.state = FetchState.DONE
-        self.problem = (
-            f"{gone} of {len(index.files)} files are gone: the unit needed the room" if gone else ""
+        self.problem = "; ".join(
+            f"{count} of {len(index.files)} files {what}"
+            for count, what in (
+                (gone, "are gone: the unit needed the room"),
+                (self._unproven, "came whole, but the unit gave them up before telling their hash"),
+            )
+            if count
         )
 
     def _index(self) -> Steps[RecordingIndex]:
@@ -163,16 +169,23 @@ class Fetch:
         whole = self.folder / PurePosixPath(file.path)
         part = whole.with_name(whole.name + _PART)
         whole.parent.mkdir(exist_ok=True)
+        earlier_bytes = 0
         if whole.exists() and not part.exists():
+            earlier_bytes = whole.stat().st_size
             whole.rename(part)  # it may have grown since, and is looked at again
         for _ in range(_CHANCES):
             if not (yield from self._bytes(file, part, before_bytes)):
+                if earlier_bytes:  # what was whole then still is
+                    os.truncate(part, earlier_bytes)
+                    part.replace(whole)
                 return False
             answer = yield from self._answer(
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
             )
             digest = _digest_of(part)
-            if digest == answer.sha256:
+            is_gone = not answer.sha256  # and yet all of it is here, each piece of it intact
+            self._unproven += is_gone
+            if is_gone or digest == answer.sha256:
                 part.replace(whole)
                 self._hashes[file.path] = digest.hex()
                 return True

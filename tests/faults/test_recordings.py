@@ -6,11 +6,13 @@ import hashlib
 import os
 import random
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from base_station.recordings.fetch import HASHES, FetchState
+from base_station.recordings.fetch import HASHES, Fetch, FetchState
 from edge.sources.black_box import BlackBoxSource
 from shared.messages.recording import RecordingPiece
 from tests.recorded_unit import RecordedUnit, U, begin, finish
@@ -134,6 +136,70 @@ def test_a_unit_whose_answers_never_agree_is_given_up_in_words(
     assert fetch.state is FetchState.FAILED
     assert "different" in fetch.problem
     assert not list(tmp_path.rglob("*.mcap"))
+
+
+@contextmanager
+def given_up(file: Path) -> Iterator[None]:
+    """The unit needs the room just now."""
+    content = file.read_bytes()
+    file.unlink()
+    try:
+        yield
+    finally:
+        file.write_bytes(content)
+
+
+@pytest.mark.parametrize("before", ["piece", "digest"])
+def test_what_has_come_whole_is_kept_though_the_unit_gives_it_up_meanwhile(
+    unit: RecordedUnit, tmp_path: Path, before: str
+) -> None:
+    """Before it is asked for, it is gone; before its hash is asked for, it is here already."""
+    first = sorted(unit.boot.iterdir())[0]
+    content = first.read_bytes()
+    fetch = begin(unit, tmp_path, unit.window(0.0, 10.0))
+    assert any(_step_to(fetch, unit, before) for _ in range(100))
+    with given_up(first):
+        fetch = finish(fetch)
+    assert fetch.state is FetchState.DONE
+    pulled = tmp_path / U / unit.boot.name / first.name
+    if before == "piece":
+        assert "1 of 2 files are gone" in fetch.problem
+        assert not pulled.exists()
+    else:
+        assert "1 of 2 files came whole" in fetch.problem
+        assert pulled.read_bytes() == content
+
+
+def _step_to(fetch: Fetch, unit: RecordedUnit, what: str) -> bool:
+    """Whether the next question is of that kind for the first time."""
+    fetch.step()
+    part = next(iter(fetch.folder.rglob("*.mcap.part")), None)
+    size = part.stat().st_size if part is not None else -1
+    whole = sorted(unit.boot.iterdir())[0].stat().st_size
+    return size == (0 if what == "piece" else whole)
+
+
+def test_what_was_whole_stays_so_though_what_was_added_is_given_up(
+    unit: RecordedUnit, tmp_path: Path
+) -> None:
+    first = sorted(unit.boot.iterdir())[0]
+    content = first.read_bytes()
+    window = unit.window(0.0, 10.0)
+    try:
+        first.write_bytes(content[:1000])
+        assert finish(begin(unit, tmp_path, window)).state is FetchState.DONE
+        first.write_bytes(content)
+        fetch = begin(unit, tmp_path, window)
+        fetch.step()
+        fetch.step()  # it knows how long the file is now
+        with given_up(first):
+            fetch = finish(fetch)
+    finally:
+        first.write_bytes(content)
+    assert "are gone" in fetch.problem
+    pulled = tmp_path / U / unit.boot.name / first.name
+    assert pulled.read_bytes() == content[:1000]
+    assert list(tmp_path.rglob("*.part")) == []
 
 
 def test_a_recording_that_grows_is_gone_on_with(unit: RecordedUnit, tmp_path: Path) -> None:
