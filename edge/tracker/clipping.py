@@ -5,7 +5,9 @@ milliseconds.  The hidden part is taken as the parabola that joins the slopes
 before and after; how wrong that may be enters the covariance about the clipped
 axis only.  A clipped force is bridged and doubted likewise, along its axis: what is cut off a
 sprinter's swing would make the way too short by a sixth, and the next stance tells, by the velocity
-that is missing, how much of it was there.
+that is missing, how much of it was there.  A strike changes the force faster than a swing and is
+soon over: a slope tells of what is hidden as far as it lasts, so it is taken over a quarter as
+long.  Where both flanks are steep right beside what is hidden, the gentler of them counts.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.state import Ring
 
 SLOPE_SAMPLES = 3
+SLOPE_PART = 4  # a slope of the force is taken over this part of what is hidden
+LONGEST = 0.75  # of the look-ahead, so that it holds the slope that follows too
 
 
 @njit()
@@ -34,7 +38,7 @@ def bridge_clipping(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
         while (
             end < stop
             and ring[end & mask].clipped[axis]
-            and ring[end & mask].t_s - ring[slot].t_s <= config.lookahead_s
+            and ring[end & mask].t_s - ring[slot].t_s <= LONGEST * config.lookahead_s
         ):
             end += 1
         _bridge_run(ring, k, end, stop, axis, config)
@@ -71,9 +75,13 @@ def bridge_force(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
     mask = len(ring) - 1
     for axis in range(3):
         end = k
-        while end < stop and ring[end & mask].force_clipped[axis]:
-            if ring[end & mask].t_s - ring[k & mask].t_s > config.lookahead_s:
-                break
+        positive = ring[k & mask].accel_mps2[axis] > 0.0
+        while (
+            end < stop
+            and ring[end & mask].force_clipped[axis]
+            and (ring[end & mask].accel_mps2[axis] > 0.0) == positive
+            and ring[end & mask].t_s - ring[k & mask].t_s <= LONGEST * config.lookahead_s
+        ):
             ring[end & mask].force_clipped[axis] = 0
             end += 1
         if end > k:
@@ -89,19 +97,35 @@ def _bridge_force_run(
     begin_s = ring[first & mask].t_s
     duration_s = ring[(end - 1) & mask].t_s - begin_s + period_s
     side = 1.0 if ring[first & mask].accel_mps2[axis] > 0.0 else -1.0
-    rise = 0.0
-    fall = 0.0
-    if first >= 2:
-        rise = ring[(first - 1) & mask].accel_mps2[axis] - ring[(first - 2) & mask].accel_mps2[axis]
-    if end + 1 < stop:
-        fall = ring[end & mask].accel_mps2[axis] - ring[(end + 1) & mask].accel_mps2[axis]
-    slope_mps3 = 0.5 * (max(side * rise, 0.0) + max(side * fall, 0.0)) / max(period_s, 1e-4)
+    span = max(1, (end - first + SLOPE_PART // 2) // SLOPE_PART)
+    rise, fall = _flanks(ring, first, end, stop, axis, side, span)
+    slope_mps3 = 0.5 * (rise + fall)
+    rise, fall = _flanks(ring, first, end, stop, axis, side, 1)
+    slope_mps3 = max(slope_mps3, min(rise, fall))
     peak_mps2 = min(0.25 * slope_mps3 * duration_s, config.hidden_force_limit_mps2)
     doubt_mps2 = config.hidden_force_floor_mps2 + config.hidden_force_doubt * peak_mps2
     for k in range(first, end):
         u = (ring[k & mask].t_s - begin_s + 0.5 * period_s) / duration_s
         ring[k & mask].accel_mps2[axis] += side * 4.0 * u * (1.0 - u) * peak_mps2
         ring[k & mask].hidden_force_noise[axis] = doubt_mps2**2 * duration_s
+
+
+@njit()
+def _flanks(
+    ring: Ring, first: int, end: int, stop: int, axis: int, side: float, span: int
+) -> tuple[float, float]:
+    """Return how fast a force rises before the run and falls after it, over ``span`` samples."""
+    mask = len(ring) - 1
+    span_s = span * max(ring[first & mask].period_s, 1e-4)
+    rise = 0.0
+    fall = 0.0
+    if first > span:
+        before, onset = ring[(first - 1 - span) & mask], ring[(first - 1) & mask]
+        rise = max(side * (onset.accel_mps2[axis] - before.accel_mps2[axis]), 0.0) / span_s
+    if end + span < stop:
+        over, after = ring[end & mask], ring[(end + span) & mask]
+        fall = max(side * (over.accel_mps2[axis] - after.accel_mps2[axis]), 0.0) / span_s
+    return rise, fall
 
 
 @njit()

@@ -15,19 +15,22 @@ from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
 from edge.tracker.kernel_cache import SOURCES
-from edge.tracker.plateaus import LEAST_RADPS, seek_plateau
+from edge.tracker.plateaus import (
+    ACCEL_SATURATED,
+    FULL_SCALE,
+    GYRO_SATURATED,
+    know_full_scale,
+    seek_full_scale,
+)
 from edge.tracker.port import Reason
 from edge.tracker.state import Ring
 from shared.errors import ConfigError
 
-ACCEL_SATURATED = int(Reason.ACCEL_SATURATED)
 BAD_SAMPLES = int(Reason.BAD_SAMPLES)
-GYRO_SATURATED = int(Reason.GYRO_SATURATED)
 SAMPLE_GAP = int(Reason.SAMPLE_GAP)
 
 NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock was set back
 STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
-MARK_BACK_S = 0.4  # less than the filter's look-ahead
 PERIOD_WEIGHT = 0.005  # of one interval in the mean period
 
 _NO_VALUES: Floats = np.zeros(0)
@@ -42,15 +45,8 @@ GATE = np.dtype(
         ("gyro_radps", np.float64, 3),
         ("backward", np.int64),  # stamps before the last one, in a row
         ("repeats", np.int64),  # equal samples in a row
-        # By axis; see plateaus.
-        ("clip_radps", np.float64, 3),  # from which a rate has clipped, as plateaus show
-        ("highest_radps", np.float64, 3),  # rate so far
-        ("flat_radps", np.float64, 3),  # first of the last rates that hardly differ
-        ("flat_samples", np.int64, 3),  # how many
-        ("plateau_samples", np.int64, 3),  # the same of a plateau that is yet to be judged
-        ("plateau_stop", np.int64, 3),  # one past its last sample
-        ("plateau_radps", np.float64, 3),  # top of the last one that was right
-        ("watching", np.bool_),  # a rate was high, or a plateau is yet to be judged
+        ("accel_scale", FULL_SCALE),
+        ("gyro_scale", FULL_SCALE),
         ("started", np.bool_),
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ]
@@ -58,27 +54,23 @@ GATE = np.dtype(
 
 
 class Limits(NamedTuple):
-    """Readings at which a sensor clips, and readings that cannot be true."""
+    """Readings that cannot be true."""
 
-    accel_clip_mps2: float
-    gyro_clip_radps: float
     accel_absurd_mps2: float
     gyro_absurd_radps: float
 
 
-def limits_of(description: SensorDescription, saturation_ratio: float) -> Limits:
-    """Return the limits of a described sensor; without a full scale nothing clips."""
+def limits_of(description: SensorDescription) -> Limits:
+    """Return the limits of a described sensor."""
     accel = description.accel_full_scale_mps2
     gyro = description.gyro_full_scale_radps
     return Limits(
-        accel_clip_mps2=saturation_ratio * accel if accel else np.inf,
-        gyro_clip_radps=saturation_ratio * gyro if gyro else np.inf,
         accel_absurd_mps2=1.5 * accel if accel else 4000.0,
         gyro_absurd_radps=1.5 * gyro if gyro else 150.0,
     )
 
 
-def new_gate(description: SensorDescription) -> NDArray[Any]:
+def new_gate(description: SensorDescription, saturation_ratio: float) -> NDArray[Any]:
     """Return one record of ``GATE``; ``ConfigError`` when the described rate is none."""
     if not 0.0 < description.rate_hz < np.inf:
         raise ConfigError(
@@ -87,7 +79,10 @@ def new_gate(description: SensorDescription) -> NDArray[Any]:
         )
     gate = np.zeros(1, GATE)
     gate["period_s"] = 1.0 / description.rate_hz
-    gate["clip_radps"] = np.inf
+    accel_mps2 = description.accel_full_scale_mps2 or np.inf
+    gyro_radps = description.gyro_full_scale_radps or np.inf
+    know_full_scale(gate["accel_scale"], saturation_ratio * accel_mps2, forces=True)
+    know_full_scale(gate["gyro_scale"], saturation_ratio * gyro_radps, forces=False)
     return gate
 
 
@@ -146,13 +141,16 @@ def admit(
         if flags & BAD_SAMPLES == 0:
             flags |= _time_flags(gate, t_ns[i], gap_s)
         if flags & BAD_SAMPLES == 0:
-            _heed_plateaus(ring, received + i, gate, limits, gyro_radps[i])
+            now_s, period_s = gate[0].arrival_s, gate[0].period_s
+            k = received + i
+            seek_full_scale(ring, k, gate[0].gyro_scale, gyro_radps[i], now_s, period_s)
+            seek_full_scale(ring, k, gate[0].accel_scale, accel_mps2[i], now_s, period_s)
             for j in range(3):
                 gate[0].accel_mps2[j] = accel_mps2[i, j]
                 gate[0].gyro_radps[j] = gyro_radps[i, j]
         sample = ring[(received + i) & mask]
         sample.t_ns = t_ns[i]
-        _write_good(sample, gate[0], limits, flags)
+        _write_good(sample, gate[0], flags)
         for j in range(3):
             sample.mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
         sample.pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan
@@ -160,19 +158,24 @@ def admit(
 
 
 @njit()
-def _write_good(sample: Any, gate: Any, limits: Limits, flags: int) -> None:
+def _write_good(sample: Any, gate: Any, flags: int) -> None:
     """Write the last good readings and their time into a record of the ring."""
+    rate_clipped = False
+    force_clipped = False
     for j in range(3):
-        rate_radps = abs(gate.gyro_radps[j])
-        clipped = rate_radps >= limits.gyro_clip_radps or rate_radps >= gate.clip_radps[j]
-        if clipped and flags & BAD_SAMPLES == 0:
-            flags |= GYRO_SATURATED
-        sample.clipped[j] = clipped
-        sample.force_clipped[j] = abs(gate.accel_mps2[j]) >= limits.accel_clip_mps2
+        sample.clipped[j] = abs(gate.gyro_radps[j]) >= gate.gyro_scale.clip[j]
+        sample.force_clipped[j] = abs(gate.accel_mps2[j]) >= gate.accel_scale.clip[j]
+        rate_clipped = rate_clipped or sample.clipped[j]
+        force_clipped = force_clipped or sample.force_clipped[j]
         sample.accel_mps2[j] = gate.accel_mps2[j]
         sample.gyro_radps[j] = gate.gyro_radps[j]
         sample.hidden_noise[j] = 0.0
         sample.hidden_force_noise[j] = 0.0
+    if flags & BAD_SAMPLES == 0:
+        if rate_clipped:
+            flags |= GYRO_SATURATED
+        if force_clipped:
+            flags |= ACCEL_SATURATED
     sample.arrival_s = gate.arrival_s
     sample.period_s = gate.period_s
     sample.flags = flags
@@ -188,8 +191,6 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
         a, w = accel[j], gyro[j]
         if not (abs(a) <= limits.accel_absurd_mps2 and abs(w) <= limits.gyro_absurd_radps):
             return BAD_SAMPLES  # also when not finite
-        if abs(a) >= limits.accel_clip_mps2:
-            flags |= ACCEL_SATURATED
         same = same and a == gate[0].accel_mps2[j] and w == gate[0].gyro_radps[j]
         accel_square += a * a
         rate_square += w * w
@@ -198,33 +199,6 @@ def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floa
     if gate[0].repeats >= STUCK_SAMPLES and not resting:
         return BAD_SAMPLES
     return flags
-
-
-@njit()
-def _heed_plateaus(
-    ring: Ring, k: int, gate: NDArray[Any], limits: Limits, gyro_radps: Floats
-) -> None:
-    """Look for a full scale that nobody told.
-
-    It shows when a plateau is over, so what has clipped is marked afterwards, as far back as no
-    filter has come yet however the samples are batched.
-    """
-    fastest_radps = max(abs(gyro_radps[0]), abs(gyro_radps[1]), abs(gyro_radps[2]))
-    if fastest_radps < LEAST_RADPS and not gate[0].watching:
-        return  # as half of the time
-    gate[0].watching = False
-    mask = len(ring) - 1
-    for j in range(3):
-        before_radps = gate[0].clip_radps[j]
-        seek_plateau(ring, k, gate, j, abs(gyro_radps[j]))
-        if gate[0].clip_radps[j] < before_radps:
-            limit_radps = min(limits.gyro_clip_radps, gate[0].clip_radps[j])
-            for i in range(k - 1, max(-1, k - mask // 8), -1):
-                if gate[0].arrival_s - ring[i & mask].arrival_s > MARK_BACK_S:
-                    break
-                if abs(ring[i & mask].gyro_radps[j]) >= limit_radps:
-                    ring[i & mask].clipped[j] = 1
-                    ring[i & mask].flags |= GYRO_SATURATED
 
 
 @njit()

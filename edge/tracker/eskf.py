@@ -46,13 +46,13 @@ class EskfTracker:
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description
         self.config = config or EskfConfig()
-        self._gate = new_gate(description)
+        self._gate = new_gate(description, self.config.saturation_ratio)
         rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = np.zeros(slots, RING)
         self._trail = np.zeros(slots // 4, STEP)
         self._progress = new_progress()
-        self._limits = limits_of(description, self.config.saturation_ratio)
+        self._limits = limits_of(description)
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
         self._block = slots // 4

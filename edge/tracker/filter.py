@@ -9,7 +9,7 @@ from numba import njit
 from edge.tracker.alignment import level
 from edge.tracker.barometric_height import heed_pressure
 from edge.tracker.clipping import bridge_clipping, bridge_force
-from edge.tracker.conditioning import ACCEL_SATURATED, BAD_SAMPLES, GYRO_SATURATED, SAMPLE_GAP
+from edge.tracker.conditioning import BAD_SAMPLES, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
@@ -28,6 +28,7 @@ from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measuring import turn_walk
+from edge.tracker.plateaus import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.stance import glides, stand
 from edge.tracker.state import FilterState, Progress, Ring, Step, Trail, reach
 from edge.tracker.stated import bend_way, state_position

@@ -37,10 +37,10 @@ class HuangTracker:
     def __init__(self, description: SensorDescription, config: HuangConfig | None = None) -> None:
         self.description = description
         self.config = config or HuangConfig()
-        self._gate = new_gate(description)
+        self._gate = new_gate(description, self.config.saturation_ratio)
         rate_hz = max(description.rate_hz, MIN_RATE_HZ)
         self._ring = np.zeros(1 << int(np.ceil(np.log2(SLOTS_S * rate_hz))), RING)
-        self._limits = limits_of(description, self.config.saturation_ratio)
+        self._limits = limits_of(description)
         self._state = np.zeros(1, HUANG)
         self._state["quaternion_nb"][0, 0] = self._state["reset_quaternion_nb"][0, 0] = 1.0
         self._state["pitch_axis_b"][0] = np.full(3, 3.0**-0.5)

@@ -6,16 +6,12 @@ import math
 
 from numba import njit
 
-from edge.tracker.conditioning import (
-    ACCEL_SATURATED,
-    BAD_SAMPLES,
-    GYRO_SATURATED,
-    SAMPLE_GAP,
-)
+from edge.tracker.conditioning import BAD_SAMPLES, SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, TURN, heading_variance
 from edge.tracker.first_rest import unshown_heading_variance
 from edge.tracker.landing import gain_scale, noise_scale
+from edge.tracker.plateaus import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.port import Quality, Reason
 from edge.tracker.state import FilterState, Progress, Ring
 

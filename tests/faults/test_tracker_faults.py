@@ -287,3 +287,60 @@ def test_plateaus_that_were_smoothed_show_a_full_scale(full_scale):
     assert flagged(rows, Reason.GYRO_SATURATED)[late][np.abs(gyro[late, 1]) >= full_scale].all()
     flat_n_m = run(t_ns, accel, gyro).position_n_m
     assert np.abs(rows.position_n_m[-1] - flat_n_m[-1]).max() < 0.3
+
+
+def smoothed(readings):
+    """As real sensors filter what has clipped."""
+    columns = [np.convolve(readings[:, j], (0.2, 0.6, 0.2), "same") for j in range(3)]
+    return np.column_stack(columns)
+
+
+def in_counts(readings, full_scale):
+    """As a converter of 12 bits gives them, which reaches further down than up."""
+    step = full_scale / 2048
+    return step * np.clip(np.round(readings / step), -2048, 2047)
+
+
+@pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
+@pytest.mark.parametrize("sensor", ["clips", "filters", "counts"])
+def test_a_full_scale_of_forces_that_nobody_told_shows_by_its_plateaus(rate_hz, sensor):
+    t_ns, accel, gyro = copy()
+    every = round(200.0 / rate_hz)
+    t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]
+    full_scale = 0.75 * np.abs(accel).max()
+    clipped = np.clip(accel, -full_scale, full_scale)
+    if sensor == "filters":
+        clipped = smoothed(clipped)
+    if sensor == "counts":
+        clipped = in_counts(accel, full_scale)
+    description = SensorDescription("untold", rate_hz)
+    rows = run(t_ns, clipped, gyro, description)
+    hidden = np.abs(accel).max(axis=1) >= full_scale
+    assert not flagged(rows, Reason.ACCEL_SATURATED)[: np.flatnonzero(hidden)[0] - 1].any()
+    later = hidden & (t_ns > (IN_SWING - 1.2) * 1e9)
+    assert flagged(rows, Reason.ACCEL_SATURATED)[later].all()
+    whole = run(t_ns, accel, gyro, description)
+    assert not flagged(whole, Reason.ACCEL_SATURATED).any()
+
+
+@pytest.mark.parametrize("every", [3, 4])
+def test_forces_that_a_slow_sensor_holds_are_no_full_scale(every):
+    t_ns, accel, gyro = copy()
+    held = accel[np.arange(len(accel)) // every * every]
+    assert not flagged(run(t_ns, held, gyro), Reason.ACCEL_SATURATED).any()
+
+
+def test_what_is_found_untold_is_bridged_and_doubted_as_if_told():
+    t_ns, accel, gyro = copy()
+    full_scale = 0.75 * np.abs(accel).max()
+    clipped = np.clip(accel, -full_scale, full_scale)
+    told = SensorDescription("told", 200.0, accel_full_scale_mps2=full_scale)
+    more = SensorDescription("told too much", 200.0, accel_full_scale_mps2=10.0 * full_scale)
+    known = run(t_ns, clipped, gyro, told)
+    whole = run(t_ns, accel, gyro)
+    assert known.position_cov_m2[-1, 0, 0] > 2.0 * whole.position_cov_m2[-1, 0, 0]
+    for description in (WALK.description, more):
+        rows = run(t_ns, clipped, gyro, description)
+        assert reached_m(rows) == pytest.approx(reached_m(known), rel=0.02)
+        stated_m2 = rows.position_cov_m2[-1, 0, 0]
+        assert stated_m2 == pytest.approx(known.position_cov_m2[-1, 0, 0], rel=0.3)

@@ -48,6 +48,21 @@ def test_batching_does_not_change_a_bit(cuts):
         assert np.array_equal(getattr(rows, field.name), getattr(WHOLE, field.name)), field.name
 
 
+@settings(max_examples=5)
+@given(cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40), share=st.floats(0.78, 0.85))
+def test_nor_where_sensors_clip_that_nobody_told(cuts, share):
+    """What a plateau shows is marked afterwards, and bridged by what follows it."""
+    accel_mps2, gyro_radps = (
+        np.clip(readings, -share * np.abs(readings).max(), share * np.abs(readings).max())
+        for readings in (WALK.imu.accel_mps2, WALK.imu.gyro_radps)
+    )
+    imu = ImuBatch(WALK.imu.t_ns, accel_mps2, gyro_radps)
+    rows, whole = run(imu, cuts=cuts), run(imu)
+    assert whole.reasons.any()
+    for field in fields(rows):
+        assert np.array_equal(getattr(rows, field.name), getattr(whole, field.name)), field.name
+
+
 def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
     tracker = EskfTracker(WALK.description)
     released = []
