@@ -32,8 +32,9 @@ def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
         return incident.opened_ns, incident.closed_ns or clock.utc_ns()
 
 
-def pull(config: StationConfig, wanted: Wanted, show: Show) -> Path:
-    """Pull a recording; ``show`` hears of every step.  Gives the folder in which it is.
+def pull(config: StationConfig, wanted: Wanted, show: Show) -> tuple[Path, str]:
+    """Pull a recording; ``show`` hears of every step.  Gives the folder in which it is, and what is
+    not there of it, as a sentence.
 
     Raises MusterError, one sentence, where it comes to nothing.
     """
@@ -58,7 +59,7 @@ def pull(config: StationConfig, wanted: Wanted, show: Show) -> Path:
                 time.sleep(_REST_S)
         if fetch.state is FetchState.FAILED:
             raise UserError(fetch.problem)
-        return fetch.folder
+        return fetch.folder, fetch.problem
 
 
 def _store(config: StationConfig, closing: ExitStack) -> Store:

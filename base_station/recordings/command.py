@@ -51,10 +51,11 @@ def fetch_recording(
     columns = TextColumn("{task.description}"), BarColumn(), DownloadColumn()
     with Progress(*columns, transient=True) as progress:
         task = progress.add_task(f"{unit}: asking", total=None)
-        folder = pull(
+        folder, problem = pull(
             settings, Wanted(unit, from_ns, to_ns), lambda fetch: _show(progress, task, fetch)
         )
-    typer.echo(f"{folder}: whole, every hash the unit's own; see `muster track --help`")
+    came = problem or "whole, every hash the unit's own"
+    typer.echo(f"{folder}: {came}; see `muster track --help`")
 
 
 def _show(progress: Progress, task: TaskID, fetch: Fetch) -> None:
