@@ -19,6 +19,7 @@ from base_station.api.routes import live
 from base_station.api.security import COOKIE
 from base_station.db.principals import Role
 from base_station.server import ConsoleServer, bind
+from shared.errors import StoreError
 from shared.messages.station import OpenIncident
 from tests.station import PASSWORD, DeskStation
 
@@ -126,6 +127,35 @@ async def test_the_end_of_a_session_ends_its_socket(
         (token,) = station.services.accounts.tokens("viewer")
         station.services.accounts.remove_token("viewer", token.token_id)
         assert await close_code(console) == live.NOT_LOGGED_IN
+
+
+async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in(
+    station: DeskStation,
+    address: str,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    def fail(_secret: str) -> None:
+        tries.append(1)
+        raise StoreError("the database cannot be read: disk I/O error; free or mend the disk")
+
+    tries: list[int] = []
+    monkeypatch.setattr(live, "CHECK_LOGIN_S", 0.02)
+    headers, url = token_of(station), f"ws://{address}/api/v1/live"
+    async with connect(url, additional_headers=headers) as console:
+        await heard(console)
+        with monkeypatch.context() as broken:
+            broken.setattr(station.services.accounts, "of_token", fail)
+            async with connect(url, additional_headers=headers) as refused:
+                assert await close_code(refused) == live.TRY_AGAIN
+            while len(tries) < 5:
+                await asyncio.sleep(0.02)
+        await act(station, "kitchen")
+        assert (await heard(console))["type"] == "delta"
+        (token,) = station.services.accounts.tokens("viewer")
+        station.services.accounts.remove_token("viewer", token.token_id)
+        assert await close_code(console) == live.NOT_LOGGED_IN
+    assert caplog.text.count("cannot be seen: the database") == 1
 
 
 async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(

@@ -12,9 +12,12 @@ from starlette.concurrency import run_in_threadpool
 from base_station.api.hub import Client, Hub
 from base_station.api.security import Scope, covers, is_own_origin, principal_of
 from base_station.api.services import Services, services_of
+from base_station.trouble import Trouble
+from shared.errors import StoreError
 
 router = APIRouter(tags=[Scope.LIVE])
 
+TRY_AGAIN = 1013
 NOT_LOGGED_IN = 4401
 NOT_FOUND = 4404
 TOO_SLOW = 4408
@@ -63,6 +66,8 @@ async def _serve(socket: WebSocket, hub: Hub | None) -> None:
         await _watch(socket, services, hub)
     except Closing as closing:
         await _close(socket, closing)
+    except StoreError as error:
+        await _close(socket, Closing(TRY_AGAIN, _as_reason(error)))
     except WebSocketDisconnect:
         pass
 
@@ -108,10 +113,14 @@ async def _listen(socket: WebSocket, client: Client) -> None:
 
 
 async def _keep_checking(socket: WebSocket, services: Services) -> None:
-    """A session that ended takes its WebSockets along."""
+    """A session that ended takes its WebSockets along; a disk that does not tell blinds nobody who
+    was let in.
+    """
+    trouble = Trouble(_log, "whether a console may look on cannot be seen")
     while True:
         await asyncio.sleep(CHECK_LOGIN_S)
-        await _check_login(socket, services)
+        with trouble:
+            await _check_login(socket, services)
 
 
 async def _check_login(socket: WebSocket, services: Services) -> None:
@@ -120,6 +129,11 @@ async def _check_login(socket: WebSocket, services: Services) -> None:
         raise Closing(NOT_LOGGED_IN, "log in first")
     if not covers(principal, (Scope.LIVE,)):
         raise Closing(NOT_LOGGED_IN, "this token is not for the live picture")
+
+
+def _as_reason(error: StoreError) -> str:
+    """As much as a close frame holds."""
+    return str(error).encode()[:120].decode(errors="ignore")
 
 
 async def _close(socket: WebSocket, closing: Closing) -> None:
