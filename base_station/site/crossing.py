@@ -16,9 +16,15 @@ Flags = NDArray[np.bool_]
 
 FREE, BESIDE, WALL = 0, 1, 2  # what a square is; beside a wall there is no room for half a body
 
-Costs = tuple[float, float, float, float]  # of what a square is, and of a climb beside stairs
+DIRECTIONS = 8
+SAME = 6.0
+MOST_WALLS = 12
 
-_COSTS = UniTuple(float64, 4)  # type: ignore[no-untyped-call]
+# Of what a square is, of a climb beside stairs, and of a wall where one was met before.
+Costs = tuple[float, float, float, float, float]
+
+_COSTS = UniTuple(float64, 5)  # type: ignore[no-untyped-call]
+_ROOM = UniTuple(float64, 2)  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 
@@ -57,6 +63,24 @@ def meet_moved(
             worst[one, move] = most
 
 
+@_compiled(float64(uint8[:, ::1], float64, float64, float64))
+def room_about(ground: Ground, row: float, column: float, reach: float) -> float:
+    """Of so many directions, the part in which no wall stands within reach; never quite none."""
+    last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
+    free = 0.5
+    for one in range(DIRECTIONS):
+        angle = 2.0 * math.pi * one / DIRECTIONS
+        rows, columns = math.cos(angle), math.sin(angle)
+        for step in range(1, math.ceil(reach) + 1):
+            at_row = min(max(math.floor(row + step * rows + 0.5), 0), last_row)
+            at_column = min(max(math.floor(column + step * columns + 0.5), 0), last_column)
+            if ground[at_row, at_column] == WALL:
+                break
+        else:
+            free += 1.0
+    return free / (DIRECTIONS + 0.5)
+
+
 @_compiled(
     void(
         uint8[:, ::1],
@@ -65,8 +89,9 @@ def meet_moved(
         float64[:, ::1],
         _COSTS,
         float64,
+        _ROOM,
         float64,
-        float64[::1],
+        float64[:, ::1],
     )
 )
 def meet_behind(
@@ -76,20 +101,25 @@ def meet_behind(
     path: Floats,
     costs: Costs,
     look: float,
+    room: tuple[float, float],
     least: float,
     logs: Floats,
 ) -> None:
-    """What each head (n, 5) met on the way to where it is: its costs are added to ``logs`` (n,),
+    """What each head (n, 5) met on the way to where it is: its costs are added to ``logs`` (n, 2),
     and it is put to where the way began, unless it has met so much that it is below ``least``.
 
     A head is row and column, cosine and sine of its own frame's turn, and by how much that grows
     in a second moving.  ``path`` (k, 4): rows and columns in the own frame, seconds moving, and
-    whether it climbs.
+    whether it climbs.  A door that is not on the plan is met again on the way out: within ``SAME``
+    squares that is no further wall.  ``room``: how far apart, and how far about, the logarithm of
+    the part of directions that are free is added to the second column.
     """
     last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
+    walls = np.empty((MOST_WALLS, 2))
     for one in range(len(heads)):
+        met = 0
         row, column, cosine, sine, drift = heads[one]
-        log = logs[one]
+        log, gone = logs[one, 0], 0.0
         for back in range(len(path)):
             if log < least:
                 break
@@ -107,15 +137,28 @@ def meet_behind(
                 most = max(most, ground[at_row, at_column])
                 if most == WALL:
                     break
-            log += costs[most]
+            cost = costs[most]
+            if most == WALL:
+                for last in range(met):
+                    apart_rows, apart_columns = walls[last, 0] - row, walls[last, 1] - column
+                    if max(abs(apart_rows), abs(apart_columns)) < SAME:
+                        cost = costs[4]
+                if met < MOST_WALLS:
+                    walls[met, 0], walls[met, 1] = row, column
+                    met += 1
+            log += cost
             if climbs > 0.0:
                 at_row = min(max(math.floor(row + 0.5), 0), stairs.shape[0] - 1)
                 at_column = min(max(math.floor(column + 0.5), 0), stairs.shape[1] - 1)
                 if not stairs[at_row, at_column]:
                     log += costs[3]
+            gone += math.hypot(rows, columns)
+            if gone > room[0]:
+                gone = 0.0
+                logs[one, 1] += math.log(room_about(ground, row, column, room[1]))
             turned = drift * moving_s
             less, more = math.cos(turned), math.sin(turned)
             cosine, sine = cosine * less + sine * more, sine * less - cosine * more
             row, column = from_row, from_column
         heads[one, 0], heads[one, 1], heads[one, 2], heads[one, 3] = row, column, cosine, sine
-        logs[one] = log
+        logs[one, 0] = log

@@ -82,6 +82,7 @@ class FloorGrid:
         heads: Floats,
         path: Floats,
         costs: Costs,
+        room_m: tuple[float, float],
         least: float,
         logs: Floats,
     ) -> None:
@@ -94,7 +95,8 @@ class FloorGrid:
             ground, stairs = self._ground.get(floor, ground), self._stairs.get(floor, stairs)
         heads[:, :2] = (heads[:, :2] - corner) / CELL_M
         squares = path / (CELL_M, CELL_M, 1.0, 1.0)
-        meet_behind(ground, stairs, heads, squares, costs, LOOK_M / CELL_M, least, logs)
+        room = room_m[0] / CELL_M, room_m[1] / CELL_M
+        meet_behind(ground, stairs, heads, squares, costs, LOOK_M / CELL_M, room, least, logs)
         heads[:, :2] = corner + CELL_M * heads[:, :2]
 
     def has_stairs(self, floor: int) -> bool:
@@ -108,6 +110,11 @@ class FloorGrid:
     def is_within(self, place_m: Floats) -> Flags:
         """Which places (n, 2) lie in a building."""
         return np.asarray(self._within[self._rows(place_m[:, 0]), self._columns(place_m[:, 1])])
+
+    @property
+    def area_m2(self) -> float:
+        """Of the ground that buildings stand on."""
+        return float(np.count_nonzero(self._within)) * CELL_M**2
 
     def way_out(self, floor: int, north_m: float, east_m: float) -> WayOut | None:
         """From a place on one floor; None where the floor or the place is not on the plan."""

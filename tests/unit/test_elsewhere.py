@@ -9,17 +9,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.bench.rig import said
-from base_station.fusion import FUSERS
+from base_station.fusion.kernels import Placed
+from base_station.fusion.knowledge import quality_of
+from base_station.fusion.parameters import Parameters
 from base_station.fusion.plane.drawing import draw
 from base_station.fusion.plane.state import STATES
 from base_station.fusion.plane.walked import COSTS, KEPT_M, Move, Walked
 from base_station.fusion.plane.wall_cloud import TOGETHER_M, WallCloud
-from base_station.fusion.port import Start
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
-from shared.messages import Header
 from shared.quality import Quality
 
 Floats = NDArray[np.float64]
@@ -118,24 +117,12 @@ def test_while_two_places_are_open_it_says_so_and_where() -> None:
     assert std_m(cloud) > TOGETHER_M
 
 
-def test_the_fuser_says_why_and_then_knows_the_room() -> None:
-    """It began three standard deviations off."""
-    fuser, own_m = FUSERS[0].new(), np.zeros(2)
-    said_of_it, place_m = set(), (math.nan, math.nan)
-    fuser.consider(building(*DOOR_M))
-    fuser.start(Start(BEGIN_M[0], BEGIN_M[1] - 4.0, 0.0, 0.0, 1.3, 0.02))
-    for seq, direction in enumerate(WALK, start=1):
-        own_m = own_m + STEP_M * np.array(direction)
-        header = Header("FF-01", 1, seq, said.mono_ns(0.5 * seq))
-        fuser.advance(
-            said.position(header, north_m=own_m[0], east_m=own_m[1], distance_m=STEP_M * seq)
-        )
-        estimate = fuser.estimate()
-        assert estimate is not None
-        said_of_it.add((estimate.quality, estimate.quality_reason))
-        place_m = estimate.north_m, estimate.east_m
-    assert (Quality.DEGRADED, "walls leave more than one place open") in said_of_it
-    assert math.dist(place_m, BEGIN_M + own_m) < 1.5
+def test_two_places_are_a_reason_not_to_trust_one() -> None:
+    placed = Placed(0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.01)
+    sure = quality_of(Parameters(), placed, Quality.GOOD, assumed=False, split=False)
+    split = quality_of(Parameters(), placed, Quality.GOOD, assumed=False, split=True)
+    assert sure == (Quality.GOOD, "")
+    assert split == (Quality.DEGRADED, "walls leave more than one place open")
 
 
 @pytest.mark.parametrize("drawn_m", [DOOR_M, DOOR_M[:1]], ids=["plan right", "a door not drawn"])
@@ -161,10 +148,27 @@ def test_the_way_back_meets_what_the_way_there_met() -> None:
         logs += np.array(COSTS)[grid.met(0, from_m, guesses[:, :2])]
         north_m, east_m = step_m.tolist()
         last.note(Move(north_m, east_m, 0.5, False, 0, 0.0))
-    back = last.retrace(guesses, 1.0, grid, -math.inf)
+    back = last.met_behind(guesses, 1.0, grid, -math.inf) + last.met_twice(guesses, 1.0, grid)
     assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # but for squares that a rounding misses
     assert (logs < COSTS[WALL]).any()
     assert (logs > COSTS[WALL]).any()
+
+
+def test_a_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
+    in_and_out = [(1.0, 0.0)] * 6 + [(-1.0, 0.0)] * 6
+    last = Walked([Move(STEP_M * n, STEP_M * e, 0.5, False, 0, 0.0) for n, e in in_and_out])
+    guesses, grid = np.array([[6.2, 15.0, 0.0, 0.0]]), building()
+    once = last.met_behind(guesses, 1.0, grid, -math.inf)[0]
+    twice = last.met_twice(guesses, 1.0, grid)[0]
+    assert twice == pytest.approx(COSTS[WALL] - math.log(0.5))
+    assert COSTS[WALL] > once > 2.0 * COSTS[WALL]
+
+
+def test_where_there_is_little_room_a_way_that_fits_says_more() -> None:
+    last = Walked([Move(0.0, STEP_M, 0.5, False, 0, 0.0)] * 20)
+    narrow, wide = [6.0, 12.0, 0.0, 0.0], [9.5, 20.0, 0.0, 0.0]
+    in_corridor, in_room = last.room_behind(np.array([narrow, wide]), 1.0, building())
+    assert in_corridor < in_room - 1.0 < 0.0
 
 
 def test_only_the_last_stretch_is_kept() -> None:
@@ -179,7 +183,7 @@ def test_only_the_last_stretch_is_kept() -> None:
 def test_an_unknown_floor_has_no_walls() -> None:
     last = Walked([Move(0.0, 6.0, 6.0, False, None, 0.0), Move(6.0, 0.0, 6.0, False, 7, 0.0)])
     guesses = np.array([[6.0, 9.0, 0.0, 0.0]])
-    assert last.retrace(guesses, 1.0, building(*DOOR_M), -math.inf) == pytest.approx([0.0])
+    assert last.met_behind(guesses, 1.0, building(), -math.inf) == pytest.approx([0.0])
 
 
 def test_saved_while_both_are_open_it_goes_on_with_the_very_same_numbers() -> None:

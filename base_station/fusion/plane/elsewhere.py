@@ -7,6 +7,9 @@ and follow the last stretch of the path back: the mean of how likely they make t
 evidence for "elsewhere", what the cloud said of the same walls is that for itself (Bayes factor;
 augmented Monte Carlo localisation adds such guesses too, but by a ratio that is tuned: Thrun,
 Burgard and Fox 2005, table 8.3).
+
+In a hall any way meets no wall.  That one along a corridor and round a room fits there says more,
+because few would: what is likely is divided by the room that there was.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.plane.drawing import Drawn, draw
 from base_station.fusion.plane.walked import Walked
-from base_station.fusion.plane.weighed import picked
+from base_station.fusion.plane.weighed import picked, squares
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -34,10 +37,11 @@ SHAKEN = np.array([0.1, 0.1, 0.01, 5e-5])  # place, turn and drift of guesses th
 class Elsewhere(NamedTuple):
     drawn: Drawn
     weights: Floats  # (n,), their sum is 1
-    told: float  # log likelihood of the walls met, by all of them
+    told: float  # log likelihood of the way, by all of them
+    met: float  # and of the walls met, by those that are picked
 
     def odds(self, told: float) -> float:
-        """Logarithm of how much likelier than a cloud that ``told`` so much."""
+        """Logarithm of how much likelier than a cloud that has ``told`` so much."""
         return math.log(STRAYED) + self.told - told
 
     def pick(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
@@ -59,9 +63,28 @@ def look_elsewhere(
     """``known``: moments (9,), (9, 9) of ``HorizontalFilter``; ``inside``: only in the building, as
     nothing stands in the way of whoever is thought to be outside.  None: there is nobody.
     """
-    widths = np.where(np.arange(DRAWN) % 2, 1.0, WIDE)
+    least, widths = walked.told - HARDLY, np.where(np.arange(DRAWN) % 2, 1.0, WIDE)
     drawn = draw(*known, rng, widths)
-    logs = walked.retrace(drawn.guesses, scale, grid, walked.told - HARDLY)
-    likely = np.exp(logs) * (grid.is_within(drawn.guesses[:, :2]) if inside else 1.0)
-    total = float(likely.sum())
-    return Elsewhere(drawn, likely / total, math.log(total / DRAWN)) if total > 0.0 else None
+    logs = walked.met_behind(drawn.guesses, scale, grid, least)
+    left = logs >= least
+    if inside:
+        left &= grid.is_within(drawn.guesses[:, :2])
+    if not left.any():
+        return None
+    drawn = drawn._replace(guesses=drawn.guesses[left], slow=drawn.slow[left])
+    met, room = logs[left], walked.room_behind(drawn.guesses, scale, grid)
+    total = float(np.logaddexp.reduce(met - room))
+    weights = np.exp(met - room - total)
+    return Elsewhere(drawn, weights, total - math.log(DRAWN), float(weights @ met))
+
+
+def nearness(known: tuple[Floats, Floats], places_m: Floats, grid: FloorGrid) -> Floats:
+    """Logarithm (n,) of how much likelier what is known without walls is where somebody is at a
+    place (n, 2) than where anywhere in the building.
+    """
+    mean, covariance = known
+    spread = covariance[:2, :2]
+    distances2 = squares(places_m - mean[:2], spread)
+    near, wide = (-0.5 * distances2 / width**2 - 2.0 * math.log(width) for width in (1.0, WIDE))
+    around_m2 = math.tau * math.sqrt(float(np.linalg.det(spread)))
+    return np.asarray(np.logaddexp(near, wide) + math.log(0.5 * grid.area_m2 / around_m2))

@@ -14,7 +14,10 @@ from base_station.site.floor_grid import FloorGrid
 Floats = NDArray[np.float64]
 
 KEPT_M = 30.0  # of path
+LEG_M = 3.0  # walked until somebody might have turned
+REACH_M = 1.5  # and gone so far
 COSTS = 0.0, math.log(BESIDE_WALL), math.log(THROUGH_WALL), math.log(OFF_STAIRS)
+WALLS, AGAIN = math.log(THROUGH_WALL), math.log(0.5)
 
 
 class Move(msgspec.Struct, frozen=True, array_like=True):
@@ -54,16 +57,33 @@ class Walked:
         part = told / self.told
         self._moves = [msgspec.structs.replace(move, told=part * move.told) for move in self._moves]
 
-    def retrace(self, guesses: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
+    def met_behind(self, guesses: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
         """Log likelihood (n,) of the walls met on the way to guesses (n, 4) of north, east, turn
         and drift; what is once below ``least`` is not followed further back.
         """
-        turn, logs = guesses[:, 2], np.zeros(len(guesses))
+        return self._follow_back(guesses, scale, grid, (math.inf, least, AGAIN))[:, 0]
+
+    def met_twice(self, guesses: Floats, scale: float, grid: FloorGrid) -> Floats:
+        """What of it (n,) is of walls that were met before, at about the same place."""
+        all_met = self._follow_back(guesses, scale, grid, (math.inf, -math.inf, WALLS))[:, 0]
+        return all_met - self.met_behind(guesses, scale, grid, -math.inf)
+
+    def room_behind(self, guesses: Floats, scale: float, grid: FloorGrid) -> Floats:
+        """How much room there was on that way: the logarithm (n,) of the part of ways that would
+        have met no wall.
+        """
+        return self._follow_back(guesses, scale, grid, (LEG_M, -math.inf, AGAIN))[:, 1]
+
+    def _follow_back(
+        self, guesses: Floats, scale: float, grid: FloorGrid, how: tuple[float, float, float]
+    ) -> Floats:
+        leg_m, least, again = how
+        turn, logs = guesses[:, 2], np.zeros((len(guesses), 2))
         heads = np.column_stack((guesses[:, :2], np.cos(turn), np.sin(turn), guesses[:, 3]))
         for floor, moves in _by_floor(self._moves):
             path = np.array([(m.north_m, m.east_m, m.moving_s, m.climbs) for m in moves])
             path[:, :2] *= scale
-            grid.go_back(floor, heads, path, COSTS, least, logs)
+            grid.go_back(floor, heads, path, (*COSTS, again), (leg_m, REACH_M), least, logs)
         return logs
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.plane.drawing import draw
-from base_station.fusion.plane.elsewhere import look_elsewhere
+from base_station.fusion.plane.elsewhere import Elsewhere, look_elsewhere, nearness
 from base_station.fusion.plane.heading_bank import Sighting, slow_errors
 from base_station.fusion.plane.state import DRIFT, SLOW, STATES
 from base_station.fusion.plane.walked import Move, Walked
@@ -35,7 +35,7 @@ CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the pa
 MEMORY = 1.0 / 30.0  # of that mean, a move
 DOUBTFUL = -8.0  # log likelihood of the walls met of late: is somebody elsewhere likelier?
 LOOKED_M = 5.0  # walked until that is asked again
-LEAST_ODDS = -3.0  # logarithm; less is let be
+LEAST_ODDS, MOST_ODDS = -3.0, 30.0  # logarithms; less is let be
 TOGETHER_M = 1.5  # standard deviation of a place below which one is left
 
 
@@ -178,22 +178,29 @@ class WallCloud:
         the walls met of late, and keep both by the odds.  Only where it has just moved.
         """
         self._to_doubt_m = LOOKED_M
-        weights, told = normal(self._log_weights), self._walked.told
-        inside = bool(grid.is_within((weights @ self._guesses[:, :2])[None])[0])
-        found = look_elsewhere(known, self._walked, self._scale, grid, self._rng, inside=inside)
-        if found is None or (odds := found.odds(told)) < LEAST_ODDS:
-            return
-        log_part, log_rest = -float(np.logaddexp(0.0, -odds)), -float(np.logaddexp(0.0, odds))
+        guesses, walked, scale = self._guesses, self._walked, self._scale
+        weights = normal(self._log_weights)
+        inside = bool(grid.is_within((weights @ guesses[:, :2])[None])[0])
+        found = look_elsewhere(known, walked, scale, grid, self._rng, inside=inside)
+        fits = nearness(known, guesses[:, :2], grid) - walked.room_behind(guesses, scale, grid)
+        told = walked.told - float(weights @ walked.met_twice(guesses, scale, grid))
+        told += math.log(float(weights @ np.exp(fits)))
+        if found is not None and (odds := found.odds(told)) > LEAST_ODDS:
+            self._split_up(found, min(odds, MOST_ODDS))
+
+    def _split_up(self, found: Elsewhere, odds: float) -> None:
+        """``odds``: logarithm of how much likelier what was found is than the cloud."""
+        part, rest = 1.0 / (1.0 + math.exp(-odds)), 1.0 / (1.0 + math.exp(odds))
         least = round(LEFT * GUESSES)
-        count = min(max(round(math.exp(log_part) * GUESSES), least), GUESSES - least)
-        kept = picked(weights, GUESSES - count, self._rng)
-        guesses, slow = found.pick(count, self._rng)
-        self._guesses = np.concatenate((guesses, self._guesses[kept]))
+        count = min(max(round(part * GUESSES), least), GUESSES - least)
+        kept = picked(normal(self._log_weights), GUESSES - count, self._rng)
+        fresh, slow = found.pick(count, self._rng)
+        self._guesses = np.concatenate((fresh, self._guesses[kept]))
         self._slow = np.concatenate((slow, self._slow[kept]))
         self._slow_covariance = found.drawn.slow_covariance
-        logs = log_part - math.log(count), log_rest - math.log(GUESSES - count)
-        self._log_weights = np.repeat(logs, (count, GUESSES - count))
-        self._walked.retell(float(np.logaddexp(log_part + found.told, log_rest + told)))
+        shares = part / count, rest / (GUESSES - count)
+        self._log_weights = np.log(np.repeat(shares, (count, GUESSES - count)))
+        self._walked.retell(part * found.met + rest * self._walked.told)
         self._split, self._moments = True, None
 
     def spread(self, variance_m2: float) -> None:
