@@ -185,7 +185,7 @@ def pairing(tmp_path: Path) -> Iterator[Pairing]:
 class FullDisk:
     """A ``Log`` that takes as much as it has room for."""
 
-    problem = little_room = ""
+    problem, little_room = "the log cannot be written", "only 1 MB is free"
     is_behind = False
 
     def __init__(self) -> None:
@@ -207,10 +207,13 @@ def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> Non
     log = SharedLog(disk, clock)
     log.follows = True
     disk.room = 3
+    kept = []
     for number, (t_ns, key, payload) in enumerate(events(9)):
         if number == 6:
             disk.room = 100
-        log.write(t_ns, key, payload)
+        kept.append(log.write(t_ns, key, payload))
+    assert kept == [True] * 3 + [False] * 6
+    assert (log.problem, log.little_room) == (disk.problem, disk.little_room)
     assert log.is_cut_short
     assert disk.kept == events(9)[:3]
     assert log.behind(BEGINNING, 10**6) == events(9)[:3]
