@@ -27,9 +27,9 @@ from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 
-DRAWN = 4000
+DRAWN = 2000
 WIDE = 2.0  # times as far as stated half of them are: who is elsewhere erred by more than that
-HARDLY = 8.0  # of log likelihood less than the cloud: not followed further back
+HARDLY = 6.0  # of log likelihood less than the cloud: not followed further back
 STRAYED = 0.02  # of clouds, before anything speaks for it: about one person in a hundred
 SHAKEN = np.array([0.1, 0.1, 0.01, 5e-5])  # place, turn and drift of guesses that are picked again
 
@@ -83,7 +83,7 @@ def nearness(known: tuple[Floats, Floats], places_m: Floats, grid: FloorGrid) ->
     place (n, 2) than where anywhere in the building.
     """
     mean, covariance = known
-    spread = covariance[:2, :2]
+    spread = covariance[:2, :2] + 1e-6 * np.eye(2)
     distances2 = squares(places_m - mean[:2], spread)
     near, wide = (-0.5 * distances2 / width**2 - 2.0 * math.log(width) for width in (1.0, WIDE))
     around_m2 = math.tau * math.sqrt(float(np.linalg.det(spread)))

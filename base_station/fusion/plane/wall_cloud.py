@@ -184,7 +184,8 @@ class WallCloud:
         found = look_elsewhere(known, walked, scale, grid, self._rng, inside=inside)
         fits = nearness(known, guesses[:, :2], grid) - walked.room_behind(guesses, scale, grid)
         told = walked.told - float(weights @ walked.met_twice(guesses, scale, grid))
-        told += math.log(float(weights @ np.exp(fits)))
+        shares = self._log_weights - np.logaddexp.reduce(self._log_weights)
+        told += float(np.logaddexp.reduce(shares + fits))
         if found is not None and (odds := found.odds(told)) > LEAST_ODDS:
             self._split_up(found, min(odds, MOST_ODDS))
 
