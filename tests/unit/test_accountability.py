@@ -124,6 +124,22 @@ def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
     assert rest_left_s(script) == 899.0
 
 
+def test_other_times_are_nothing_to_a_unit_that_nobody_wears(script: Script) -> None:
+    script.register("FF-09")
+    script.act(SetAccountability(300.0, 2400.0))
+    assert (unit(script, "FF-09").duty, left_s(script)) == (None, 300.0)
+
+
+def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
+    """They wear their units still, and whoever presses is told that it counts for nothing."""
+    script.act(CloseIncident("i1"))
+    for meant in (CheckIn("FF-01", "", False), CheckIn("", "red", False), CheckIn("", "", True)):
+        script.act(meant)
+    assert refusals(script) == [
+        f"nobody of {whom} is on duty in an open incident" for whom in ("FF-01", "red", "everyone")
+    ]
+
+
 def test_who_hands_the_unit_back_is_not_waited_for(script: Script) -> None:
     script.wait(61)
     script.act(Unassign("FF-01"))

@@ -6,10 +6,14 @@ from collections.abc import Callable
 
 import pytest
 
+from shared.channels import REPLY, backfilled_key
+from shared.codec import encode
 from shared.messages import (
     AlarmState,
     CommandKind,
+    CommandReply,
     CommandState,
+    Header,
 )
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -132,6 +136,18 @@ def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
     answer(script, script.now_s - 8.0)
     assert duty(script).asked_ns is None
     assert left_s(script) == pytest.approx(INTERVAL_S)
+
+
+def test_an_answer_of_a_run_whose_clock_nobody_knows_counts_from_when_it_comes(
+    script: Script,
+) -> None:
+    """The unit started anew before the station heard it; its journal brings the press."""
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(20)
+    pressed = CommandReply(Header("FF-01", 99, 5, 1), "c1", CommandState.ACKNOWLEDGED, "")
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(pressed))
+    assert duty(script).asked_ns is None
+    assert left_s(script) == INTERVAL_S
 
 
 def test_an_answer_that_comes_after_a_newer_word_changes_nothing(script: Script) -> None:

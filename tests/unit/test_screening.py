@@ -12,9 +12,11 @@ from base_station.bench.rig import said
 from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
 from base_station.fusion.port import FixVerdict, PlaceFix
 from shared.channels import GPS, backfilled_key
+from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix, Header
+from shared.messages.pins import SetPin
 from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
 from tests.station_script import Script
 
@@ -213,3 +215,25 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     assert new.to_geodetic(moved.north_m, moved.east_m, 0.0)[:2] == pytest.approx(
         old.to_geodetic(step.north_m, step.east_m, 0.0)[:2], abs=2e-8
     )
+
+
+def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: Script) -> None:
+    """What is solved again with it was walked before: all of it stays where it was on the Earth."""
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(60):
+        script.now_s += 1.0
+        script.position(U, 1.2 * second, 0.0, distance_m=1.2 * second)
+        script.gps(U, 52.0 + 1.2 * second / 111_267.0, 4.0)
+    new = Anchor(52.0003, 4.0004, 20.0, 0.8)
+    script.act(SetAnchor(new.lat_deg, new.lon_deg, new.height_m, new.rotation_rad))
+    begin_ns = script.t_ns - 59 * NS_PER_S
+
+    def truth_m(second: float) -> tuple[float, float]:
+        return new.to_incident_m(52.0 + 1.2 * second / 111_267.0, 4.0, 50.0)[:2]
+
+    script.act(SetPin("p", U, begin_ns + 30 * NS_PER_S, *truth_m(30.0), 0.5, None, None, 0.0, ""))
+    state = script.pipeline.state
+    assert state.pin_verdicts["p"].state == "used"
+    for step in state.units[U].trail:
+        true_m = truth_m((step.t_ns - begin_ns) / NS_PER_S)
+        assert math.dist((step.north_m, step.east_m), true_m) < 3.0

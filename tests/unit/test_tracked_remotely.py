@@ -8,14 +8,14 @@ import pytest
 from base_station.alarms import ALARMS
 from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
-from base_station.events import TrailFilled, event_of
+from base_station.events import TrailFilled, UnitTouched, event_of
 from base_station.fusion import FUSERS
 from base_station.live.projector import Projector
 from base_station.pipeline import StationPipeline
-from shared.channels import NO_TRACKER, POSITION, backfilled_key, tracker_id
+from shared.channels import NO_TRACKER, POSITION, STATUS, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.messages import Activity, AlarmState, EventKind, Header
+from shared.messages import Activity, AlarmChange, AlarmState, EventKind, Header
 from tests.station_script import Script, new_pipeline
 
 U = "FF-01"
@@ -125,6 +125,16 @@ def test_an_agent_that_is_gone_does_not_keep_its_wearer_walking(script: Remote) 
     assert shown.steps == 120
 
 
+def test_what_strides_told_long_ago_does_not_replace_what_they_tell_now(script: Remote) -> None:
+    script.status(U)
+    before = script.header(AGENT)
+    script.wait(3, lambda: script.status(AGENT, activity=Activity.CRAWLING, steps=120))
+    late = said.status(before, activity=Activity.RUNNING, steps=10)
+    script.record(backfilled_key(AGENT, STATUS.suffix), encode(late))
+    shown = script.unit.shown_status
+    assert (shown.activity, shown.steps) == (Activity.CRAWLING, 120)
+
+
 def test_a_unit_that_tracks_itself_is_shown_as_it_says() -> None:
     script = Remote(tracker="eskf")
     script.status(U, steps=10)
@@ -176,8 +186,11 @@ def test_a_unit_that_was_switched_off_needs_no_tracking(script: Remote) -> None:
 
 
 def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:
-    script.event(AGENT, EventKind.FALL)
+    outputs = script.event(AGENT, EventKind.FALL)
     assert script.unit.fall_ns == script.t_ns
+    alarms = [one for one in outputs if isinstance(one, AlarmChange)]
+    assert [(one.rule, one.unit_id) for one in alarms] == [("fall", U)], "at once"
+    assert UnitTouched(U) in outputs, "and on every console"
 
 
 def test_fixes_of_the_unit_meet_the_path_at_their_time_on_the_agents_clock(

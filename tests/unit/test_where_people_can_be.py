@@ -79,6 +79,28 @@ def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
     assert abs(ours[-1].down_m) < 0.5
 
 
+@pytest.mark.parametrize(
+    ("north_m", "east_m", "feels_it"),
+    [(-20.0, 12.0, True), (-2.0, 12.0, False), (7.0, 20.0, False)],
+    ids=["outside", "at the wall", "inside"],
+)
+def test_the_weather_is_told_by_who_is_outside_and_not_by_doors_and_fans(
+    script: Script, north_m: float, east_m: float, feels_it: bool
+) -> None:
+    """Whoever is inside keeps the height that the air outside agrees with."""
+    script.register("FF-02")
+    script.act(SetStart("FF-02", north_m, east_m, 0.0, 0.0, 0.2, 0.05))
+
+    def each_second() -> None:
+        pressure_pa = pressure_pa_at(SITE_M) + 60.0 * script.now_s / 60.0
+        script.position("FF-02", 0.0, 0.0, pressure_pa=pressure_pa)
+
+    script.wait(60, each_second)
+    weather = script.pipeline.state.barometers.weather
+    assert weather.is_known(script.t_ns) is feels_it
+    assert weather.rise_m == pytest.approx(-5.0 if feels_it else 0.0, abs=1.0)
+
+
 def test_who_is_not_heard_is_within_walls(script: Script) -> None:
     script.wait(3, lambda: script.position(U, 0.0, 0.0))
     assert script.pipeline.state.units[U].reach == ()
