@@ -43,6 +43,27 @@ def test_noise_is_no_motion_and_motion_starts_the_count_again():
     assert motion.motionless_s <= 0.5
 
 
+@pytest.mark.parametrize("column", range(6))
+@pytest.mark.parametrize("times", [0.6, 1.6])
+def test_each_axis_alone_tells_motion_from_noise(column, times):
+    """0.4 m/s2 or 0.12 rad/s: more than any sensor's noise, less than any step."""
+    imu = samples(5.5)
+    felt = np.zeros((len(imu), 6))
+    amplitude = times * (0.4 if column < 3 else 0.12)
+    felt[:, column] = amplitude * np.where(np.arange(len(imu)) % 2, 1.0, -1.0)
+    motion = BodyMotion()
+    motion.push(replace(imu, accel_mps2=felt[:, :3] + [0.0, 0.0, 9.81], gyro_radps=felt[:, 3:]))
+    assert motion.motionless_s == (5.0 if times < 1.0 else 0.0)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_the_quickest_instant_of_half_a_second_is_told_about_any_axis(axis):
+    imu = samples(0.6)
+    imu.gyro_radps[20, axis] = -3.0
+    (window,) = BodyMotion().push(imu)
+    assert window.peak_rate_radps == pytest.approx(3.0, abs=0.05)
+
+
 def test_a_foot_that_is_turned_slowly_moves():
     motion = BodyMotion()
     for second in range(10):

@@ -90,6 +90,22 @@ def test_who_goes_down_suddenly_and_does_not_move_has_collapsed(
     assert foot.posture.collapsed is collapsed
 
 
+def test_one_quick_moment_on_the_way_down_is_a_collapse(foot: Foot) -> None:
+    foot.held(30.0, 0.5, 1.0)
+    foot.held(70.0, 0.5, 3.0)
+    foot.held(90.0, 1.0)
+    assert foot.posture.collapsed
+
+
+def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> None:
+    """A walking foot is hardly ever held as when standing."""
+    foot.held(25.0, 5.0, 1.0)
+    foot.steps(10.0, length_m=1.3)
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 1.0)
+    assert foot.posture.collapsed
+
+
 def test_strides_are_quick_and_lying_down_after_them_is_no_collapse(foot: Foot) -> None:
     foot.held(0.0, 2.0, 6.0)
     foot.held(70.0, 1.0, 1.0)
@@ -155,6 +171,13 @@ def test_who_crawls_may_rest_on_hands_and_knees_and_not_on_the_back(
     assert foot.posture.lying is lying
 
 
+def test_who_stumbles_and_lies_down_that_way_does_not_crawl(foot: Foot) -> None:
+    foot.held(KNEELING_DEG, 2.0, 1.0)
+    foot.steps(KNEELING_DEG)
+    foot.held(KNEELING_DEG, 2.0)
+    assert foot.posture.lying
+
+
 def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 1.0, 4.0)
     foot.steps(KNEELING_DEG)
@@ -181,3 +204,9 @@ def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
         foot.steps(30.0, length_m=1.3)
     foot.held(-40.0, 3.0)
     assert foot.posture.lying, "seventy degrees from how it stands"
+
+
+def test_one_odd_footfall_does_not_make_standing_lying(foot: Foot) -> None:
+    foot.steps(-70.0, length_m=1.3)
+    foot.held(0.0, 5.0)
+    assert not foot.posture.lying
