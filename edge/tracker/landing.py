@@ -20,7 +20,7 @@ import math
 from numba import njit
 
 from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import GYRO_BIAS, POSITION, VELOCITY
+from edge.tracker.error_model import ATTITUDE, GYRO_BIAS, POSITION, VELOCITY
 from edge.tracker.stance import lever_velocity_row
 from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
@@ -67,14 +67,30 @@ def strike_share(state: FilterState) -> float:
 
 @njit()
 def lift_off(state: FilterState, config: EskfConfig) -> None:
-    """Tell what the stride since the last lift-off has added to an ordinary walk's noise."""
+    """Tell what the stride since the last lift-off has added to an ordinary walk's noise.
+
+    The heading that a fault has left in doubt goes on to make the way wrong, so a stride's
+    noise is ordinary by the share of the heading's variance that is.
+    """
     p = state.covariance
     noise_m2 = p[POSITION, POSITION] + p[POSITION + 1, POSITION + 1]
+    noise_rad2 = p[ATTITUDE + 2, ATTITUDE + 2]
     if not state.faulty_stride and _bias_is_known(state, config):
-        state.ordinary_m2 += noise_m2 - state.noise_m2
+        state.ordinary_m2 += (noise_m2 - state.noise_m2) * _heading_share(state)
+        state.ordinary_rad2 += noise_rad2 - state.noise_rad2
     state.ordinary_m2 = min(max(state.ordinary_m2, 0.0), noise_m2)
+    state.ordinary_rad2 = min(max(state.ordinary_rad2, 0.0), noise_rad2)
     state.noise_m2 = noise_m2
+    state.noise_rad2 = noise_rad2
     state.faulty_stride = False
+
+
+@njit()
+def _heading_share(state: FilterState) -> float:
+    """Return the share of the heading's variance that strides without a fault have made."""
+    if state.noise_rad2 <= 0.0:
+        return 1.0
+    return float(min(state.ordinary_rad2 / state.noise_rad2, 1.0))
 
 
 @njit()

@@ -210,6 +210,8 @@ FILTER = np.dtype(
         ("faulty_stride", np.bool_),  # since the last lift-off
         ("noise_m2", np.float64),  # of both horizontal axes at the last lift-off
         ("ordinary_m2", np.float64),  # ... by strides without a fault
+        ("noise_rad2", np.float64),  # of the heading at the last lift-off
+        ("ordinary_rad2", np.float64),  # ... by strides without a fault
         ("covariance", np.float64, (SIZE, SIZE)),  # see error_model
         ("compass", COMPASS),  # see magnetic_heading
         ("barometer", BAROMETER),  # see barometric_height
