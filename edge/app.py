@@ -158,43 +158,47 @@ def compose_agent(
 ) -> Agent:
     """The agent and its threads; ``speed`` None plays a recording without waiting."""
     clock = StationClock(SystemClock())
-    spool, damaged = open_spool(
-        folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
-    )
-    raw = RawStream(unit_id, spool.boot_id)
-    stamper = Stamper(unit_id, spool.boot_id, clock, clock.utc_std_s)
-    worn = tracked_unit(unit_id) or unit_id
-    calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
-    description = _description(config, raw, source, calibration, clock)
-    pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
-    commands: SimpleQueue[bytes] = SimpleQueue()
-    link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
-    outbox = Outbox(unit_id, spool, link.publish)
-    for detail in _set_aside(folder, damaged):
-        outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
-    return Agent(
-        Parts(
-            source=source,
-            reader=SourceReader(source, clock, speed, beside),
-            raw=raw,
-            pipeline=pipeline,
-            desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
-            stamper=stamper,
-            clock=clock,
-            black_box=BlackBox(
-                folder.black_box,
-                description,
-                round(config.storage.black_box_mb * 1e6),
-                clock,
-                clock.utc_std_s,
-            ),
-            spool=spool,
-            outbox=outbox,
-            link=link,
-            commands=commands,
-            manager=ServiceManager(os.environ),
+    with ExitStack() as in_trouble:
+        spool, damaged = open_spool(
+            folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
         )
-    )
+        in_trouble.callback(spool.close)
+        raw = RawStream(unit_id, spool.boot_id)
+        stamper = Stamper(unit_id, spool.boot_id, clock, clock.utc_std_s)
+        worn = tracked_unit(unit_id) or unit_id
+        calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
+        description = _description(config, raw, source, calibration, clock)
+        pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
+        commands: SimpleQueue[bytes] = SimpleQueue()
+        link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
+        outbox = Outbox(unit_id, spool, link.publish)
+        for detail in _set_aside(folder, damaged):
+            outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
+        agent = Agent(
+            Parts(
+                source=source,
+                reader=SourceReader(source, clock, speed, beside),
+                raw=raw,
+                pipeline=pipeline,
+                desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
+                stamper=stamper,
+                clock=clock,
+                black_box=BlackBox(
+                    folder.black_box,
+                    description,
+                    round(config.storage.black_box_mb * 1e6),
+                    clock,
+                    clock.utc_std_s,
+                ),
+                spool=spool,
+                outbox=outbox,
+                link=link,
+                commands=commands,
+                manager=ServiceManager(os.environ),
+            )
+        )
+        in_trouble.pop_all()  # the agent closes it at its end
+    return agent
 
 
 def _set_aside(folder: DataFolder, damaged: Path | None) -> Iterator[str]:

@@ -77,6 +77,13 @@ def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Past]:
     past.store.close()
 
 
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    """Another one, which knows of nothing yet."""
+    with Store(tmp_path / "station.sqlite") as store:
+        yield store
+
+
 def test_smoothed_is_better_than_shown_and_both_are_kept(past: Past) -> None:
     shown = past.records.tracks_of(past.incident)
     smoothed = past.hindsight.smoothed(past.incident)
@@ -97,9 +104,8 @@ def test_what_was_made_is_not_made_again(past: Past) -> None:
     assert fractions[-1] == 1.0
 
 
-def test_who_asks_while_it_is_made_gets_the_same(past: Past, tmp_path: Path) -> None:
+def test_who_asks_while_it_is_made_gets_the_same(past: Past, store: Store) -> None:
     """It takes minutes of a long incident: it is made once, however many ask."""
-    kept = SmoothedTracks(Store(tmp_path / "station.sqlite"))
     opened: list[int] = []
 
     def counting(t_ns: int) -> Iterable[Record]:
@@ -107,7 +113,7 @@ def test_who_asks_while_it_is_made_gets_the_same(past: Past, tmp_path: Path) -> 
         return past.archive.open_log(t_ns)
 
     archive = Archive(counting, past.archive.checkpoints, make_pipeline)
-    hindsight = Hindsight(archive, SMOOTHERS[0], kept, ManualClock())
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
     with ThreadPoolExecutor(3) as pool:
         made = list(pool.map(hindsight.smoothed, [past.incident] * 3))
     assert len(opened) == 1
@@ -142,9 +148,9 @@ class FullStore(SmoothedTracks):
 
 
 def test_on_a_full_disk_it_is_answered_told_once_and_kept_when_there_is_room(
-    past: Past, tmp_path: Path, caplog: pytest.LogCaptureFixture
+    past: Past, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
-    kept, clock = FullStore(Store(tmp_path / "station.sqlite")), ManualClock(utc_ns=0)
+    kept, clock = FullStore(store), ManualClock(utc_ns=0)
     hindsight = Hindsight(past.archive, SMOOTHERS[0], kept, clock)
 
     def catch_up() -> None:
