@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -309,6 +310,7 @@ def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing
     pairing.follower.start()
     pairing.follower.follow(Leader("a", 1))
     until(lambda: pairing.cuts != [])
+    time.sleep(0.5)  # it is told once
     assert pairing.cuts == [place]
     pairing.step()
     assert pairing.standby.place == Place(T0 + 50, 1)
@@ -320,6 +322,27 @@ def test_nothing_is_delivered_any_more_once_following_was_stopped(pairing: Pairi
     pairing.follower.stop_following()
     written(pairing.recorders[0], pairing.active, events(3))
     assert list(pairing.feed.take(0.5)) == []
+
+
+def test_an_answer_that_was_under_way_when_following_was_stopped_is_not_delivered(
+    pairing: Pairing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    follower, ask, asked = pairing.follower, pairing.follower._ask, list[str]()
+
+    def stopped_meanwhile(leader: Leader, what: str, kind: type[Any]) -> Any:
+        answer = ask(leader, what, kind)
+        if what.startswith("records"):
+            follower.follow(None)
+            asked.append(what)
+        return answer
+
+    monkeypatch.setattr(follower, "_ask", stopped_meanwhile)
+    written(pairing.recorders[0], pairing.active, events(3))
+    follower.start()
+    follower.follow(Leader("a", 1))
+    until(lambda: asked)
+    assert list(pairing.feed.take(0.5)) == []
+    assert follower.delivered == BEGINNING
 
 
 @pytest.mark.parametrize("kept", [0, 1, 7, 20])
