@@ -9,6 +9,7 @@ import msgspec
 import pytest
 
 from edge.calibration import Calibration, identity, read_calibration, write_calibration
+from edge.calibration.model import Accelerometer, Gyroscope, Magnetometer
 from edge.calibration.session import calibrate_guided, calibrate_recorded
 from edge.calibration.steps import StillStep
 from edge.simulation.handling import HandledUnit
@@ -58,6 +59,36 @@ def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
     gyroscope = msgspec.structs.replace(known(calibration.gyroscope), residual_radps=0.01)
     poor = msgspec.structs.replace(calibration, gyroscope=gyroscope)
     assert poor.faults() == ("gyroscope off by 0.573 deg/s",)
+
+
+@pytest.mark.parametrize(
+    ("residuals", "said"),
+    [
+        ((0.04, 4e-4, 1.4), ()),
+        ((0.06, 4e-4, 1.4), ("accelerometer off by 0.060 m/s2",)),
+        ((0.04, 6e-4, 1.4), ("gyroscope off by 0.034 deg/s",)),
+        ((0.04, 4e-4, 1.6), ("magnetometer off by 1.6 uT",)),
+    ],
+)
+def test_each_sensor_alone_makes_it_poor(residuals, said):
+    zero, gain = (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    of_force, of_rate, of_field = residuals
+    calibration = Calibration(
+        "u1",
+        "s",
+        MADE,
+        Accelerometer(
+            gain=gain,
+            gain_std=gain,
+            bias_mps2=zero,
+            bias_std_mps2=zero,
+            poses=12,
+            residual_mps2=of_force,
+        ),
+        Gyroscope(bias_radps=zero, bias_std_radps=zero, residual_radps=of_rate),
+        Magnetometer(gain, gain, zero, zero, 50.0, of_field),
+    )
+    assert calibration.faults() == said
 
 
 def test_a_whole_calibration_from_a_source_and_from_recordings(tmp_path, capsys):
