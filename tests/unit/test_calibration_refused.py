@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from edge.calibration.guide import guide
+from edge.calibration.rest import RestFinder
 from edge.calibration.steps import PosesStep, StillStep, TurningStep, WarmUpStep
 from edge.samples import ImuBatch, SensorBatch
 from edge.simulation.handling import SIDES, HandledUnit
@@ -118,5 +119,39 @@ def test_a_guided_step_ends_when_it_has_enough():
 
 def test_a_guided_step_gives_up_after_its_time():
     unit = HandledUnit(0)
+    batches = iter([SensorBatch(unit.rest(1.0)) for _ in range(99)])
     with pytest.raises(UserError, match="only 1 of 6 poses"):
-        guide(PosesStep(), (SensorBatch(unit.rest(1.0)) for _ in range(99)), 20.0, lambda _: None)
+        guide(PosesStep(), batches, 20.0, lambda _: None)
+    assert len(list(batches)) > 70
+
+
+def felt(duration_s: float, start_s: float, accel_mps2: float, gyro_radps: float) -> ImuBatch:
+    """A unit on its back that trembles by so much about one axis of each sensor."""
+    count = round(duration_s * 100)
+    tremble = np.where(np.arange(count) % 2, 1.0, -1.0)[:, None] * [1.0, 0.0, 0.0]
+    return ImuBatch(
+        np.arange(count) * 10_000_000 + round(start_s * 1e9),
+        accel_mps2 * tremble + [0.0, 0.0, 9.81],
+        gyro_radps * tremble,
+    )
+
+
+@pytest.mark.parametrize(
+    ("accel_mps2", "gyro_radps", "rests"),
+    [(0.15, 0.02, True), (0.3, 0.0, False), (0.0, 0.05, False)],
+    ids=["noise", "shaken", "turned to and fro"],
+)
+def test_what_either_sensor_feels_is_no_rest(accel_mps2, gyro_radps, rests):
+    finder = RestFinder()
+    finder.push(felt(5.0, 0.0, accel_mps2, gyro_radps))
+    assert bool(finder.rests) is rests
+
+
+def test_what_nobody_saw_ends_a_rest():
+    """The sensor said nothing for two seconds: the unit may have been taken up and laid down."""
+    finder = RestFinder()
+    silent = felt(2.0, 5.0, 0.0, 0.0)
+    silent.accel_mps2[:] = np.nan
+    for part in (felt(5.0, 0.0, 0.0, 0.0), silent, felt(5.0, 7.0, 0.0, 0.0)):
+        finder.push(part)
+    assert [len(rest) for rest in finder.rests] == [9, 9]
