@@ -130,6 +130,22 @@ def test_other_times_are_nothing_to_a_unit_that_nobody_wears(script: Script) -> 
     assert (unit(script, "FF-09").duty, left_s(script)) == (None, 300.0)
 
 
+def test_who_takes_a_unit_after_the_incident_is_on_no_duty(script: Script) -> None:
+    script.act(CloseIncident("i1"))
+    script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    assert refusals(script) == []
+    assert (unit(script).person is not None, unit(script).duty) == (True, None)
+
+
+def test_there_are_no_times_to_change_where_no_incident_is_open() -> None:
+    script = Script()
+    script.act(SetAccountability(300.0, 2400.0))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(CloseIncident("i1"))
+    script.act(SetAccountability(300.0, 2400.0))
+    assert refusals(script) == ["no incident is open"] * 2
+
+
 def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
     """They wear their units still, and whoever presses is told that it counts for nothing."""
     script.act(CloseIncident("i1"))

@@ -250,6 +250,26 @@ def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None
     assert walk.trail(unit_id)[: len(before)] == before
 
 
+@pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
+def test_a_start_may_be_anywhere_and_be_taken_back(unit_id: str) -> None:
+    """What is left of it without the pins is the same trail."""
+    script = Watched()
+    walk = Walk(unit_id, turn_rad=0.7, script=script)
+    walk.go(100)
+    if unit_id == A:
+        walk.pin("p", A, 95.0)
+    for north_m, east_m in ((40.0, -30.0), (-15.0, 60.0)):
+        script.act(SetStart(unit_id, north_m, east_m, 0.0, -0.7, 0.5, 0.05))
+    if unit_id == A:
+        script.act(RemovePin("p"))
+    begin_ns = script.t_ns - 100 * 10**9
+    assert len(walk.trail(unit_id)) > 40
+    for step in walk.trail(unit_id):
+        walked_m = truth((step.t_ns - begin_ns) / 1e9)
+        place_m = step.north_m + 15.0, step.east_m - 60.0
+        assert math.dist(place_m, walked_m) < 5.0, "what its heading drifted"
+
+
 def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
     """The unit set out where no radio reaches; the commander had said where it was then."""
     script = Watched()
