@@ -14,7 +14,7 @@ from base_station.fusion.knowledge import quality_of
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.plane.drawing import draw
 from base_station.fusion.plane.state import STATES
-from base_station.fusion.plane.walked import COSTS, KEPT_M, Move, Walked
+from base_station.fusion.plane.walked import AGAIN, COSTS, KEPT_M, Move, Walked
 from base_station.fusion.plane.wall_cloud import TOGETHER_M, WallCloud
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
@@ -160,7 +160,7 @@ def test_a_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
     guesses, grid = np.array([[6.2, 15.0, 0.0, 0.0]]), building()
     once = last.met_behind(guesses, 1.0, grid, -math.inf)[0]
     twice = last.met_twice(guesses, 1.0, grid)[0]
-    assert twice == pytest.approx(COSTS[WALL] - math.log(0.5))
+    assert twice == pytest.approx(COSTS[WALL] - AGAIN)
     assert COSTS[WALL] > once > 2.0 * COSTS[WALL]
 
 

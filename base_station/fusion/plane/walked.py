@@ -17,7 +17,7 @@ KEPT_M = 30.0  # of path
 LEG_M = 3.0  # walked until somebody might have turned
 REACH_M = 1.5  # and gone so far
 COSTS = 0.0, math.log(BESIDE_WALL), math.log(THROUGH_WALL), math.log(OFF_STAIRS)
-WALLS, AGAIN = math.log(THROUGH_WALL), math.log(0.5)
+WALLS, AGAIN = math.log(THROUGH_WALL), math.log(0.15)
 
 
 class Move(msgspec.Struct, frozen=True, array_like=True):
