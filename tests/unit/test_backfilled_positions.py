@@ -95,6 +95,19 @@ def test_a_run_of_the_program_that_nobody_heard_is_not_taken_for_the_present_one
     assert [boot.boot_id for boot in walked.unit.boots] == [6, 7]
 
 
+def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
+    """As what it says now is not: it is seen that it speaks, and nobody is shown by it."""
+    for second, backfilled in ((5, False), (3, True)):
+        said = walked.position(second)
+        header = msgspec.structs.replace(said.header, unit_id="FF-66")
+        payload = encode(msgspec.structs.replace(said, header=header))
+        key = backfilled_key("FF-66", POSITION.suffix) if backfilled else POSITION.key("FF-66")
+        outputs = walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
+        assert not any(isinstance(one, FusedPosition | TrailFilled) for one in outputs)
+    stranger = walked.pipeline.state.units["FF-66"]
+    assert (stranger.fused, stranger.trail) == (None, [])
+
+
 def test_what_cannot_be_read_has_come_all_the_same(walked):
     """Of a newer program, or damaged: it is not fetched from the journal again and again."""
     payload = encode(walked.position(15))

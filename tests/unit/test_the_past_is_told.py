@@ -250,6 +250,24 @@ def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None
     assert walk.trail(unit_id)[: len(before)] == before
 
 
+def test_of_who_is_forgotten_no_place_is_left() -> None:
+    script = Watched()
+    walk = Walk(A, script=script)
+    walk.start(A)
+    walk.go(60)
+    walk.pin("p", A, 50.0)
+    state = script.pipeline.state
+    assert len(walk.trail(A)) > 20
+    assert A in state.learnt_floors.walks
+    script.act(CloseIncident("i1"))
+    script.act(ForgetWearers(A))
+    unit = state.units[A]
+    assert (unit.fused, unit.position, unit.trail, unit.plain_trail) == (None, None, [], None)
+    assert A not in state.paths
+    assert A not in state.learnt_floors.walks
+    assert not script.joined().trails.get(A)
+
+
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
 def test_a_start_may_be_anywhere_and_be_taken_back(unit_id: str) -> None:
     """What is left of it without the pins is the same trail."""
