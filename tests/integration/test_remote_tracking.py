@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 from threading import Event
@@ -82,13 +83,12 @@ class Air:
             channel = channel_of(message)
             self._unit.publish(channel.key(U), encode(message), channel.qos)
 
-    def keep(self, folder: Path, messages: Iterable[Message]) -> None:
+    def keep(self, journal: Spool, messages: Iterable[Message]) -> None:
         """The unit has them in its journal, and answers for them."""
-        spool = Spool(folder / "journal.sqlite", lambda: 7, 0, 10**9)
-        spool.append(
+        journal.append(
             [Journaled(one.header.seq, channel_of(one), 0, encode(one)) for one in messages]
         )
-        server = JournalServer(U, spool)
+        server = JournalServer(U, journal)
         self._unit.serve(server.key_expression, server.replies)
 
     def track(self) -> list[Position]:
@@ -112,6 +112,12 @@ def contents(found: Iterable[Position]) -> list[tuple[object, ...]]:
 @pytest.fixture
 def air() -> Air:
     return Air()
+
+
+@pytest.fixture
+def journal(tmp_path: Path) -> Iterator[Spool]:
+    with closing(Spool(tmp_path / "journal.sqlite", lambda: 7, 0, 10**9)) as journal:
+        yield journal
 
 
 @cache
@@ -167,11 +173,11 @@ def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
 
 @pytest.mark.parametrize("lost", [slice(50, 51), slice(100, 400)])
 def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
-    air: Air, tmp_path: Path, lost: slice
+    air: Air, journal: Spool, lost: slice
 ) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
-    air.keep(tmp_path, said)
+    air.keep(journal, said)
     missed = {id(message) for message in raw[lost]}
     air.send(message for message in said if id(message) not in missed)
     air.send(end_of_run())
@@ -180,10 +186,10 @@ def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
     assert air.source.fetched == len(missed)
 
 
-def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, tmp_path: Path) -> None:
+def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, journal: Spool) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
-    air.keep(tmp_path, said)
+    air.keep(journal, said)
     late = raw[100:110]
     for message in said:
         if not any(message is one for one in late):
@@ -196,12 +202,12 @@ def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, tmp_
     assert (air.source.fetched, air.source.late) == (10, 10)
 
 
-def test_what_the_journal_has_given_up_stays_a_hole(air: Air, tmp_path: Path) -> None:
+def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Spool) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
     lost = raw[200:240]
     kept = [message for message in said if not any(message is one for one in lost)]
-    air.keep(tmp_path, kept)
+    air.keep(journal, kept)
     air.send(kept)
     air.send(end_of_run())
     assert any(Reason.SAMPLE_GAP in p.reasons for p in air.track())

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import msgspec
+import pytest
 
 from base_station.journals.backfill import Backfill
 from edge.journal_server import JournalServer
@@ -47,6 +48,13 @@ class Unit:
         return self._make(header=msgspec.structs.replace(header, **changes))
 
 
+@pytest.fixture
+def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
+    unit = Unit(tmp_path, make_position)
+    with closing(unit.spool):
+        yield unit
+
+
 @contextmanager
 def running(folder: Path, unit: Unit) -> Iterator[tuple[LiveStation, Backfill]]:
     """A station that hears the unit and may ask for its journal."""
@@ -77,9 +85,8 @@ def kept(station: LiveStation, unit: Unit) -> list[int]:
 
 
 def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
-    tmp_path: Path, make_position: MakePosition
+    tmp_path: Path, unit: Unit
 ) -> None:
-    unit = Unit(tmp_path, make_position)
     with running(tmp_path / "station", unit) as (station, backfill):
         station.act(RegisterUnit(U, "one"))
         station.say(unit.position(1))
@@ -94,10 +101,7 @@ def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
         assert kept(station, unit) == [1] * len(unit.kept)
 
 
-def test_what_came_live_and_cannot_be_read_is_not_fetched(
-    tmp_path: Path, make_position: MakePosition
-) -> None:
-    unit = Unit(tmp_path, make_position)
+def test_what_came_live_and_cannot_be_read_is_not_fetched(tmp_path: Path, unit: Unit) -> None:
     newer = encode(unit.position(3, schema=SCHEMA_REVISION + 1))
     with LiveStation(tmp_path / "station") as station:
         station.act(RegisterUnit(U, "one"))
