@@ -274,6 +274,26 @@ def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     assert len(changes(script, "battery")) == 2, "what is resolved stands no more"
 
 
+def test_what_was_well_for_two_short_whiles_has_not_been_well_for_a_long_one(
+    script: Script,
+) -> None:
+    for battery, seconds in ((0.09, 2), (0.9, 20), (0.09, 2), (0.9, 20)):
+        script.wait(seconds, lambda b=battery: script.status(U, battery=b))  # type: ignore[misc]
+    assert changes(script, "battery") == [("RAISED", "low")]
+
+
+def test_what_is_resolved_is_not_opened_again_by_who_presses_too_late(script: Script) -> None:
+    """At two consoles, one resolves it while the other is about to acknowledge it."""
+    script.event(U, EventKind.MAYDAY)
+    alarm_id = script.alarms[-1].alarm_id
+    script.act(ResolveAlarm(alarm_id, "is well"))
+    for too_late in (AcknowledgeAlarm(alarm_id), ResolveAlarm(alarm_id, "")):
+        (refused,) = script.act(too_late, by="deputy")
+        assert isinstance(refused, Refused)
+        assert refused.reason == f"no open alarm {alarm_id}"
+    assert changes(script, "mayday") == [("RAISED", "mayday"), ("RESOLVED", "mayday")]
+
+
 def test_a_position_that_nobody_knows_is_an_alarm_until_it_is_known(script: Script) -> None:
     script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 200.0, 0.1))
     script.wait(10, lambda: script.position(U, 0.0, 0.0))
