@@ -5,7 +5,8 @@ foot: about the top of a parabola that stays within a hundredth for n samples th
 by less than a tenth n samples further out.  So it is with a force, whose strikes are shorter and
 whose rest is no full scale.  Sensors that filter or rotate their readings after
 they clipped smooth a plateau, so it need not be the same to the last bit.  What is taken for a
-full scale was never passed, and two plateaus agree on it unless one is the same to the last bit.
+full scale was never passed, and two plateaus agree on it unless one is the same to the last bit,
+and of a force falls as steeply: a coarse sensor shows the gentle top of any swing as one value.
 Readings that stay the same on all three axes are those of a slow sensor, and count once.
 """
 
@@ -169,13 +170,17 @@ def _judge(ring: Ring, known: Any, axis: int, size: float, period_s: float) -> N
         at_top = at_top + 1 if here == top else 1 if here > top else at_top
         top = max(top, here)
     flank = max(_size(ring[before & mask], axis, known.forces), size)
-    if new < LEAST_SAMPLES or top < known.floor[axis] or flank > FLANK * top:
+    falls = flank <= FLANK * top
+    if new < LEAST_SAMPLES or top < known.floor[axis] or (known.forces and not falls):
         return
     if _lasts(at_top, period_s):
         for j in range(3):
             known.clip[j] = min(known.told, EXACT_RATIO * top)
         return
+    if not falls:
+        return
     agree = abs(top - known.plateau_top[axis]) <= AGREE * top
-    if agree and known.clip[axis] > top:
-        known.clip[axis] = SMOOTH_RATIO * top
+    unseen = known.clip[axis] == known.told
+    if agree and (unseen or known.clip[axis] > top):
+        known.clip[axis] = min(known.told, SMOOTH_RATIO * top)
     known.plateau_top[axis] = top
