@@ -111,8 +111,8 @@ def meet_behind(
     A head is row and column, cosine and sine of its own frame's turn, and by how much that grows
     in a second moving.  ``path`` (k, 4): rows and columns in the own frame, seconds moving, and
     whether it climbs.  A door that is not on the plan is met again on the way out: within ``SAME``
-    squares that is no further wall.  ``room``: how far apart, and how far about, the logarithm of
-    the part of directions that are free is added to the second column.
+    squares the last of the costs is taken.  ``room``: how far apart, and how far about, the
+    logarithm of the part of directions that are free is added to the second column.
     """
     last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
     walls = np.empty((MOST_WALLS, 2))

@@ -64,7 +64,7 @@ class Walked:
         return self._follow_back(guesses, scale, grid, (math.inf, least, AGAIN))[:, 0]
 
     def met_twice(self, guesses: Floats, scale: float, grid: FloorGrid) -> Floats:
-        """What of it (n,) is of walls that were met before, at about the same place."""
+        """What more (n,) it would be if a wall that is met again were any wall."""
         all_met = self._follow_back(guesses, scale, grid, (math.inf, -math.inf, WALLS))[:, 0]
         return all_met - self.met_behind(guesses, scale, grid, -math.inf)
 
