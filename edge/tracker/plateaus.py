@@ -44,7 +44,8 @@ FULL_SCALE = np.dtype(
         ("told", np.float64),  # from which a reading has clipped, as described
         ("least", np.float64),
         # By axis.
-        ("clip", np.float64, 3),  # from which a reading has clipped, as told or as plateaus show
+        ("shown", np.float64, 3),  # from which a reading has clipped, as plateaus show
+        ("clip", np.float64, 3),  # the lower of both
         ("floor", np.float64, 3),  # a lower plateau is none, for a reading has passed it
         ("flat", np.float64, 3),  # first of the last readings that hardly differ
         ("flat_samples", np.int64, 3),  # how many
@@ -63,6 +64,7 @@ def know_full_scale(known: NDArray[Any], told: float, *, forces: bool) -> None:
     known["floor"] = known["least"]
     known["told"] = told
     known["clip"] = told
+    known["shown"] = np.inf
 
 
 @njit()
@@ -114,8 +116,8 @@ def _seek_plateau(ring: Ring, k: int, known: Any, axis: int, size: float, period
     known.watching = True
     if size > PASSED * floor:
         known.floor[axis] = size / PASSED
-        if size > PASSED * known.clip[axis]:
-            known.clip[axis] = known.told
+        if size > PASSED * known.shown[axis]:
+            _show(known, axis, np.inf)
     samples = known.plateau_samples[axis]
     if samples > 0 and k + 1 >= known.plateau_stop[axis] + samples:
         _judge(ring, known, axis, size, period_s)
@@ -152,6 +154,12 @@ def _is_held(ring: Ring, k: int, forces: bool) -> bool:
 
 
 @njit()
+def _show(known: Any, axis: int, shown: float) -> None:
+    known.shown[axis] = shown
+    known.clip[axis] = min(known.told, shown)
+
+
+@njit()
 def _judge(ring: Ring, known: Any, axis: int, size: float, period_s: float) -> None:
     """Look at the plateau that ended as long ago as it lasted."""
     mask = len(ring) - 1
@@ -175,12 +183,11 @@ def _judge(ring: Ring, known: Any, axis: int, size: float, period_s: float) -> N
         return
     if _lasts(at_top, period_s):
         for j in range(3):
-            known.clip[j] = min(known.told, EXACT_RATIO * top)
+            _show(known, j, EXACT_RATIO * top)
         return
     if not falls:
         return
     agree = abs(top - known.plateau_top[axis]) <= AGREE * top
-    unseen = known.clip[axis] == known.told
-    if agree and (unseen or known.clip[axis] > top):
-        known.clip[axis] = min(known.told, SMOOTH_RATIO * top)
+    if agree and known.shown[axis] > top:
+        _show(known, axis, SMOOTH_RATIO * top)
     known.plateau_top[axis] = top
