@@ -15,7 +15,7 @@ from base_station.fusion.parameters import Parameters
 from base_station.fusion.plane.drawing import draw
 from base_station.fusion.plane.state import STATES
 from base_station.fusion.plane.walked import AGAIN, COSTS, KEPT_M, Move, Walked
-from base_station.fusion.plane.wall_cloud import TOGETHER_M, WallCloud
+from base_station.fusion.plane.wall_cloud import TOGETHER_M, SavedCloud, WallCloud
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
@@ -187,8 +187,12 @@ def test_an_unknown_floor_has_no_walls() -> None:
 
 
 def test_saved_while_both_are_open_it_goes_on_with_the_very_same_numbers() -> None:
-    cloud, _ = walked(building(*DOOR_M), 4.0)
-    again = WallCloud.restore(
-        msgspec.msgpack.decode(msgspec.msgpack.encode(cloud.save()), type=type(cloud.save()))
-    )
+    grid = building(*DOOR_M)
+    cloud, place_m = walked(grid, 4.0)
+    saved = msgspec.msgpack.encode(cloud.save())
+    again = WallCloud.restore(msgspec.msgpack.decode(saved, type=SavedCloud))
+    for one in (cloud, again):
+        for _ in range(8):
+            one.walk((0.0, STEP_M, 0.5, 0.0), NOISE, grid, 0)
+        one.look_elsewhere(known(place_m, KNOWN_STD_M), grid)
     assert again.save() == cloud.save()
