@@ -49,8 +49,9 @@ from shared.messages import (
 )
 from shared.messages.clock import ClockAnswer
 from shared.messages.station import RegisterUnit
-from tests.live_station import PATIENCE_S, Screen, Store, make_pipeline
+from tests.live_station import Screen, Store, make_pipeline
 from tests.mutated import mutated, random_payload
+from tests.waiting import PATIENCE_S
 
 COUNT = int(os.environ.get("MUSTER_MUTATIONS", "6000"))
 KEPT_FOR_REPLAY = 20_000

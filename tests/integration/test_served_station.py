@@ -167,8 +167,8 @@ def test_users_are_added_while_the_station_runs(
         credentials = {"username": "mia", "password": "a long password"}
         assert browser.call("POST", "/login", json=credentials)["role"] == "viewer"
         with watch(browser) as socket_:
-            flags = ("users", "remove", "mia", "--data", str(data))
-            with Command(tmp_path / "remove.txt", *flags) as removing:
+            remove = ("users", "remove", "mia", "--data", str(data))
+            with Command(tmp_path / "remove.txt", *remove) as removing:
                 assert removing.wait() == 0, removing.said()
             assert close_code(socket_) == NOT_LOGGED_IN
     with Browser(address, data) as browser:
