@@ -16,9 +16,9 @@ Flags = NDArray[np.bool_]
 
 FREE, BESIDE, WALL = 0, 1, 2  # what a square is; beside a wall there is no room for half a body
 
-DIRECTIONS = 8
-SAME = 6.0
-MOST_WALLS = 12
+DIRECTIONS = 8  # into which is looked for room
+SAME = 6.0  # squares within which two walls are one
+MOST_WALLS = 12  # of a way that are remembered
 
 # Of what a square is, of a climb beside stairs, and of a wall where one was met before.
 Costs = tuple[float, float, float, float, float]
