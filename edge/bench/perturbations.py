@@ -21,6 +21,7 @@ BIAS_RADPS = np.radians(0.5)
 ACCEL_SCALE = 0.03
 CLIPPED_AT = 0.7  # of the recording's largest reading
 LOST = 0.01
+LEAST_FULL_SCALE_MPS2 = 2.0 * 9.81  # of accelerometers that are made
 HOLE_AT_S = 10.0
 HOLE_S = 0.15
 JITTER = 0.5  # of a sample interval
@@ -113,6 +114,21 @@ def accel_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Ge
     return told, _with(imu, clipped, imu.gyro_radps)
 
 
+def accel_clipped_untold(
+    description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
+) -> Made:
+    _, clipped = accel_clipped(description, imu, rng)
+    return replace(description, accel_full_scale_mps2=None), clipped
+
+
+def accel_of_2_g_untold(
+    description: SensorDescription, imu: ImuBatch, _: np.random.Generator
+) -> Made:
+    clipped = np.clip(imu.accel_mps2, -LEAST_FULL_SCALE_MPS2, LEAST_FULL_SCALE_MPS2)
+    untold = replace(description, accel_full_scale_mps2=None)
+    return untold, _with(imu, clipped, imu.gyro_radps)
+
+
 def samples_lost(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
     kept = rng.random(len(imu)) >= LOST
     return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
@@ -164,6 +180,8 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("gyroscope clips at 70 %", gyro_clipped),
     Perturbation("the same, untold", gyro_clipped_untold),
     Perturbation("accelerometer clips at 70 %", accel_clipped),
+    Perturbation("accelerometer so, untold", accel_clipped_untold),
+    Perturbation("accelerometer of 2 g, untold", accel_of_2_g_untold),
     Perturbation("1 % of samples lost", samples_lost),
     Perturbation("0.15 s lost at once", hole),
     Perturbation("stamps late by half a sample", late_stamps),
