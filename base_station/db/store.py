@@ -101,7 +101,7 @@ class Store:
 
     def _cause(self, error: SQLAlchemyError) -> str:
         cause = getattr(error, "orig", None) or error
-        code = getattr(cause, "sqlite_errorcode", 0) & 0xFF
+        code = _code_of(cause)
         if code in _DAMAGE:
             return (
                 f"{cause}; stop the station, and put {self._engine.url.database} back from a "
@@ -139,11 +139,16 @@ def copy_database(source: Path, target: Path) -> None:
         ):
             reading.backup(writing)
     except sqlite3.Error as error:
-        if error.sqlite_errorcode & 0xFF in _NO_ROOM:
+        if _code_of(error) in _NO_ROOM:
             raise StoreError(
                 f"{source} cannot be copied ({error}): see that there is room beside {target}"
             ) from error
         raise StoreError(f"{source} cannot be read as the station's database: {error}") from error
+
+
+def _code_of(error: BaseException) -> int:
+    """SQLite's primary result code; 0 where the error is not SQLite's own."""
+    return int(getattr(error, "sqlite_errorcode", 0)) & 0xFF
 
 
 def known_segments(path: Path) -> set[str]:

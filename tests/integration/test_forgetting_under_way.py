@@ -110,6 +110,12 @@ async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStat
     assert not any(ANA in one["detail"] for one in entries)
 
 
+def forgetter_of(data: DataFolder, store: Store, records: Records) -> Forgetter:
+    """Of a station that does not run."""
+    log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
+    return Forgetter(log, store, checkpoints, records, SystemClock(), NoPulls())
+
+
 class PowerCut(BaseException):
     """In the middle of forgetting."""
 
@@ -123,10 +129,7 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
     cuts = 0
     with Store(data.database) as store:
         records = Records(store, SystemClock())
-        forgetter = Forgetter(
-            ClosedLog(data.log), store, Checkpoints(data.checkpoints), records, SystemClock(),
-            NoPulls(),
-        )  # fmt: skip
+        forgetter = forgetter_of(data, store, records)
 
         def forget_until(progress: int) -> None:
             told = iter(range(progress))
@@ -156,10 +159,7 @@ def forgotten_in_tries(folder: Path, cut_at: Collection[str]) -> list[str]:
     _split(data.log, 4)
     with Store(data.database) as store:
         records = Records(store, SystemClock())
-        forgetter = Forgetter(
-            ClosedLog(data.log), store, Checkpoints(data.checkpoints), records, SystemClock(),
-            NoPulls(),
-        )  # fmt: skip
+        forgetter = forgetter_of(data, store, records)
         desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
         desk.add("ada", "person", "p-77")
         for step in cut_at:
@@ -206,10 +206,7 @@ def test_who_wore_nothing_and_is_gone_already_is_in_the_audit(tmp_path: Path) ->
     (tmp_path / "log").mkdir()
     with Store(tmp_path / "station.sqlite") as store:
         records = Records(store, SystemClock())
-        forgetter = Forgetter(
-            ClosedLog(tmp_path / "log"), store, Checkpoints(tmp_path / "checkpoints"), records,
-            SystemClock(), NoPulls(),
-        )  # fmt: skip
+        forgetter = forgetter_of(DataFolder(tmp_path), store, records)
         person_id = Roster(store, SystemClock()).add_person(ANA, "", "").person_id
         with pytest.MonkeyPatch.context() as patched:
             patched.setattr(records, "audit", _fails)

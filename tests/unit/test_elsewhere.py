@@ -18,8 +18,8 @@ from base_station.fusion.plane.walked import AGAIN, COSTS, KEPT_M, Move, Walked
 from base_station.fusion.plane.wall_cloud import TOGETHER_M, SavedCloud, WallCloud
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.plan import read_plan
 from shared.quality import Quality
+from tests.walled_plan import walled_grid
 
 Floats = NDArray[np.float64]
 
@@ -46,20 +46,7 @@ def building(*doors_m: float) -> FloorGrid:
     walls = [ring]
     walls += [[[a, north_m], [b, north_m]] for a, b in zip(ends_m[::2], ends_m[1::2], strict=True)]
     walls += [[[east_m, north_m], [east_m, DEPTH_M]] for east_m in (8.5, 21.5)]
-    shapes = [("outline", "Polygon", [ring]), *(("wall", "LineString", line) for line in walls)]
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"kind": kind, "floor": 0},
-            "geometry": {"type": shape, "coordinates": coordinates},
-        }
-        for kind, shape, coordinates in shapes
-    ]
-    site = {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0}]}
-    plan = {"type": "FeatureCollection", "muster": site, "features": features}
-    grid = FloorGrid.of(read_plan(msgspec.json.encode(plan)))
-    assert grid is not None
-    return grid
+    return walled_grid(ring, walls)
 
 
 def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:

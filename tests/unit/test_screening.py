@@ -22,6 +22,7 @@ from tests.station_script import Script
 
 U = "FF-01"
 ANCHOR = Anchor(52.0, 4.0, 10.0)
+NORTH_M_PER_DEG = 111_267.0  # at 52 degrees
 PLAN = b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}'
 
 
@@ -175,12 +176,12 @@ def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script)
         script.now_s += 1.0
         north_m = 1.2 * second
         script.position(U, north_m, 0.0, distance_m=north_m)
-        script.gps(U, 52.0 + north_m / 111_267.0, 4.0)
+        script.gps(U, 52.0 + north_m / NORTH_M_PER_DEG, 4.0)
         shown_m.append((script.fused[-1].north_m, script.fused[-1].east_m))
     assert max(math.dist(*pair) for pair in pairwise(shown_m)) < 5.0
     anchor = script.pipeline.state.anchor
     assert anchor is not None
-    off_m = anchor.to_incident_m(52.0 + north_m / 111_267.0, 4.0, 50.0)[:2]
+    off_m = anchor.to_incident_m(52.0 + north_m / NORTH_M_PER_DEG, 4.0, 50.0)[:2]
     assert off_m == pytest.approx(shown_m[-1], abs=3.0)
     assert not_used(script)["too far from the site"] == 10
 
@@ -194,13 +195,18 @@ def test_a_site_that_somebody_placed_stays_where_it_is(script: Script) -> None:
     assert not_used(script) == {"too far from the site": 30}
 
 
-def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) -> None:
-    """The frame moves under people, not people over the Earth; trails move with them."""
-    script.act(OpenIncident("i1", "Mill Lane"))
+def walk_a_minute(script: Script) -> None:
+    """North at 1.2 m/s, with a fix a second."""
     for second in range(60):
         script.now_s += 1.0
         script.position(U, 1.2 * second, 0.0, distance_m=1.2 * second)
-        script.gps(U, 52.0 + 1.2 * second / 111_300.0, 4.0)
+        script.gps(U, 52.0 + 1.2 * second / NORTH_M_PER_DEG, 4.0)
+
+
+def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) -> None:
+    """The frame moves under people, not people over the Earth; trails move with them."""
+    script.act(OpenIncident("i1", "Mill Lane"))
+    walk_a_minute(script)
     old = script.pipeline.state.anchor
     before, trail = script.fused[-1], list(script.pipeline.state.units[U].trail)
     assert old is not None
@@ -220,16 +226,13 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
 def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: Script) -> None:
     """What is solved again with it was walked before: all of it stays where it was on the Earth."""
     script.act(OpenIncident("i1", "Mill Lane"))
-    for second in range(60):
-        script.now_s += 1.0
-        script.position(U, 1.2 * second, 0.0, distance_m=1.2 * second)
-        script.gps(U, 52.0 + 1.2 * second / 111_267.0, 4.0)
+    walk_a_minute(script)
     new = Anchor(52.0003, 4.0004, 20.0, 0.8)
     script.act(SetAnchor(new.lat_deg, new.lon_deg, new.height_m, new.rotation_rad))
     begin_ns = script.t_ns - 59 * NS_PER_S
 
     def truth_m(second: float) -> tuple[float, float]:
-        return new.to_incident_m(52.0 + 1.2 * second / 111_267.0, 4.0, 50.0)[:2]
+        return new.to_incident_m(52.0 + 1.2 * second / NORTH_M_PER_DEG, 4.0, 50.0)[:2]
 
     script.act(SetPin("p", U, begin_ns + 30 * NS_PER_S, *truth_m(30.0), 0.5, None, None, 0.0, ""))
     state = script.pipeline.state

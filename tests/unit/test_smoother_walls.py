@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import msgspec
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -18,9 +17,9 @@ from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother,
 from base_station.fusion.smoother.shared import START_PART
 from base_station.site.crossing import BESIDE, FREE, WALL
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.plan import read_plan
 from shared.clock import NS_PER_S
 from shared.messages import Header
+from tests.walled_plan import walled_grid
 
 Floats = NDArray[np.float64]
 Line = list[tuple[float, float]]
@@ -49,19 +48,7 @@ def ring(radius_m: float) -> Line:
 def grid_of(lines: list[Line], off_m: tuple[float, float] = (0.0, 0.0)) -> FloorGrid:
     """Lines as (north, east), drawn so far north and east of where they are."""
     moved = [[[east + off_m[1], north + off_m[0]] for north, east in line] for line in lines]
-    features: list[dict[str, Any]] = [
-        {
-            "type": "Feature",
-            "properties": {"kind": kind, "floor": 0},
-            "geometry": {"type": "LineString", "coordinates": line},
-        }
-        for kind, line in (("outline", moved[0]), *(("wall", line) for line in moved))
-    ]
-    site = {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0}]}
-    plan = {"type": "FeatureCollection", "muster": site, "features": features}
-    grid = FloorGrid.of(read_plan(msgspec.json.encode(plan)))
-    assert grid is not None
-    return grid
+    return walled_grid(moved[0], moved)
 
 
 def corridor(off_m: tuple[float, float] = (0.0, 0.0)) -> FloorGrid:

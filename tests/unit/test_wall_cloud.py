@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-import msgspec
 import numpy as np
 
 from base_station.fusion.plane.state import STATES
 from base_station.fusion.plane.wall_cloud import WallCloud
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.plan import read_plan
+from tests.walled_plan import walled_grid
 
 CORRIDOR_M, LONG_M = 2.0, 30.0
 NOISE = 0.03**2, 0.004**2
@@ -21,20 +20,7 @@ def corridor() -> FloorGrid:
     """From south to north; its west wall lies on east 0."""
     lines = [[[0.0, 0.0], [0.0, LONG_M]], [[CORRIDOR_M, 0.0], [CORRIDOR_M, LONG_M]]]
     ring = [[0.0, 0.0], [CORRIDOR_M, 0.0], [CORRIDOR_M, LONG_M], [0.0, LONG_M], [0.0, 0.0]]
-    shapes = [("outline", "Polygon", [ring]), *(("wall", "LineString", line) for line in lines)]
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"kind": kind, "floor": 0},
-            "geometry": {"type": shape, "coordinates": coordinates},
-        }
-        for kind, shape, coordinates in shapes
-    ]
-    site = {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0}]}
-    plan = {"type": "FeatureCollection", "muster": site, "features": features}
-    grid = FloorGrid.of(read_plan(msgspec.json.encode(plan)))
-    assert grid is not None
-    return grid
+    return walled_grid(ring, lines)
 
 
 def walked_north(east_m: float, std_m: float) -> WallCloud:

@@ -144,6 +144,7 @@ class WallCloud:
             looked, told = floor, self._weigh_walls(grid, floor, from_m, climbs)
         self._walked.note(Move(north_m, east_m, moving_s, climbs, looked, told))
         self._to_doubt_m -= way_m
+        self._see_what_is_left()
 
     def _weigh_walls(self, grid: FloorGrid, floor: int, from_m: Floats, climbs: bool) -> float:
         """How likely the walls met are, as a logarithm."""
@@ -167,10 +168,7 @@ class WallCloud:
 
     @property
     def is_split(self) -> bool:
-        """Somebody elsewhere may have walked like this, and what was walked since did not tell."""
-        if self._split:
-            _, covariance = self.moments()
-            self._split = bool(covariance[0, 0] + covariance[1, 1] > TOGETHER_M**2)
+        """Somebody elsewhere may have walked like this, and what came since did not tell."""
         return self._split
 
     def look_elsewhere(self, known: tuple[Floats, Floats], grid: FloorGrid) -> None:
@@ -203,6 +201,13 @@ class WallCloud:
         self._log_weights = np.log(np.repeat(shares, (count, GUESSES - count)))
         self._walked.retell(part * found.met + rest * self._walked.told)
         self._split, self._moments = True, None
+        self._see_what_is_left()
+
+    def _see_what_is_left(self) -> None:
+        """Where guesses lie together again, one place is left."""
+        if self._split:
+            _, covariance = self.moments()
+            self._split = bool(covariance[0, 0] + covariance[1, 1] > TOGETHER_M**2)
 
     def spread(self, variance_m2: float) -> None:
         self._guesses[:, :2] += math.sqrt(variance_m2) * self._rng.normal(size=(GUESSES, 2))
@@ -246,6 +251,7 @@ class WallCloud:
         self._log_weights, self._moments, self._contradiction = log_weights, None, 0.0
         self._walked = Walked([])
         self._draw_anew()
+        self._see_what_is_left()
         return True
 
     def distance2(self, sighting: Sighting) -> float:
@@ -267,6 +273,7 @@ class WallCloud:
         self._slow_covariance = self._slow_covariance - gain @ observe @ self._slow_covariance
         self._moments = None
         self._draw_anew()
+        self._see_what_is_left()
 
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (9,) and covariance (9, 9) in the state of ``HorizontalFilter``."""
