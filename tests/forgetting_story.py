@@ -131,17 +131,21 @@ class Story:
         shutil.copy(segment, segment.with_name(segment.name + ".torn"))
 
     def stored(self) -> bytes:
-        """Every byte in the folder, with what is packed in the log unpacked."""
-        files = [path for path in sorted(self.folder.rglob("*")) if path.is_file()]
-        parts = [path.read_bytes() for path in files]
-        for path in sorted(self.folder.rglob("*.mcap*")):
-            with SegmentReader(path) as reader:
-                parts += [chunk.data for chunk in reader.intact_chunks()]
-        return b"\0".join(parts)
+        return stored_in(self.folder)
 
     def events(self) -> list[Received]:
         events = [event_of(*record) for record in read_log(self.folder / "log")]
         return [event for event in events if isinstance(event, Received)]
+
+
+def stored_in(folder: Path) -> bytes:
+    """Every byte in the folder, with what is packed in the log unpacked."""
+    files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
+    parts = [path.read_bytes() for path in files]
+    for path in sorted(folder.rglob("*.mcap*")):
+        with SegmentReader(path) as reader:
+            parts += [chunk.data for chunk in reader.intact_chunks()]
+    return b"\0".join(parts)
 
 
 def put_person(store: Store, person_id: str, name: str) -> None:

@@ -23,6 +23,7 @@ from shared.errors import UserError
 
 _WATCH_EVERY_S = 0.5
 _ROLL_CALL_AT_S = 55.0  # the commander asks once, when somebody is down already
+_ARRIVAL_S = 120.0  # who was not heard by then will not be
 _ENGINE = -29.4, -9.6  # north and east of the plan's origin: where crew.toml has them begin
 _USUAL_HTTP_PORT = 8080
 _USUAL_BUS_PORT = 7447
@@ -32,7 +33,8 @@ _USUAL_RECORDING = Path("walks") / "footprints" / "37"
 
 def demo(
     for_s: Annotated[
-        float | None, typer.Option("--for", help="End after this many seconds.", min=1.0)
+        float | None,
+        typer.Option("--for", help="End so many seconds after all units were heard.", min=1.0),
     ] = None,
     headless: Annotated[
         bool, typer.Option(help="For scripts: no moving status line, a summary at the end.")
@@ -88,6 +90,7 @@ class _Demo:
         self._screen = Console(highlight=False, soft_wrap=True)
         self._mourned: list[Child] = []
         self._roll_called = False
+        self._complete_s: float | None = None
 
     def run(self, stop: Event, for_s: float | None) -> None:
         enrolments = self._enrol_units()
@@ -110,7 +113,7 @@ class _Demo:
             console.close_incident(incident)
             log = self._stations.leading().data
         self._screen.print(f"To replay it: ./muster base replay {incident} --data {log}")
-        missing = sorted({responder.unit for responder in self._crew.responder}.difference(heard))
+        missing = self._missing(heard)
         if missing and not stop.is_set():
             raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
 
@@ -150,7 +153,8 @@ class _Demo:
         started_s = time.monotonic()
         while not stop.wait(_WATCH_EVERY_S):
             elapsed_s = time.monotonic() - started_s
-            if for_s is not None and elapsed_s >= for_s:
+            complete_s = _ARRIVAL_S if self._complete_s is None else self._complete_s
+            if for_s is not None and elapsed_s >= complete_s + for_s:
                 break
             self._look(console, elapsed_s)
         self._screen.print()
@@ -160,6 +164,8 @@ class _Demo:
             self._mourned.append(child)
             self._mourn(child, console)
         try:
+            if self._complete_s is None and not self._missing(console.units_heard()):
+                self._complete_s = elapsed_s
             if elapsed_s >= _ROLL_CALL_AT_S and not self._roll_called:
                 console.call_roll()
                 self._roll_called = True
@@ -185,6 +191,9 @@ class _Demo:
             self._screen.print(f"{child.name} has come to the end of its walk")
         else:
             self._screen.print(f"{child.name} has ended unasked:\n{child.last_words()}")
+
+    def _missing(self, heard: Sequence[str]) -> list[str]:
+        return sorted({one.unit for one in self._crew.responder}.difference(heard))
 
     def _status_line(self, console: ConsoleClient, elapsed_s: float) -> str:
         health, alarms = console.health(), console.open_alarms()

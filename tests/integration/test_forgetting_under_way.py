@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import shutil
 from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -33,7 +34,7 @@ from shared.messages.station import (
     ResolveAlarm,
     Unassign,
 )
-from tests.forgetting_story import ANA, BO, Story, Walker, names_in
+from tests.forgetting_story import ANA, BO, Story, Walker, names_in, stored_in
 from tests.live_station import LiveStation
 from tests.station import DeskStation
 from tests.waiting import until
@@ -154,9 +155,7 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
 
 def forgotten_in_tries(folder: Path, cut_at: Collection[str]) -> list[str]:
     """What the audit says of it, where the store fails at these steps, each once."""
-    story = Story(folder)
-    data = DataFolder(story.folder)
-    _split(data.log, 4)
+    data = DataFolder(folder)
     with Store(data.database) as store:
         records = Records(store, SystemClock())
         forgetter = forgetter_of(data, store, records)
@@ -168,7 +167,7 @@ def forgotten_in_tries(folder: Path, cut_at: Collection[str]) -> list[str]:
                 assert not desk._work_on_one(desk._wishes.under_way())
             desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
         assert desk._work_on_one(desk._wishes.under_way())
-        assert names_in(story.stored(), ANA) == []
+        assert names_in(stored_in(folder), ANA) == []
         return [one.detail for one in records.audit_entries(EVER) if one.action == "ForgotPerson"]
 
 
@@ -196,8 +195,11 @@ BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
 
 @pytest.mark.parametrize("cut_at", [["log"], ["store"], ["compact"], ["audit"], [*BROKEN]])
 def test_the_audit_says_what_all_tries_took_out(tmp_path: Path, cut_at: list[str]) -> None:
-    (whole,) = forgotten_in_tries(tmp_path / "at once", [])
-    (tried,) = forgotten_in_tries(tmp_path / "tried again", cut_at)
+    told = Story(tmp_path / "told").folder
+    _split(DataFolder(told).log, 4)
+    at_once, in_tries = (shutil.copytree(told, tmp_path / name) for name in ("once", "tries"))
+    (whole,) = forgotten_in_tries(at_once, [])
+    (tried,) = forgotten_in_tries(in_tries, cut_at)
     assert tried == whole
     assert int(whole.split()[2]) > 10
 

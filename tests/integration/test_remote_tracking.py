@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from threading import Event
 
@@ -33,12 +34,13 @@ from shared.quality import Reason
 U = "FF-01"
 WALK = "simulated:stairs?seed=3"
 SENSOR = open_source(WALK).description
+BATCHES = 800  # of the walk, 50 ms each
 
 
 def batches(one_by_one: bool = False) -> Iterator[SensorBatch]:
     """What a unit's pipeline gets: rounded as the wire does."""
     raw = RawStream(U, 1)
-    for batch in open_source(WALK).batches():
+    for batch in islice(open_source(WALK).batches(), BATCHES):
         if not one_by_one:
             yield batch_of(raw.messages(batch))
             continue
