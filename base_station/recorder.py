@@ -89,7 +89,7 @@ class Recorder:
         self._flushes_asked = 0
         self._flushes_done = 0
         self._closing = False
-        self._ending = False  # with the next flush the segment is complete
+        self._ending = False  # behind what is in the queue the segment is complete
         self._refused = 0
         self._failure = ""
         self._turned_ns = clock.monotonic_ns()
@@ -132,7 +132,8 @@ class Recorder:
 
         Raises LogError where the disk does not take what is left.
         """
-        self._ending = True
+        with self._news:
+            self._ending = True  # behind what is in the queue now
         if not self.flush():
             raise LogError(f"the log cannot be brought to the disk: {self.problem}")
         return tuple(segment.path for segment in self._segments)
@@ -212,13 +213,16 @@ class Recorder:
         seen_ns = looked_ns = self._clock.monotonic_ns()
         closing = False
         while not closing:
-            records, flushes, closing = self._take()
+            records, flushes, ending, closing = self._take()
             now_ns = self._turned_ns = self._clock.monotonic_ns()
             for t_ns, key, payload in records:
                 self._writer.write(t_ns, key, payload)
                 last_t_ns, seen_ns = t_ns, now_ns
-            if flushes > self._flushes_done:
-                self._flush_or_end()
+            if ending:
+                self._writer.end_segment()
+                self._tell_flushed(flushes)
+            elif flushes > self._flushes_done:
+                self._writer.flush()
                 self._tell_flushed(flushes)
             else:  # log time goes on although nothing comes
                 self._writer.advance(last_t_ns + now_ns - seen_ns)
@@ -228,22 +232,18 @@ class Recorder:
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
         self._writer.close()
 
-    def _flush_or_end(self) -> None:
-        ending, self._ending = self._ending, False
-        if ending:
-            self._writer.end_segment()
-        else:
-            self._writer.flush()
-
-    def _take(self) -> tuple[list[LogRecord], int, bool]:
-        """What came, up to which flush was asked for, and whether it is the last."""
+    def _take(self) -> tuple[list[LogRecord], int, bool, bool]:
+        """What came, up to which flush was asked for, whether a segment ends behind it, and
+        whether it is the last.
+        """
         with self._news:
             self._news.wait_for(
                 lambda: self._flushes_asked > self._flushes_done or self._closing, _TURN_S
             )
             records, self._queue = self._queue, []
             self._queued_bytes = 0
-            return records, self._flushes_asked, self._closing
+            ending, self._ending = self._ending, False
+            return records, self._flushes_asked, ending, self._closing
 
     def _tell_flushed(self, flushes: int) -> None:
         with self._news:

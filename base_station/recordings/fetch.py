@@ -65,8 +65,8 @@ class _HopelessError(Exception):
     """It makes no sense to go on; the text is for a person."""
 
 
-class _NoRoomError(Exception):
-    """It goes on when there is room; the text is for a person."""
+class _NotYetError(Exception):
+    """It begins again with the next step, and goes on where it was; the text is for a person."""
 
 
 class Fetch:
@@ -86,6 +86,7 @@ class Fetch:
         self._ask = ask
         self._clock = clock
         self._pace = Pace()
+        self._took_ns = 0  # by the last answer
         self._hashes: dict[str, str] = {}
         self._unproven = 0  # files whose hash the unit could not be asked for
         self._lock = FolderLock(
@@ -101,7 +102,7 @@ class Fetch:
             next(self._steps, None)
         except _HopelessError as error:
             self.state, self.problem = FetchState.FAILED, str(error)
-        except _NoRoomError as error:
+        except _NotYetError as error:
             self.state, self.problem = FetchState.WAITING, str(error)
             self._steps = self._run()
         except OSError as error:
@@ -119,6 +120,7 @@ class Fetch:
         index = yield from self._index()
         self._check(index)
         self.total_bytes = sum(one.size_bytes for one in index.files)
+        self._unproven = 0
         gone = 0
         before_bytes = 0
         for file in index.files:
@@ -151,14 +153,15 @@ class Fetch:
             )
         if not all(_is_safe(one.path) for one in index.files):
             raise _HopelessError(f"{unit_id} names files that no unit has; is it really {unit_id}?")
-        here = sum(path.stat().st_size for path in self.folder.rglob("*.mcap*"))
-        self._require_room(sum(one.size_bytes for one in index.files) - here)
+        self._require_room(
+            sum(one.size_bytes - max(map(_size, self._paths(one))) for one in index.files)
+        )
 
     def _require_room(self, needed_bytes: int) -> None:
         """The log goes first."""
         free_bytes = shutil.disk_usage(self.folder).free - _SPARED_BYTES
         if needed_bytes > free_bytes:
-            raise _NoRoomError(
+            raise _NotYetError(
                 f"the recording needs {needed_bytes / 1e6:.0f} MB and "
                 f"{max(free_bytes, 0) / 1e6:.0f} MB can be spared at {self.folder}: it goes on "
                 "when the disk is freed; or stop it and choose a shorter window"
@@ -166,18 +169,16 @@ class Fetch:
 
     def _file(self, file: RecordedFile, before_bytes: int) -> Steps[bool]:
         """Have all of one file; False where the unit does not have it any more."""
-        whole = self.folder / PurePosixPath(file.path)
-        part = whole.with_name(whole.name + _PART)
+        whole, part = self._paths(file)
         whole.parent.mkdir(exist_ok=True)
         earlier_bytes = 0
-        if whole.exists() and not part.exists():
-            earlier_bytes = whole.stat().st_size
+        if 0 < _size(whole) <= file.size_bytes and not part.exists():
+            earlier_bytes = _size(whole)
             whole.rename(part)  # it may have grown since, and is looked at again
         for _ in range(_CHANCES):
             if not (yield from self._bytes(file, part, before_bytes)):
-                if earlier_bytes:  # what was whole then still is
-                    os.truncate(part, earlier_bytes)
-                    part.replace(whole)
+                if earlier_bytes:
+                    _put_back(part, whole, earlier_bytes)
                 return False
             answer = yield from self._answer(
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
@@ -189,15 +190,24 @@ class Fetch:
                 part.replace(whole)
                 self._hashes[file.path] = digest.hex()
                 return True
-            part.unlink()
+            if earlier_bytes:
+                _put_back(part, whole, earlier_bytes)
+                earlier_bytes = 0
+            else:
+                part.unlink()
         raise _HopelessError(
             f"{file.path} came out different from what {self.wanted.unit_id} has, {_CHANCES} "
             "times: check the station's and the unit's disk"
         )
 
+    def _paths(self, file: RecordedFile) -> tuple[Path, Path]:
+        """Of all of it, and of what has come so far."""
+        whole = self.folder / PurePosixPath(file.path)
+        return whole, whole.with_name(whole.name + _PART)
+
     def _bytes(self, file: RecordedFile, part: Path, before_bytes: int) -> Steps[bool]:
         """Append to the part until it is whole; False where the unit does not have it any more."""
-        if part.exists() and part.stat().st_size > file.size_bytes:
+        if _size(part) > file.size_bytes:
             os.truncate(part, file.size_bytes)
         with part.open("ab") as written:
             while (offset := written.tell()) < file.size_bytes:
@@ -205,12 +215,16 @@ class Fetch:
                 self._require_room(file.size_bytes - offset)
                 length = min(self._pace.answer_bytes, file.size_bytes - offset)
                 question = f"piece?path={file.path};offset={offset};length={length}"
-                asked_ns = self._clock.monotonic_ns()
                 piece = yield from self._answer(question, RecordingPiece.from_bytes)
-                self._pace.note(self._clock.monotonic_ns() - asked_ns)
+                self._pace.note(self._took_ns)
                 if piece.gone:
                     return False
                 if piece.offset == offset and len(piece.data) <= length and _is_intact(piece):
+                    if not piece.data:
+                        raise _NotYetError(
+                            f"{self.wanted.unit_id} has less of {file.path} than it had; it is "
+                            "asked anew what it has"
+                        )
                     written.write(piece.data)
                     written.flush()
             os.fsync(written.fileno())
@@ -219,9 +233,11 @@ class Fetch:
     def _answer(self, question: str, read: Callable[[bytes], T]) -> Steps[T]:
         """Ask until there is an answer, once a step."""
         while True:
-            yield
+            yield  # others have their turn, which is no time that the link took
+            asked_ns = self._clock.monotonic_ns()
             try:
                 answer = self._ask(self.wanted.unit_id, question)
+                self._took_ns = self._clock.monotonic_ns() - asked_ns
                 if answer is not None:
                     understood = read(answer)
                     self.state, self.problem = FetchState.FETCHING, ""
@@ -243,6 +259,17 @@ class Fetch:
         making = path.with_name(HASHES + _PART)
         making.write_text(text, encoding="utf-8")
         making.replace(path)
+
+
+def _size(path: Path) -> int:
+    """Of a file; 0 where there is none."""
+    return path.stat().st_size if path.exists() else 0
+
+
+def _put_back(part: Path, whole: Path, size_bytes: int) -> None:
+    """What was whole before more was added to it still is."""
+    os.truncate(part, size_bytes)
+    part.replace(whole)
 
 
 def _is_safe(name: str) -> bool:

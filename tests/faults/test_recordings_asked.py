@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from base_station.recordings import fetch as fetching
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
-from shared.clock import SystemClock
+from shared.clock import ManualClock, SystemClock
 from shared.errors import DataFolderInUseError, UserError
-from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
+from shared.messages.recording import (
+    RecordedFile,
+    RecordingDigest,
+    RecordingIndex,
+    RecordingPiece,
+)
 from tests.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
 from tests.waiting import until
 
@@ -169,3 +177,154 @@ def test_a_pull_can_be_stopped_and_asked_for_again(unit: RecordedUnit, tmp_path:
 def test_a_window_that_ends_before_it_begins_is_refused(unit: RecordedUnit, tmp_path: Path) -> None:
     with desk(unit.ask, tmp_path) as one, pytest.raises(UserError, match="before it begins"):
         one.add("chief", Wanted(U, 2, 1))
+
+
+class TellingUnit:
+    """A unit that has these files, and of which a test says what becomes of them meanwhile."""
+
+    def __init__(self, **files: bytes) -> None:
+        self.files = {f"boot/{name}.mcap": content for name, content in files.items()}
+        self.before: Callable[[str], None] = lambda _: None  # hears of every question
+        self.pieces: list[int] = []  # how much was asked for
+
+    def ask(self, _: str, question: str) -> bytes:
+        self.before(question)
+        what, _, said = question.partition("?")
+        values = dict(pair.split("=") for pair in said.split(";"))
+        if what == "index":
+            files = (RecordedFile(name, len(content)) for name, content in self.files.items())
+            return RecordingIndex(tuple(files), 1).to_bytes()
+        content = self.files.get(values["path"])
+        if what == "digest":
+            size = int(values["size"])
+            told = b"" if content is None else hashlib.sha256(content[:size]).digest()
+            return RecordingDigest(size, told).to_bytes()
+        offset, length = int(values["offset"]), int(values["length"])
+        self.pieces.append(length)
+        if content is None:
+            return RecordingPiece(offset, b"", b"", gone=True).to_bytes()
+        data = content[offset : offset + length]
+        return RecordingPiece(offset, data, hashlib.sha256(data).digest()).to_bytes()
+
+    def pull(self, folder: Path) -> Fetch:
+        return Fetch(self.ask, folder, Wanted(U, 1, 2), SystemClock())
+
+
+def pulled(folder: Path) -> dict[str, bytes]:
+    """What is there of it, by name."""
+    return {one.name: one.read_bytes() for one in (folder / U / "boot").iterdir()}
+
+
+@pytest.mark.parametrize(("others_s", "link_s", "grows"), [(20.0, 0.0, True), (0.0, 20.0, False)])
+def test_what_other_units_take_is_no_time_of_this_ones_link(
+    tmp_path: Path, others_s: float, link_s: float, grows: bool
+) -> None:
+    """One that is out of reach may take seconds of every round."""
+    unit, clock = TellingUnit(a=bytes(100_000)), ManualClock()
+    unit.before = lambda _: clock.advance(link_s)
+    fetch = Fetch(unit.ask, tmp_path, Wanted(U, 1, 2), clock)
+    for _ in range(8):
+        fetch.step()
+        clock.advance(others_s)
+    fetch.close()
+    assert (unit.pieces[-1] > 10 * unit.pieces[0]) == grows
+
+
+def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path: Path) -> None:
+    """Its power was lost, and it mended what it had recorded."""
+    unit = TellingUnit(a=b"recorded" * 300)
+
+    def lose(question: str) -> None:
+        if "offset=1024" in question:
+            unit.files["boot/a.mcap"] = b"recorded" * 128
+
+    unit.before = lose
+    fetch = finish(unit.pull(tmp_path), steps=20)
+    assert (fetch.state, fetch.problem) == (FetchState.DONE, "")
+    assert pulled(tmp_path) == {"a.mcap": b"recorded" * 128}
+
+
+def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_path: Path) -> None:
+    unit = TellingUnit(a=b"")
+    unit.files = {"boot/a.mcap": b"12345678"}
+    fetch = unit.pull(tmp_path)
+    unit.before = lambda question: (
+        unit.files.update({"boot/a.mcap": b"1234"})
+        if (question.startswith("piece"))
+        else unit.files.update({"boot/a.mcap": b"12345678"})
+    )
+    states = []
+    for _ in range(8):
+        fetch.step()
+        states.append(fetch.state)
+    fetch.close()
+    assert FetchState.WAITING in states[4:], "the desk rests then"
+    assert not fetch.state.is_over
+
+
+def test_what_is_begun_again_counts_nothing_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    files = {"a": b"a" * 500, "b": b"b" * 5000}
+    unit = TellingUnit(**files)
+    fetch = unit.pull(tmp_path)
+
+    def give_up(question: str) -> None:
+        if "digest?path=boot/a" in question:
+            del unit.files["boot/a.mcap"]
+
+    unit.before = give_up
+    while "boot/a.mcap" in unit.files:
+        fetch.step()
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        fetch.step()
+    assert fetch.state is FetchState.WAITING
+    unit.files = TellingUnit(**files).files
+    fetch = finish(fetch)
+    assert fetch.state is FetchState.DONE
+    assert fetch.problem.startswith("1 of 2 files came whole")
+
+
+def test_what_was_whole_stays_so_though_the_unit_has_another_now_and_gives_it_up(
+    tmp_path: Path,
+) -> None:
+    unit = TellingUnit(a=b"before" * 20)
+    finish(unit.pull(tmp_path))
+    unit.files["boot/a.mcap"] = b"another" * 40
+
+    def give_up(question: str) -> None:
+        if "offset=0" in question:  # what was added did not fit to what was here
+            unit.files.clear()
+
+    unit.before = give_up
+    fetch = finish(unit.pull(tmp_path))
+    assert fetch.state is FetchState.DONE
+    assert "1 of 1 files are gone" in fetch.problem
+    assert pulled(tmp_path)["a.mcap"] == b"before" * 20
+
+
+def test_a_unit_that_has_another_file_under_the_name_gives_that(tmp_path: Path) -> None:
+    unit = TellingUnit(a=b"before" * 20, b=b"before" * 20)
+    finish(unit.pull(tmp_path))
+    unit.files = {"boot/a.mcap": b"shorter", "boot/b.mcap": b"longer" * 99}
+    fetch = finish(unit.pull(tmp_path))
+    assert (fetch.state, fetch.problem) == (FetchState.DONE, "")
+    assert pulled(tmp_path) == {"a.mcap": b"shorter", "b.mcap": b"longer" * 99}
+
+
+def test_what_is_here_of_other_times_makes_no_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unit = TellingUnit(old=b"old" * 1000)
+    finish(unit.pull(tmp_path))
+    unit.files = {f"boot/{name}.mcap": bytes(400) for name in "ab"}
+    unit.pieces.clear()
+    free_bytes = fetching._SPARED_BYTES + 500
+    monkeypatch.setattr(fetching.shutil, "disk_usage", lambda _: SimpleNamespace(free=free_bytes))
+    fetch = unit.pull(tmp_path)
+    for _ in range(5):
+        fetch.step()
+    fetch.close()
+    assert fetch.state is FetchState.WAITING
+    assert unit.pieces == []

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -15,7 +17,15 @@ from base_station.recorder import LOG_FOLDER, Recorder
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import DataFolderInUseError
-from shared.mcap_log import SegmentInfo, SegmentPolicy, SegmentState, SegmentWriter, read_log
+from shared.mcap_log import (
+    SegmentInfo,
+    SegmentPolicy,
+    SegmentReader,
+    SegmentState,
+    SegmentWriter,
+    read_log,
+)
+from tests.waiting import until
 
 KEY = POSITION.key("anna")
 T0_NS = 1_700_000_000 * NS_PER_S
@@ -45,6 +55,33 @@ def test_what_is_in_memory_can_be_read_back_at_once(tmp_path: Path) -> None:
         for number in range(1000):
             recorder.write(T0_NS + number, KEY, number.to_bytes(2, "big"))
         assert len(list(feed.records())) == 1000
+
+
+def test_what_was_written_before_the_segments_were_asked_for_is_in_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Somebody else's flush is under way meanwhile; what is forgotten is looked for in them."""
+    with recording(tmp_path) as recorder, ThreadPoolExecutor() as others:
+        writes, begun, go = recorder._writer.write, Event(), Event()
+
+        def slow(t_ns: int, key: str, payload: bytes) -> bool:
+            begun.set()
+            go.wait()
+            return writes(t_ns, key, payload)
+
+        monkeypatch.setattr(recorder._writer, "write", slow)
+        recorder.write(T0_NS, KEY, b"1")
+        others.submit(recorder.flush)
+        begun.wait()
+        recorder.write(T0_NS + 1, KEY, b"2")
+        asked = recorder._flushes_asked
+        complete = others.submit(recorder.complete_segments)
+        until(lambda: recorder._flushes_asked > asked)
+        go.set()
+        (path,) = complete.result()
+        with SegmentReader(path) as reader:
+            said = [payload for _, _, payload in reader.records()]
+    assert said == [b"1", b"2"]
 
 
 def test_closing_writes_what_is_left(tmp_path: Path) -> None:
