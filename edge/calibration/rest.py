@@ -73,7 +73,8 @@ class RestFinder:
         before, self._before_mps2 = self._before_mps2, mean[:3]
         steady = before is not None and np.linalg.norm(mean[:3] - before) < _STEADY_MPS2
         if not (still and steady):
-            self.moved_at_ns = start_ns
+            if before is not None or not still:  # the first window of all has nothing before it
+                self.moved_at_ns = start_ns
             if not self._settling and len(self.rests[-1]) > 1:
                 self.rests[-1].pop()  # a hand was perhaps reaching for it
             self._settling = True

@@ -68,11 +68,13 @@ class StillStep:
     def missing(self) -> str | None:
         windows = self.windows()
         if seconds(windows) < _STILL_FOR_S:
+            lay = f"{seconds(windows):.1f} s, and {_STILL_FOR_S:.0f} s are needed"
             moved_ns = self._finder.moved_at_ns
-            why = "" if moved_ns is None else f" (last at {moved_ns / NS_PER_S:.1f} s)"
+            if moved_ns is None:
+                return f"it lay still for only {lay}"
             return (
-                f"moved during the still step{why}: it lay still for {seconds(windows):.1f} s, "
-                f"and {_STILL_FOR_S:.0f} s are needed"
+                f"moved during the still step (last at {moved_ns / NS_PER_S:.1f} s): "
+                f"it lay still for {lay}"
             )
         if float(np.linalg.norm(mean_of(windows).gyro_radps)) > _TURNING_RADPS:
             return "turned evenly during the whole still step: lay it on something that stands"

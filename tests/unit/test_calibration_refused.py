@@ -31,6 +31,19 @@ def test_a_unit_that_moved_is_refused_for_the_still_step():
     assert "10 s are needed" in said
 
 
+def test_a_unit_that_has_only_not_lain_long_enough_is_not_said_to_have_moved():
+    said = refusal(StillStep(), [HandledUnit(0).rest(6.0)])
+    assert "lay still for only 5.0 s" in said
+    assert "10 s are needed" in said
+    assert "moved" not in said
+
+
+def test_a_unit_that_was_in_the_hand_to_begin_with_has_moved():
+    unit = HandledUnit(0)
+    said = refusal(StillStep(), [unit.turn(X, 0.5), unit.rest(6.0)])
+    assert "moved during the still step (last at 0.5 s)" in said
+
+
 def test_a_unit_on_a_turntable_is_refused_for_the_still_step():
     batch = HandledUnit(0).rest(15.0)
     turning = replace(batch, gyro_radps=batch.gyro_radps + 0.3)
@@ -115,6 +128,7 @@ def test_a_guided_step_ends_when_it_has_enough():
     guide(StillStep(), batches, 600.0, told.append)
     assert 40 < len(list(batches)) < 50
     assert told[-1] == "10 of 10 s"
+    assert not any("moved" in line for line in told), "nobody has touched it"
 
 
 def test_a_guided_step_gives_up_after_its_time():
