@@ -54,6 +54,7 @@ class Follower:
         self._on_parting = on_parting
         self._changed = Condition()
         self._leader: Leader | None = None
+        self._same_log: Leader | None = None  # what this log holds is the beginning of its log
         self._delivering = Lock()
         self.delivered = BEGINNING  # up to here the feed has it
         self._closed = False
@@ -70,6 +71,8 @@ class Follower:
 
     def follow(self, leader: Leader | None) -> None:
         with self._changed:
+            if leader != self._leader:
+                self.problem = ""
             self._leader = leader
             self._changed.notify_all()
 
@@ -100,10 +103,15 @@ class Follower:
             try:
                 self._follow(leader)
             except MusterError as error:
-                if str(error) != self.problem:
-                    logger.error("the other station's log cannot be followed: %s", error)
-                self.problem = str(error)
+                self._note_problem(leader, str(error))
             self._pause()
+
+    def _note_problem(self, leader: Leader, problem: str) -> None:
+        with self._changed:
+            if self._is_wanted(leader):
+                if problem != self.problem:
+                    logger.error("the other station's log cannot be followed: %s", problem)
+                self.problem = problem
 
     def _follow(self, leader: Leader) -> None:
         """Until it is no longer to be followed, or does not answer."""
@@ -119,6 +127,9 @@ class Follower:
             self._on_parting(cut)
             self._wait_unwanted(leader)
             return
+        with self._changed:
+            self._same_log = leader
+            self._changed.notify_all()
         self.delivered = mine.place
         while self._is_wanted(leader):
             place = self.delivered
@@ -156,9 +167,10 @@ class Follower:
     # ---- confirming
 
     def _confirm(self) -> None:
+        """What stands in a log that went its own way says nothing of the leader's."""
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._leader is not None or self._closed)
+                self._changed.wait_for(self._has_same_log)
                 if self._closed or self._leader is None:
                     return
                 leader = self._leader
@@ -167,3 +179,6 @@ class Follower:
                 self._log.flush()
             have = Have(leader.run, self._log.durable)
             self._bus.publish(key_of(self._station, "have"), pack(have), Qos.LIVE)
+
+    def _has_same_log(self) -> bool:
+        return self._closed or (self._leader is not None and self._same_log == self._leader)

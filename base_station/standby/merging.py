@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from itertools import islice
 from pathlib import Path
 from threading import Event
 
-from base_station.live.sinks import OperatorGate
+from base_station.live.sinks import ActionDone, OperatorGate
 from base_station.standby.asking import Answers, ask
 from base_station.standby.places import Record
 from base_station.standby.setting_aside import mark_told, parts, read_part
@@ -102,47 +103,49 @@ class Merging:
             self._merge(station, name, stop)
 
     def _merge(self, station: str, name: bytes, stop: Event) -> None:
-        taken, actions = 0, 0
+        taken = 0
+        noted: list[Future[ActionDone]] = []
         while True:
             question = b"%s %d" % (name, taken)
             batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
             if batch is None or stop.is_set():
-                return  # it has gone again; next time from the beginning, and nothing comes twice
+                return  # it has gone again; next time from the beginning
             records = unpack(batch, Batch).records
             if not records:
                 break
             for record in records:
-                actions += self._take(station, record)
+                noted += self._take(station, record)
             taken += len(records)
-        while not self._settled():
+        if noted:
+            text = (
+                f"While the stations were apart, people acted at {station} ({len(noted)} times), "
+                "and that is not in force here: the audit names it; do again what still matters"
+            )
+            noted.append(self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text)))
+        while not (all(one.done() for one in noted) and self._settled()):
             if stop.wait(_SETTLE_S):
                 return
+        if any(one.exception() for one in noted):
+            return  # this station does not lead any more: who does takes it
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
-        if actions:
-            text = (
-                f"While the stations were apart, people acted at {station} ({actions} times), and "
-                "that is not in force here: the audit names it; do again what still matters"
-            )
-            self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text))
 
-    def _take(self, station: str, record: Record) -> int:
-        """Gives 1 for what a person did."""
+    def _take(self, station: str, record: Record) -> list[Future[ActionDone]]:
+        """Gives what is to be written down of a person."""
         t_ns, key, payload = record
         try:
             unit_id, channel = parse_key(key)
         except UnknownChannelError:
             self._deliver(key, payload)
-            return 0
+            return []
         if channel.direction is Direction.UP:
             self._deliver(backfilled_key(unit_id, channel.suffix), payload)
         elif channel is OPERATOR:
             action = _persons_action(payload)
             if action is not None:
                 done = DoneApart(station, t_ns, action.by, _in_words(action))
-                self._gate.submit(STATION_ID, done)
-                return 1
-        return 0
+                return [self._gate.submit(STATION_ID, done)]
+        return []
 
 
 def _persons_action(payload: bytes) -> OperatorAction | None:

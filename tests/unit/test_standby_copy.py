@@ -18,6 +18,7 @@ from base_station.standby.setting_aside import mark_told, parts, read_part, set_
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
+from base_station.standby.words import Have, key_of, unpack
 from base_station.steady_clock import SteadyClock
 from shared.bus_memory import MemoryRouter
 from shared.channels import ALARM, FUSED, OPERATOR, TICK
@@ -314,6 +315,42 @@ def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing
     assert pairing.cuts == [place]
     pairing.step()
     assert pairing.standby.place == Place(T0 + 50, 1)
+
+
+def test_a_log_that_went_its_own_way_confirms_nothing(pairing: Pairing) -> None:
+    """It may reach farther than the leader's, which would take all that comes for safe."""
+    for recorder, log in zip(pairing.recorders, (pairing.active, pairing.standby), strict=True):
+        written(recorder, log, events(6))
+    place = pairing.active.place
+    pairing.active.begin(place, T0, [TakeOver(2, "a", place.t_ns, place.events)])
+    pairing.standby.write(T0 + 50, TICKED, b"apart")
+    said: list[Have] = []
+    subscribed = pairing.router.attach_station().subscribe(
+        key_of("b", "have"), lambda _, payload: said.append(unpack(payload, Have))
+    )
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    until(lambda: pairing.cuts != [])
+    pairing.active.begin(place, T0, ())
+    written(pairing.recorders[0], pairing.active, [(T0 + 50, TICKED, b"apart")])
+    pairing.follower.follow(Leader("a", 2))
+    until(lambda: said != [])
+    assert {have.run for have in said} == {2}
+    subscribed.close()
+
+
+def test_what_kept_it_from_following_is_no_trouble_of_a_station_that_leads(
+    pairing: Pairing,
+) -> None:
+    for recorder, log, number in zip(
+        pairing.recorders, (pairing.active, pairing.standby), (0, 1), strict=True
+    ):
+        written(recorder, log, events(6 + number)[number:])
+    pairing.follower.start()
+    pairing.follower.follow(Leader("a", 1))
+    until(lambda: "the log of another station" in pairing.follower.problem)
+    pairing.follower.stop_following()
+    assert pairing.follower.problem == ""
 
 
 def test_nothing_is_delivered_any_more_once_following_was_stopped(pairing: Pairing) -> None:

@@ -20,6 +20,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, OPERATOR, TICK, backfilled_key, unread_key
 from shared.clock import SystemClock
 from shared.codec import encode
+from shared.errors import StoreError
 from shared.messages import STATION_ID, Header, OperatorAction, Tick
 from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem
 from tests.waiting import until
@@ -38,6 +39,8 @@ class Leading:
         self.stop_after = 10**9  # messages
         self.there = True
         self.settled = True
+        self.written = True
+        self.waiting: list[Future[ActionDone]] = []  # for what is done to be written down
         self.bus = router.attach_station()
         self._merging = Merging(
             self.bus,
@@ -53,7 +56,12 @@ class Leading:
     def submit(self, by: str, action: Action) -> Future[ActionDone]:
         assert by == STATION_ID
         self.done.append(action)
-        return Future()
+        told: Future[ActionDone] = Future()
+        if self.written:
+            told.set_result(ActionDone("x", T0, None))
+        else:
+            self.waiting.append(told)
+        return told
 
     def _bring(self, key: str, payload: bytes) -> None:
         self.brought.append((key, payload))
@@ -132,6 +140,38 @@ def test_a_part_is_not_told_of_before_what_it_brought_is_on_the_disk(
     leading.settled = True
     looking.join()
     assert parts(tmp_path) == []
+
+
+def test_a_part_is_not_told_of_before_what_people_did_there_is_written_down(
+    leading: Leading, tmp_path: Path
+) -> None:
+    """A station that dies then would have told nobody of it."""
+    leading.written = False
+    looking = Thread(target=leading.look)
+    looking.start()
+    until(lambda: len(leading.done) == 2)
+    for told in leading.waiting:
+        assert len(parts(tmp_path)) == 1
+        told.set_result(ActionDone("x", T0, None))
+    looking.join()
+    assert parts(tmp_path) == []
+
+
+def test_what_people_did_is_left_to_the_station_that_leads_by_then(
+    leading: Leading, tmp_path: Path
+) -> None:
+    leading.written = False
+    looking = Thread(target=leading.look)
+    looking.start()
+    until(lambda: len(leading.waiting) == 2)
+    for told in leading.waiting:
+        told.set_exception(StoreError("the station is stopping"))
+    looking.join()
+    assert len(parts(tmp_path)) == 1
+    leading.written = True
+    leading.look()
+    assert parts(tmp_path) == []
+    assert [type(one) for one in leading.done] == [DoneApart, ReportProblem] * 2
 
 
 def test_a_station_that_does_not_lead_asks_for_nothing(leading: Leading, tmp_path: Path) -> None:
