@@ -53,11 +53,13 @@ def test_what_lies_on_an_ellipsoid_tells_its_shape_and_centre(name: str, count: 
     assert fit.residual < 1e-10
 
 
-@pytest.mark.parametrize("start", [0.6, 3.0])
-def test_a_start_that_is_far_off_comes_to_the_same(start: float) -> None:
+@pytest.mark.parametrize(("start", "aside"), [(3.0, 0.0), (0.4, 0.3), (1.0, 0.5), (2.0, 0.5)])
+def test_a_start_that_is_far_off_comes_to_the_same(start: float, aside: float) -> None:
+    """Steps that lead away are taken back, and shorter ones tried."""
     shape, gain = GAINS["symmetric"]
     vectors = readings(gain, 1.0, directions(60))
-    fit = fit_sphere(vectors, shape, start * np.eye(3), np.zeros(3), 1e-6)
+    centre = aside * np.array([1.0, 1.0, -1.0])
+    fit = fit_sphere(vectors, shape, start * np.eye(3), centre, 1e-6)
     assert fit.gain == pytest.approx(gain, abs=1e-8)
     assert fit.centre == pytest.approx(CENTRE, abs=1e-8)
 
