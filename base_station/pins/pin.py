@@ -39,6 +39,7 @@ class PinVerdict(msgspec.Struct, frozen=True):
     residual_m: float | None = None  # between the pin and the trail
     sigmas: float | None = None  # the same in standard deviations of what was expected
     text: str = ""  # for a person: what it conflicts with, or what it waits for
+    of_units: tuple[tuple[str, PinVerdict], ...] = ()  # what each that it is about makes of it
 
 
 class Beacon(msgspec.Struct):

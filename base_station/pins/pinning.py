@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,7 +32,7 @@ from base_station.pins.evidence import (
     receiver_of_station,
     time_of,
 )
-from base_station.pins.pin import Pin, PinVerdict
+from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
 from base_station.trail import TRAIL_POINTS, TrailStep
@@ -92,7 +93,7 @@ def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
 def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict[str, Repinned]:
     """Solve the past of these units, and judge their pins."""
     results: dict[str, Repinned] = {}
-    verdicts: dict[str, list[PinVerdict]] = {}
+    verdicts: dict[str, dict[str, PinVerdict]] = {}  # by pin, then by unit
     for unit_id in unit_ids:
         history = state.paths.get(unit_id)
         pins = [pin for pin in state.pins.values() if unit_id in units_of(pin)]
@@ -105,18 +106,28 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
         else:
             waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
         for pin_id, why in waiting.items():
-            verdicts.setdefault(pin_id, []).append(PinVerdict("waiting", text=why))
+            verdicts.setdefault(pin_id, {})[unit_id] = PinVerdict("waiting", text=why)
         results[unit_id] = Repinned(None, [])
         if solution is not None and history is not None:
             for pin_id, verdict in solution.verdicts.items():
-                verdicts.setdefault(pin_id, []).append(_judged(state, verdict))
+                verdicts.setdefault(pin_id, {})[unit_id] = _judged(state, verdict)
             if any(verdict.used for verdict in solution.verdicts.values()):
                 path = solution.paths[unit_id]
                 trail = trail_of(state, history.arrays(), path.places_m)
                 results[unit_id] = Repinned(path, trail)
     for pin_id, found in verdicts.items():
-        state.pin_verdicts[pin_id] = max(found, key=lambda one: _SEVERITY[one.state])
+        _judge(state, pin_id, found)
     return results
+
+
+def _judge(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) -> None:
+    """The worst of what those make of a pin whom it is about.  Of a meeting perhaps only one was
+    solved now: the other's word stands.
+    """
+    of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
+    worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
+    verdict = msgspec.structs.replace(worst, of_units=tuple(of_units.items()))
+    state.pin_verdicts[pin_id] = verdict
 
 
 _SEVERITY = {"used": 0, "waiting": 1, "conflict": 2}

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
+from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
 from base_station.events import PinsTouched, Refused, TrailFilled
+from base_station.pins.pinning import floors_along
+from shared.clock import NS_PER_S
 from shared.messages.pins import (
     RemoveBeacon,
     RemovePin,
@@ -15,7 +19,13 @@ from shared.messages.pins import (
     SetPin,
     StartTogether,
 )
-from shared.messages.station import CloseIncident, ForgetWearers, OpenIncident, SetPlan
+from shared.messages.station import (
+    CloseIncident,
+    ForgetWearers,
+    OpenIncident,
+    SetPlan,
+    SetStart,
+)
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
 from tests.station_script import START_NS, Script
@@ -189,12 +199,93 @@ def test_who_meets_somebody_well_known_is_well_known() -> None:
     assert walk.now_off_m("FF-01") == before_m
 
 
+def test_what_is_said_later_of_somebody_counts_for_whom_he_met() -> None:
+    """Nobody has said where they began: whole paths go where the pins lie."""
+    walk = Walk("FF-01", "FF-02")
+    walk.go(100)
+    walk.script.act(SetMeeting("m", "FF-01", "FF-02", walk.script.t_ns, 1.0, ""))
+    assert walk.now_off_m("FF-01") < 10.0
+    for number, second in enumerate((20.0, 60.0, 100.0)):
+        walk.pin(f"p{number}", "FF-02", second, off_m=30.0)
+    assert walk.now_off_m("FF-01") == pytest.approx(30.0, abs=5.0)
+
+
 def test_a_pin_waits_for_a_path_that_comes_late(walk: Walk) -> None:
     walk.go(60, silent=("FF-01",))
     walk.pin("p1", "FF-01", float(walk.walked_s))
     assert walk.state("p1") == "waiting"
     walk.go(1)
     assert walk.state("p1") == "used"
+
+
+def test_a_pin_of_now_counts_though_the_unit_s_last_word_is_some_seconds_old(walk: Walk) -> None:
+    walk.go(4, silent=("FF-01",))
+    walk.pin("p1", "FF-01", 304.0)
+    assert walk.state("p1") == "used"
+    walk.go(2, silent=("FF-01",))
+    walk.pin("p2", "FF-01", 306.0)
+    assert walk.state("p2") == "waiting"
+
+
+def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: Walk) -> None:
+    walk.go(20, silent=("FF-01",))
+    north_m, east_m = walk.own["FF-01"]
+    walk.go(40, silent=("FF-01",))
+    walk.pin("p1", "FF-01", 320.0)
+    walk.pin("p2", "FF-01", 360.0)
+    assert (walk.state("p1"), walk.state("p2")) == ("waiting", "waiting")
+    held_up = walk.script.header("FF-01", walk.script.now_s - 40.0)
+    walk.script.say(said.position(held_up, north_m=north_m, east_m=east_m, distance_m=320.0))
+    assert (walk.state("p1"), walk.state("p2")) == ("used", "waiting")
+
+
+def test_whom_nobody_knows_well_tells_nothing_of_whom_he_met() -> None:
+    """FF-02 went 200 m along a line; how far north is known, and not how far east."""
+    script = Script()
+    script.register("FF-01", "FF-02")
+    script.act(SetStart("FF-01", 200.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    script.act(SetStart("FF-02", 0.0, 0.0, 0.0, 0.0, 0.5, 0.5))
+    for second in range(201):
+        script.now_s += 1.0
+        script.position("FF-01", 0.0, 0.0)
+        script.position("FF-02", float(second), 0.0, distance_m=float(second))
+    units, verdicts = script.pipeline.state.units, script.pipeline.state.pin_verdicts
+    before, vague = units["FF-01"].fused, units["FF-02"].fused
+    script.act(SetMeeting("m", "FF-01", "FF-02", script.t_ns, 1.0, ""))
+    after, sharp = units["FF-01"].fused, units["FF-02"].fused
+    assert before is not None
+    assert vague is not None
+    assert after is not None
+    assert sharp is not None
+    assert vague.std_north_m < 50.0 < vague.std_east_m
+    assert verdicts["m"].text == "nobody knows well enough where FF-02 was"
+    assert (after.north_m, after.east_m) == (before.north_m, before.east_m)
+    assert sharp.std_east_m < 0.1 * vague.std_east_m, "who is known well tells where the other is"
+
+
+def test_a_meeting_that_one_of_both_contradicts_is_shown_so_whoever_is_solved_later() -> None:
+    """FF-02 was with FF-01 all the time, so not with FF-03; FF-03 has nothing against it."""
+    walk = Walk("FF-01", "FF-02", "FF-03", "FF-04")
+    for unit_id in ("FF-01", "FF-04"):
+        walk.start(unit_id)
+    walk.script.act(SetStart("FF-02", 0.0, 0.0, 0.0, 0.0, 10.0, 0.05))
+    walk.script.act(SetStart("FF-03", 20.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    walk.go(60)
+
+    def meet(pin_id: str, unit_id: str, other_id: str, ago_s: int, std_m: float) -> None:
+        t_ns = walk.script.t_ns - ago_s * NS_PER_S
+        walk.script.act(SetMeeting(pin_id, unit_id, other_id, t_ns, std_m, ""))
+
+    for ago_s in (10, 30, 50):
+        meet(f"m{ago_s}", "FF-02", "FF-01", ago_s, 1.0)
+    meet("contradicted", "FF-02", "FF-03", 20, 1.0)
+    meet("other", "FF-03", "FF-04", 40, 30.0)
+    assert walk.state("contradicted") == "conflict"
+    walk.pin("p", "FF-04", 60.0)
+    assert walk.state("contradicted") == "conflict"
+    for ago_s in (10, 30, 50):
+        walk.script.act(RemovePin(f"m{ago_s}"))
+    assert walk.state("contradicted") == "used"
 
 
 @pytest.mark.parametrize(
@@ -319,3 +410,14 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
     walk.go(5)
     assert len(walk.trail("FF-01")) <= 6
+
+
+def test_who_is_between_two_floors_stays_on_the_one_he_was_on(walk: Walk) -> None:
+    """As it is shown live; a trail that is drawn again shows no floor that nobody was on."""
+    walk.script.act(SetPlan(PLAN))
+    state = walk.script.pipeline.state
+    points = state.paths["FF-01"].arrays()
+    down_m = np.full(len(points), -3.2)
+    down_m[1::2] = -1.5  # a little nearer to the ground floor
+    floors = floors_along(state, points, np.column_stack((points.shown_m, down_m)))
+    assert set(floors) == {1}
