@@ -276,6 +276,18 @@ def test_reframed_it_is_the_same_building() -> None:
     )
     assert moved.axis is not None
     assert quarter(moved.axis.direction_rad - 0.1) == pytest.approx(0.0)
+    assert moved.axis.variance == pytest.approx(1e-3)
     climb = Climb(0.0, 0.0, 0.0, -3.0, turns=True)
     seen = Stairs.at(climb, np.array([-4.0, 12.0]), np.eye(2), 0.3)
     assert moved.which(seen) == 0
+
+
+def test_reframed_its_walls_turn_with_the_frame_and_stairs_are_as_unsure_the_other_way() -> None:
+    """North, as far as these stairs are known worst, lies a third of a right angle further east."""
+    stairs = msgspec.structs.replace(STAIRS, covariance_m2=(4.0, 0.0, 1.0))
+    learnt = LearntBuilding((KnownStairs((("FF-01", stairs),)),), (("FF-01", Axis(0.1, 1e-3)),))
+    moved = learnt.reframed(math.pi / 6.0, 0.0, 0.0)
+    assert moved.axis is not None
+    assert moved.axis.direction_rad == pytest.approx(0.1 + math.pi / 6.0)
+    cross_m2 = 3.0 * math.sin(math.pi / 6.0) * math.cos(math.pi / 6.0)
+    assert moved.stairs[0].mean.covariance_m2 == pytest.approx((3.25, cross_m2, 1.75))

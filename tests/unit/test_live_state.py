@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from base_station.api.wire import ClockView
-from base_station.events import Refused
+from base_station.events import Refused, UnitTouched
 from base_station.live_state import UnitState
 from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
@@ -91,6 +91,22 @@ def test_the_link_is_as_old_as_the_last_message(script: Script, silent_s: int, l
     script.status(U)
     script.wait(silent_s)
     assert unit(script).link == link
+
+
+def test_whatever_a_unit_says_comes_to_the_consoles_and_at_once_where_it_cannot_wait(
+    script: Script,
+) -> None:
+    at_once, may_wait = UnitTouched(U, soon=True), UnitTouched(U, soon=False)
+    assert at_once in script.temperature(U, 21.0), "the link is there"
+    assert may_wait in script.status(U)
+    assert may_wait in script.temperature(U, 22.0)
+    assert at_once in script.position(U, 1.0, 2.0)
+    assert at_once in script.gps(U, 0.0, 0.0), "what was not used is counted on its card"
+    assert at_once in script.event(U, EventKind.MAYDAY)
+    script.wait(60)
+    assert unit(script).link == "lost"
+    assert at_once in script.status(U), "somebody is heard of again"
+    assert UnitTouched("stranger") in script.status("stranger")
 
 
 def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:

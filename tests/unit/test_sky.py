@@ -82,7 +82,9 @@ def test_a_bad_fix_never_becomes_a_good_one() -> None:
 
 
 def a_site(*, station_has_a_receiver: bool, walked_m: float = 0.0) -> Script:
-    """FF-01 stands at the anchor and FF-09 50 m north of it; all receivers err by 3 m north."""
+    """FF-01 stands at the anchor and FF-09 50 m north of it; all receivers err by 3 m north and as
+    much west.
+    """
     script = Script()
     script.register("FF-01", "FF-09")
     script.act(SetAnchor(53.5, 10.0, 0.0, 0.0))
@@ -93,20 +95,25 @@ def a_site(*, station_has_a_receiver: bool, walked_m: float = 0.0) -> Script:
         script.now_s += 1.0
         for unit_id, north_m in (("FF-09", 50.0), ("FF-01", 0.0)):
             script.position(unit_id, 0.0, 0.0, distance_m=walked_m)
-            script.gps(unit_id, 53.5 + (3.0 + north_m) / 111_200.0, 10.0)
+            script.gps(unit_id, 53.5 + (3.0 + north_m) / 111_275.0, 10.0 - 3.0 / 66_350.0)
     return script
 
 
 def north_m(script: Script) -> float:
+    return place_m(script)[0]
+
+
+def place_m(script: Script) -> tuple[float, float]:
     fused = script.pipeline.state.units["FF-01"].fused
     assert fused is not None
-    return fused.north_m
+    return fused.north_m, fused.east_m
 
 
 def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -> None:
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
-    assert north_m(alone) == pytest.approx(3.0, abs=0.1)
+    assert place_m(alone) == pytest.approx((3.0, -3.0), abs=0.1)
     assert 0.5 < north_m(helped) < 2.2
+    assert -2.2 < place_m(helped)[1] < -0.5
 
 
 def test_a_reference_that_somebody_carries_about_tells_nothing() -> None:
