@@ -169,6 +169,12 @@ def sphere(count: int, least_z: float = -1.0) -> Floats:
 IRON_UT = np.array([12.0, -7.0, 20.0])
 
 
+def test_before_the_first_reading_there_is_no_magnetometer_to_be_seen() -> None:
+    step = TurningStep()
+    assert "no magnetometer" in (step.missing() or "")
+    assert step.progress() == "0 of 110 directions"
+
+
 def test_turned_all_around_is_enough() -> None:
     step = TurningStep()
     fields(step, 48.0 * sphere(2000) + IRON_UT)
