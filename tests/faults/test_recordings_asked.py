@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -245,14 +246,13 @@ def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path:
 
 
 def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_path: Path) -> None:
-    unit = TellingUnit(a=b"")
-    unit.files = {"boot/a.mcap": b"12345678"}
+    unit = TellingUnit(a=b"all of it")
+
+    def lie(question: str) -> None:
+        unit.files["boot/a.mcap"] = b"all of it" if question.startswith("index") else b"half"
+
+    unit.before = lie
     fetch = unit.pull(tmp_path)
-    unit.before = lambda question: (
-        unit.files.update({"boot/a.mcap": b"1234"})
-        if (question.startswith("piece"))
-        else unit.files.update({"boot/a.mcap": b"12345678"})
-    )
     states = []
     for _ in range(8):
         fetch.step()
@@ -321,7 +321,7 @@ def test_what_is_here_of_other_times_makes_no_room(
     unit.files = {f"boot/{name}.mcap": bytes(400) for name in "ab"}
     unit.pieces.clear()
     free_bytes = fetching._SPARED_BYTES + 500
-    monkeypatch.setattr(fetching.shutil, "disk_usage", lambda _: SimpleNamespace(free=free_bytes))
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=free_bytes))
     fetch = unit.pull(tmp_path)
     for _ in range(5):
         fetch.step()
