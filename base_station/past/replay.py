@@ -56,6 +56,7 @@ class ReplaySession:
         self._at_ns = window.start_ns
         self._seek_ns: int | None = window.start_ns
         self._seeking = False
+        self._moved_ns = clock.monotonic_ns()  # until when time has gone by for what is shown
         self._news = threading.Event()
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
@@ -68,6 +69,8 @@ class ReplaySession:
         with self._lock:
             if self._at_ns >= self._window.end_ns:
                 self._seek_ns = self._window.start_ns
+            if not self._playing:
+                self._moved_ns = self._clock.monotonic_ns()
             self._playing = True
         self._news.set()
 
@@ -124,18 +127,13 @@ class ReplaySession:
             self._closed.set()
 
     def _go_on(self) -> None:
-        before_ns = self._clock.monotonic_ns()
         while not self._closed.is_set():
             self._follow_seek()
-            now_ns = self._clock.monotonic_ns()
-            self._move(now_ns - before_ns)
-            before_ns = now_ns
+            self._move()
             if self._seek_ns is not None:
                 continue  # a picture now would be of another time than asked for
             self._answer()
             self._news.wait(DELTA_S if self._playing else PAUSED_S)
-            if not self._playing:
-                before_ns = self._clock.monotonic_ns()
             self._news.clear()
 
     def _follow_seek(self) -> None:
@@ -154,6 +152,8 @@ class ReplaySession:
             self._at_ns, self._seeking = seek_ns, False
         self._picture.show(self._playback.pipeline)
         self._picture.reset(self.view())
+        with self._lock:
+            self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
 
     def _tell_of_seeking(self) -> None:
         """A long way: consoles see that somebody is there, and where it goes."""
@@ -166,9 +166,11 @@ class ReplaySession:
         while self._asked:
             self._asked.popleft()(*self._picture.whole(self.view()))
 
-    def _move(self, elapsed_ns: int) -> None:
+    def _move(self) -> None:
         """Let as much of the past go by as the clock and the speed say."""
         with self._lock:
+            now_ns = self._clock.monotonic_ns()
+            elapsed_ns, self._moved_ns = now_ns - self._moved_ns, now_ns
             if not self._playing or self._seek_ns is not None:
                 told = None
             else:

@@ -13,7 +13,7 @@ from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import StoreError, UserError
 from shared.messages import EventKind
 from shared.messages.station import Assign, OpenIncident
@@ -150,6 +150,51 @@ def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
     paused_s = at_s(session)
     pause.wait(0.3)
     assert at_s(session) == paused_s
+
+
+def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
+    records: list[Record], tmp_path: Path, screen: Screen
+) -> None:
+    """Who goes to the next alarm sees it happen, however long the station reads to get there."""
+    clock = ManualClock()
+
+    def slowly(t_ns: int) -> Iterable[Record]:
+        for record in records:
+            if record[0] >= t_ns:
+                clock.advance(0.1)
+                yield record
+
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    slow = Archive(slowly, Checkpoints(tmp_path), make_pipeline)
+    session = ReplaySession(slow, window, 1.0, screen, lambda _: None, clock)
+    until(lambda: len(screen.resets) == 1)
+    session.seek(START_NS + MAYDAY_S * NS_PER_S)
+    until(lambda: len(screen.resets) == 2)
+    picture(session)
+    sought_s, clock_s = at_s(session), clock.monotonic_ns() / NS_PER_S
+    session.close()
+    assert clock_s > 10.0
+    assert sought_s == MAYDAY_S
+
+
+def test_played_on_it_goes_on_from_where_it_was_paused(
+    records: list[Record], tmp_path: Path, screen: Screen
+) -> None:
+    clock = ManualClock()
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    session = ReplaySession(archive(records, tmp_path), window, 1.0, screen, lambda _: None, clock)
+    session.pause()
+    picture(session)
+    clock.advance(30.0)
+    session.play()
+    picture(session)
+    resumed_s = at_s(session)
+    clock.advance(10.0)
+    until(lambda: at_s(session) >= 10.0)
+    played_s = at_s(session)
+    session.close()
+    assert resumed_s == 0.0
+    assert played_s == 10.0
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf"), 0.1])
