@@ -133,8 +133,8 @@ class UnitJournal:
         self._index_due_ns = 0
         self._pace = Pace()
         self._entry_bytes = _ENTRY_BYTES
-        self._told = 0  # replies to the question that is being answered
-        self._silent = False  # it did not answer: not before the next report again
+        self._told = 0  # replies that make sense, to the question that is being answered
+        self._silent = False  # it did not answer, or nonsense: not before the next report again
         self._acknowledging: tuple[_Boot, int] | None = None
         self.gone = 0  # numbers that no journal has any more
 
@@ -169,13 +169,14 @@ class UnitJournal:
 
         Raises WireError where it makes no sense, or is no answer to this question.
         """
-        self._told += 1
         if question.what in ("index", "acknowledge"):
-            self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 1)
+            self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 0)
+            self._told += 1
             return None
         chunk = JournalChunk.from_bytes(reply)
         if not _answers(question, chunk):
             raise WireError(f"boot {chunk.boot_id:x} from {chunk.from_seq} was not asked for")
+        self._told += 1
         boot = self._boots.setdefault(chunk.boot_id, _Boot())
         run, new = Run(chunk.from_seq, chunk.to_seq), boot.new(chunk.entries)
         if chunk.urgent_only:

@@ -201,7 +201,7 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
         assert question is None
         return
     assert question is not None
-    assert question == Question("acknowledge", (("epoch", BOOT), ("to", 100)))
+    assert question == Question("acknowledge", (("epoch", BOOT), ("to", 100)), urgent=False)
     index = JournalIndex((JournalBoot(BOOT, 1, 101, 100, 0),)).to_bytes()
     journal.take(question, index, 1)
     journal.end(question, 1)
@@ -325,6 +325,28 @@ def test_an_answer_to_another_question_is_not_believed() -> None:
     ):
         with pytest.raises(WireError):
             journal.take(question, chunk.to_bytes(), 1)
+
+
+@pytest.mark.parametrize("what", ["index", "urgent", "range"])
+def test_who_answers_nonsense_is_not_asked_before_the_next_report(what: str) -> None:
+    """Or the two would go on as fast as the link carries it."""
+    held = (Held(BOOT, (Run(1, 10), Run(21, 30))),)
+    journal = UnitJournal()
+    journal.report(held, 0)
+    if what != "index":
+        indexed(journal, JournalBoot(BOOT, 1, 30, 0, 0))
+    if what == "range":
+        question = journal.next_question() or Question("none")
+        answer(journal, question, JournalChunk(BOOT, 11, 20, (), urgent_only=True))
+        journal.report(held, 1)
+    question = journal.next_question() or Question("none")
+    assert question.what == what
+    with pytest.raises(WireError):
+        journal.take(question, b"\xff nonsense", 2)
+    journal.end(question, 1)
+    assert journal.next_question() is None
+    journal.report(held, 3)
+    assert journal.next_question() == question
 
 
 def test_of_any_number_of_runs_the_newest_are_asked_for() -> None:
