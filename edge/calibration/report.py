@@ -17,7 +17,11 @@ def print_report(calibration: Calibration, out: Path, console: Console) -> None:
     console.print(_table(calibration))
     for remark in (*_residuals(calibration), *_advice(calibration)):
         console.print(remark)
-    console.print(f"Written to {out}; use it with `muster edge run --calibration {out}`.")
+    console.print(
+        f"Written to {out}; use it with `muster edge run --calibration {out}`.",
+        markup=False,  # a path may have brackets in it
+        soft_wrap=True,  # and is to be copied whole
+    )
 
 
 def _table(calibration: Calibration) -> Table:
