@@ -75,7 +75,6 @@ class FixClock:
             self._late.popleft()
         if not self._late:
             self._origin_ns = arrival_ns - of_day_ns
-            self._doubted.clear()
         half_ns = _DAY_NS // 2
         return (arrival_ns - of_day_ns - self._origin_ns + half_ns) % _DAY_NS - half_ns
 

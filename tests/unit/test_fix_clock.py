@@ -55,6 +55,37 @@ def test_what_the_line_held_up_keeps_its_instants() -> None:
     assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(100), abs=1e-6)
 
 
+def test_a_line_that_is_slower_for_two_seconds_is_no_other_clock() -> None:
+    """However many fixes that are."""
+    utc_s = np.arange(1000.0, 1030.0, 0.1)
+    late_s = np.full(300, LATENCY_S)
+    late_s[100:120] += 1.0
+    assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(300), abs=1e-6)
+
+
+def test_a_line_that_stops_now_and_then_for_as_long_is_no_other_clock() -> None:
+    utc_s = np.arange(1000.0, 1060.0)
+    late_s = np.full(60, LATENCY_S)
+    late_s[10::5] += 1.0
+    assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(60), abs=1e-6)
+
+
+def test_a_line_that_gets_slower_and_slower_is_no_other_clock() -> None:
+    utc_s = np.arange(1000.0, 1060.0)
+    late_s = np.full(60, LATENCY_S)
+    late_s[20:28] += np.arange(1.0, 9.0)
+    assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(60), abs=1e-6)
+
+
+@pytest.mark.parametrize("apart_h", [-12, -6, 6, 12])
+def test_it_does_not_matter_how_far_the_two_clocks_are_apart(apart_h: int) -> None:
+    """Their difference is known to a day, and may be anything in it."""
+    utc_s = BEGAN / NS_PER_S + 3600.0 * apart_h + LATENCY_S + 0.02 + np.arange(0.0, 120.0)
+    errors = errors_s(utc_s, late_by(120))[20:]
+    assert errors.min() > -0.01
+    assert errors.max() < 0.05
+
+
 @pytest.mark.parametrize("jump_s", [-3600.0, -18.0, -2.0, -1.0, 1.0, 3.0, 18.0, 3600.0])
 def test_utc_that_jumps_is_believed_after_three_seconds(jump_s: float) -> None:
     """Leap seconds that were learnt late, or a receiver started anew."""
@@ -82,7 +113,7 @@ def test_an_instant_counts_once_and_none_is_by_its_arrival() -> None:
     clock = FixClock(LATENCY_S)
     assert clock.place(5 * NS_PER_S, BEGAN) == BEGAN - 100 * MS
     assert clock.place(5 * NS_PER_S, BEGAN + NS_PER_S) is None
-    assert clock.repeated == 1
+    assert (clock.repeated, clock.doubted) == (1, 0)
     assert clock.place(None, BEGAN + 2 * NS_PER_S) == BEGAN + 1900 * MS
 
 
