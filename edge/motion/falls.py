@@ -7,6 +7,8 @@ thresholds here are for a unit on the foot.
 
 from __future__ import annotations
 
+from math import isnan
+
 import numpy as np
 
 from edge.samples import ImuBatch
@@ -34,7 +36,7 @@ class FallDetector:
 
     def push(self, imu: ImuBatch) -> None:
         force_mps2 = np.linalg.norm(imu.accel_mps2, axis=1)
-        # Most batches hold nothing of interest; NaN compares false both times.
+        # Most batches hold nothing of interest; NaN is none of it.
         notable = (force_mps2 < _WEIGHTLESS_MPS2) | (force_mps2 > _BLOW_MPS2)
         if not notable.any() and self._weightless_since_ns is None:
             return
@@ -53,6 +55,8 @@ class FallDetector:
         return False
 
     def _step(self, t_ns: int, force_mps2: float) -> None:
+        if isnan(force_mps2):
+            return  # a sample that was missed does not end a drop
         if force_mps2 < _WEIGHTLESS_MPS2:
             if self._weightless_since_ns is None:
                 self._weightless_since_ns = t_ns

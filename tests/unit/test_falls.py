@@ -116,3 +116,11 @@ def test_samples_that_say_nothing_are_neither_drop_nor_blow(wearer: Wearer) -> N
     assert not wearer.falls.falling
     wearer.strikes()
     assert wearer.falls.falling, "the drop was no less one"
+
+
+def test_a_sample_that_was_missed_does_not_make_two_hops_of_a_drop(wearer: Wearer) -> None:
+    wearer.drops(duration_s=0.15)
+    wearer.feels(float("nan"), 0.02)
+    wearer.drops(duration_s=0.15)
+    wearer.strikes()
+    assert wearer.falls.falling
