@@ -138,6 +138,26 @@ def test_a_pin_that_is_moved_is_the_same_as_one_set_there(walk: Walk) -> None:
     assert walk.trail("FF-01") == other.trail("FF-01")
 
 
+def test_a_pin_that_turns_out_to_be_about_somebody_else_leaves_the_first_as_if_it_were_not() -> (
+    None
+):
+    walk = Walk("FF-01", "FF-02")
+    walk.go(100)
+    before_m = walk.now_off_m("FF-01")
+    walk.pin("p1", "FF-01", 100.0, off_m=30.0)
+    assert walk.now_off_m("FF-01") > 20.0
+    walk.pin("p1", "FF-02", 100.0, off_m=30.0)
+    assert walk.now_off_m("FF-02") > 20.0
+    assert walk.now_off_m("FF-01") == before_m
+
+
+def test_of_pins_whose_names_begin_alike_only_the_one_that_is_named_is_removed(walk: Walk) -> None:
+    walk.pin("p1", "FF-01", 100.0)
+    walk.pin("p10", "FF-01", 200.0)
+    walk.script.act(RemovePin("p1"))
+    assert list(walk.script.pipeline.state.pins) == ["p10"]
+
+
 def test_a_pin_that_contradicts_everything_is_kept_and_nobody_moves(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 100.0)
     before = walk.now_off_m("FF-01")

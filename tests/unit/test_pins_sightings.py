@@ -48,11 +48,20 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     assert walk.state(pin.pin_id) == "used"
     assert walk.now_off_m("FF-01") < 1.0 < before_m
     sighting(walk, SightingKind.TAG, "door-3")
+    sighting(walk, SightingKind.TAG, "door-3", captured_s=walk.script.now_s - 60.0)  # heard of late
     walk.script.act(PlaceBeacon("door-3", "front door", north_m, east_m, None, 0.2, 0.5))
     assert walk.script.pipeline.state.beacons["door-3"].seen_ns == walk.script.t_ns
     walk.script.act(RemoveBeacon("door-3"))
     assert walk.state(pin.pin_id) == "waiting"
     assert walk.now_off_m("FF-01") == before_m
+
+
+def test_a_radio_beacon_that_is_placed_later_counts_for_who_passed_it(walk: Walk) -> None:
+    sighting(walk, SightingKind.BEACON, "b1", 0.5)
+    (pin,) = walk.script.pipeline.state.pins
+    assert walk.state(pin) == "waiting"
+    walk.script.act(PlaceBeacon("b1", "door", *truth(walk.walked_s), None, 0.2, 3.0))
+    assert walk.state(pin) == "used"
 
 
 def test_a_beacon_that_was_passed_out_of_reach_counts_when_the_journal_tells_of_it(
@@ -85,8 +94,16 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     sighting(walk, SightingKind.UNIT, "FF-01")
     sighting(walk, SightingKind.UNKNOWN, "x")
     sighting(walk, SightingKind.BEACON, "far", 5000.0)
+    sighting(walk, SightingKind.BEACON, "", 1.0)
     assert walk.script.pipeline.state.pins == {}
-    assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 4
+    assert sum(walk.script.pipeline.state.units["FF-01"].not_used.values()) == 5
+
+
+def test_what_a_stranger_says_it_sees_is_not_believed(walk: Walk) -> None:
+    script = walk.script
+    for kind, seen_id in ((SightingKind.UNIT, "FF-01"), (SightingKind.BEACON, "b1")):
+        script.say(Sighting(script.header("stranger"), kind, seen_id, 1.0))
+    assert script.pipeline.state.pins == {}
 
 
 def test_two_who_see_each_other_have_met_once() -> None:

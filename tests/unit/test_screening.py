@@ -10,13 +10,16 @@ import pytest
 
 from base_station.bench.rig import said
 from base_station.fusion.fixes.screening import in_incident_frame, may_anchor, screen
+from base_station.fusion.learnt.building import LearntBuilding
+from base_station.fusion.learnt.legs import Axis
+from base_station.fusion.learnt.stairs import Stairs
 from base_station.fusion.port import FixVerdict, PlaceFix
 from shared.channels import GPS, backfilled_key
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix, Header
-from shared.messages.pins import SetPin
+from shared.messages.pins import PlaceBeacon, SetPin
 from shared.messages.station import OpenIncident, SetAnchor, SetPlan, SetStart
 from tests.station_script import Script
 
@@ -186,6 +189,32 @@ def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script)
     assert not_used(script)["too far from the site"] == 10
 
 
+def test_a_receiver_gone_wrong_does_not_move_the_site_of_those_that_are_right(
+    script: Script,
+) -> None:
+    script.register("FF-02")
+    for second in range(30):
+        script.now_s += 1.0
+        for unit_id, lat_deg in ((U, 52.0), ("FF-02", 55.0)):
+            script.position(unit_id, 0.0, 0.0)
+            script.gps(unit_id, lat_deg + second * 1e-7, 4.0)
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
+
+
+def test_fixes_too_poor_to_say_where_the_site_is_do_not_move_it(script: Script) -> None:
+    for second in range(30):
+        script.now_s += 1.0
+        script.position(U, 0.0, 0.0)
+        std_m = 3.0 if second == 0 else 50.0
+        lat_deg = 52.0 if second == 0 else 55.0
+        script.gps(U, lat_deg + second * 1e-7, 4.0, horizontal_std_m=std_m)
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
+
+
 def test_a_site_that_somebody_placed_stays_where_it_is(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     for _ in range(30):
@@ -221,6 +250,34 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     assert new.to_geodetic(moved.north_m, moved.east_m, 0.0)[:2] == pytest.approx(
         old.to_geodetic(step.north_m, step.east_m, 0.0)[:2], abs=2e-8
     )
+
+
+def test_what_was_learnt_of_the_building_stays_where_it_is_on_the_earth(script: Script) -> None:
+    """Its stairs, the way its walls go, its storeys; and a beacon that hangs in it."""
+    walk_a_minute(script)
+    state = script.pipeline.state
+    stairs = Stairs(30.0, 4.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
+    state.learnt_building = (
+        LearntBuilding().with_stairs(-1, U, stairs).with_axis(U, Axis(0.1, 1e-3))
+    )
+    script.act(PlaceBeacon("b", "door", 30.0, 4.0, None, 0.5, 3.0))
+    old, storeys = state.anchor, state.storeys_at(30.0, 4.0)
+    assert old is not None
+    assert storeys
+    script.act(SetAnchor(52.0003, 4.0004, 20.0, 0.3))
+    new = state.anchor
+    assert new is not None
+    north_m, east_m, lower_m = new.to_incident_m(*old.to_geodetic(30.0, 4.0, 0.0))
+    assert abs(lower_m) > 10.0
+    found, beacon = state.learnt_building.stairs[0].mean, state.beacons["b"]
+    assert (found.north_m, found.east_m) == pytest.approx((north_m, east_m), abs=0.05)
+    assert (beacon.north_m, beacon.east_m) == pytest.approx((north_m, east_m), abs=0.05)
+    assert state.learnt_building.axis is not None
+    assert state.learnt_building.axis.direction_rad == pytest.approx(0.1 - 0.3, abs=1e-3)
+    moved = state.storeys_at(north_m, east_m)
+    assert [one.floor for one in moved] == [one.floor for one in storeys]
+    expected_m = [one.down_m + lower_m for one in storeys]
+    assert [one.down_m for one in moved] == pytest.approx(expected_m, abs=0.05)
 
 
 def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: Script) -> None:

@@ -122,6 +122,22 @@ def test_a_reference_that_somebody_carries_about_tells_nothing() -> None:
     assert north_m(helped) == pytest.approx(north_m(alone), abs=0.01)
 
 
+@pytest.mark.parametrize(
+    "action",
+    [
+        SetAnchor(53.5, 10.0001, 0.0, 0.0),
+        SetStart("FF-09", 60.0, 0.0, 0.0, 0.0, 0.3, math.pi),
+    ],
+)
+def test_where_the_reference_was_said_to_stand_wrongly_what_it_told_is_forgotten(
+    action: SetAnchor | SetStart,
+) -> None:
+    site = a_site(station_has_a_receiver=True)
+    assert site.pipeline.state.sky != Sky()
+    site.act(action)
+    assert site.pipeline.state.sky == Sky()
+
+
 def test_a_past_that_is_solved_again_hears_the_reference_too_and_each_fix_once() -> None:
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
     for script in (alone, helped):
