@@ -70,10 +70,13 @@ def test_a_line_that_stops_now_and_then_for_as_long_is_no_other_clock() -> None:
     assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(60), abs=1e-6)
 
 
-def test_a_line_that_gets_slower_and_slower_is_no_other_clock() -> None:
+@pytest.mark.parametrize(
+    "more_s", [np.arange(1.0, 9.0), np.arange(8.0, 0.6, -0.6)], ids=["slower", "quicker"]
+)
+def test_a_line_that_gets_slower_or_quicker_is_no_other_clock(more_s: np.ndarray) -> None:
     utc_s = np.arange(1000.0, 1060.0)
     late_s = np.full(60, LATENCY_S)
-    late_s[20:28] += np.arange(1.0, 9.0)
+    late_s[20 : 20 + len(more_s)] += more_s
     assert errors_s(utc_s, late_s) == pytest.approx(np.zeros(60), abs=1e-6)
 
 

@@ -63,7 +63,7 @@ def test_the_heading_is_that_of_travel_clockwise_from_north(heading_deg: int) ->
 
 def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
     out = stream(rate_hz=RATE_HZ)
-    way = np.array([[0.0, 0, 0], [0, 0.6, 0], [0.45, 0.6, 0], [0.3, 0.5, 0], [-0.2, 0.6, 0]])
+    way = np.array([[0.0, 0, 0], [0, 0.55, 0], [0.45, 0.55, 0], [0.3, 0.5, 0], [-0.2, 0.6, 0]])
     said = [position.heading_rad for position in out.push(rows(way), LIVE)]
     assert said == [0.0, *[pytest.approx(math.pi / 2)] * 4]
     (turned,) = out.push(rows(np.array([[0.0, 1.3, 0.0]]), from_s=1.0), LIVE)
@@ -74,7 +74,7 @@ def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
 
 def test_storeys_are_counted_up_and_down_and_a_landing_counts_once() -> None:
     out = stream(rate_hz=RATE_HZ)
-    heights_m = [0.0, 1.9, 2.1, 3.0, 1.1, 0.9, -1.9, -2.1, -6.0]
+    heights_m = [0.0, 1.95, 2.05, 3.0, 1.05, 0.95, -1.95, -2.05, -6.0]
     counted = []
     for number, height_m in enumerate(heights_m):
         out.push(rows(np.array([[0.0, 0.0, -height_m]]), from_s=float(number)), LIVE)
