@@ -208,6 +208,23 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
     assert journal.next_question() is None
 
 
+def test_a_run_of_a_single_message_is_acknowledged_too() -> None:
+    journal = journal_of(Run(1, 1), last=1)
+    for number in range(1, 3):
+        journal.report((Held(BOOT, (Run(1, 1),)),), number)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 1})
+
+
+def test_the_first_message_of_a_run_may_be_under_way_like_any_other() -> None:
+    held = (Held(BOOT, (Run(2, 2),)),)
+    journal = journal_of(Run(2, 2), last=2)
+    question = journal.next_question() or Question("none")
+    answer(journal, question, JournalChunk(BOOT, 1, 1, (), urgent_only=True))
+    assert journal.next_question() is None
+    journal.report(held, 1)
+    assert next_of(journal)[0] == "range"
+
+
 def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() -> None:
     """Or it would give up what nobody has, for what the station has had for long."""
     journal = UnitJournal()
