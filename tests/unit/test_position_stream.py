@@ -74,6 +74,7 @@ def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
 
 def test_storeys_are_counted_up_and_down_and_a_landing_counts_once() -> None:
     out = stream(rate_hz=RATE_HZ)
+    assert out.floors_climbed == 0
     heights_m = [0.0, 1.95, 2.05, 3.0, 1.05, 0.95, -1.95, -2.05, -6.0]
     counted = []
     for number, height_m in enumerate(heights_m):
@@ -105,6 +106,8 @@ def test_doubts_are_the_same_however_rows_are_batched(at_once: int) -> None:
             for name in TrackBatch.__dataclass_fields__
         }
         said += out.push(replace(whole, **part), LIVE)
+    good, degraded = Quality.GOOD, Quality.DEGRADED
+    assert [one.quality for one in said] == [good, degraded, good, degraded, good]
     assert [one.reasons for one in said] == [
         Reason.NONE,
         Reason.SAMPLE_GAP,
