@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.packed import CHUNK, MOST_CHUNKS
 from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART
 from base_station.fusion.path.straight import OFF_M
@@ -222,17 +223,49 @@ def test_a_moved_frame_moves_what_is_of_the_frame_only(at: Callable[..., Positio
     after = history.arrays()
     assert np.array_equal(after.own_m, before.own_m)
     assert after.fix_m[0].tolist() == pytest.approx([1.0, 12.0], abs=1e-3)
-    assert after.down_m[0] == pytest.approx(before.down_m[0] + 3.0)
-    assert history.start is not None
-    assert (history.start.north_m, history.start.east_m) == pytest.approx((1.0, 12.0))
+    assert after.down_m == pytest.approx(before.down_m + 3.0), "packed or not"
+    start = history.start
+    assert start is not None
+    assert (start.north_m, start.east_m, start.down_m) == pytest.approx((1.0, 12.0, 4.0))
+    assert start.heading_rad == pytest.approx(math.pi / 2.0)
+
+
+def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when(
+    at: Callable[..., Position],
+) -> None:
+    history, place = PathHistory(), Moved()
+    moves = {400: Moved(0.5, 10.0, -4.0, 3.0), 800: Moved(-0.2, 1.0, 2.0, -5.0)}
+    for second in range(1200):
+        if second in moves:
+            history.reframe(*msgspec.structs.astuple(moves[second]))
+            place = place.and_then(moves[second])
+        history.note(at(float(second), float(second)), second * NS_PER_S, jumped=False)
+        north_m, east_m = place.place(float(second), 5.0)
+        stds_m = 1.0, 1.0, 1.0
+        shown = Estimate(
+            0, north_m, east_m, place.down_m, *stds_m, 0.0, 0.0, 0.1, Quality.GOOD, "", None
+        )
+        history.show(shown, None)
+    assert len(history.packed.chunks) > 4
+    arrays = history.arrays()
+    north_m, east_m = moves[800].place(*moves[400].place(1000.0, 5.0))
+    row = int(np.searchsorted(arrays.t_ns, 1000 * NS_PER_S))
+    assert arrays.shown_m[row].tolist() == pytest.approx([north_m, east_m], abs=0.05)
+    expected_m = [place.place(own_north_m, 5.0) for own_north_m in arrays.own_m[:, 0].tolist()]
+    assert arrays.shown_m == pytest.approx(np.array(expected_m), abs=0.05)
+    assert arrays.down_m == pytest.approx(-2.0, abs=0.02)
 
 
 def test_trimmed_it_begins_later(at: Callable[..., Position]) -> None:
     history = walked(at, 400)
+    for second in range(0, 400, 2):
+        history.fix(PlaceFix(0, 10.0, 0.0, 0.0, 3.0, None), second * NS_PER_S)
     history.trim(200 * NS_PER_S)
     assert history.begin_ns == pytest.approx(200 * NS_PER_S, abs=2 * NS_PER_S)
+    assert history.arrays().fix_t_ns.min() >= 200 * NS_PER_S
     history.trim(10**18)
     assert history.begin_ns is None
+    assert len(history.arrays().fix_t_ns) == 0
     assert len(history.arrays()) == 0
 
 

@@ -6,11 +6,13 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 
 from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
+from base_station.positioning.inside import is_outside
 from base_station.site.way_out import SECTORS
 from base_station.views import StationFacts, snapshot
 from edge.simulation.building import plan_path
@@ -99,6 +101,17 @@ def test_the_weather_is_told_by_who_is_outside_and_not_by_doors_and_fans(
     weather = script.pipeline.state.barometers.weather
     assert weather.is_known(script.t_ns) is feels_it
     assert weather.rise_m == pytest.approx(-5.0 if feels_it else 0.0, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("since_gps_s", "outside"), [(None, False), (0.5, True), (4.5, True), (5.5, False)]
+)
+def test_without_a_plan_who_had_a_fix_just_now_is_outside(
+    script: Script, since_gps_s: float | None, outside: bool
+) -> None:
+    script.position(U, 0.0, 0.0)
+    fused = msgspec.structs.replace(script.fused[-1], since_gps_s=since_gps_s)
+    assert is_outside(None, fused, (0.0, 0.0)) is outside
 
 
 def test_who_is_not_heard_is_within_walls(script: Script) -> None:
