@@ -1,7 +1,7 @@
 """Makes pins of what units say they saw: beacons, tags and each other.
 
-Somebody who stays near a beacon sees it again and again; that is one pin, at the time at which it
-was nearest.
+Somebody who stays near a beacon sees it again and again; that is one pin in ``AGAIN_NS``, at the
+time at which it was nearest.
 """
 
 from __future__ import annotations

@@ -69,6 +69,8 @@ def demo(
             _Demo(children, folder, stations, crew, headless).run(stop, for_s)
         except ToldToEndError:
             typer.echo("Ended before it had begun.")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)  # all has ended; one press more is no failure
 
 
 class _Demo:

@@ -43,6 +43,8 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
             said += map(encode, messages)
             for one in messages:
                 station.say(one)
+        live = set(said[: STARTS * MESSAGES])
+        until(lambda: live <= {one for _, _, one in station.log.records()}, "what came live")
         server = JournalServer(U, spool)
         station.router.attach_unit().serve(server.key_expression, server.replies)
         backfill = Backfill(station.bus, station.feed.deliver, SystemClock())
