@@ -7,10 +7,11 @@ time at which it was nearest.
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 from base_station.boot_state import captured_ns
 from base_station.live_state import StationState, UnitState
-from base_station.pins.book import MOST_PINS, put, units_of
+from base_station.pins.book import MOST_PINS, drop, put, units_of
 from base_station.pins.pin import Pin, PinKind
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
@@ -50,14 +51,14 @@ def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> s
         by=unit.unit_id,
         other_id=sighting.seen_id,
     )
-    earlier = _same_visit(state, pin)
-    if earlier is not None and pin.std_m > NEARER * earlier.std_m:
+    replaced = _same_visit(state, pin)
+    if replaced is not None and pin.std_m > NEARER * replaced.std_m:
         return set()
-    if earlier is not None:
-        del state.pins[earlier.pin_id]
-        state.pin_verdicts.pop(earlier.pin_id, None)
+    if replaced is None and len(state.pins) >= MOST_SIGHTINGS:
+        replaced = _least_missed(state)
+    changed = drop(state, lambda one: one is replaced)
     put(state, pin)
-    return units_of(pin)
+    return changed | units_of(pin)
 
 
 def _reason_against(
@@ -73,7 +74,10 @@ def _reason_against(
         (range_m > FURTHEST_M, "a sighting from too far away"),
         (meets and (other is None or not other.registered), "a meeting with an unknown unit"),
         (other is unit, "a meeting with itself"),
-        (len(state.pins) >= MOST_SIGHTINGS, "more sightings than are kept"),
+        (
+            len(state.pins) >= MOST_SIGHTINGS and not _seen(state),
+            "no room for sightings beside what people pinned",
+        ),
     )
     return next((why for holds, why in causes if holds), "")
 
@@ -99,3 +103,19 @@ def _same_visit(state: StationState, pin: Pin) -> Pin | None:
         if same and earlier.kind == pin.kind and abs(earlier.t_ns - pin.t_ns) < AGAIN_NS:
             return earlier
     return None
+
+
+def _least_missed(state: StationState) -> Pin:
+    """The earliest of the longest stay of whoever saw most.  So a passing once is kept, and a unit
+    that sees without end takes the room of no other.
+    """
+    seen = _seen(state)
+    ((busiest, _),) = Counter(pin.unit_id for pin in seen).most_common(1)
+    seen = [pin for pin in seen if pin.unit_id == busiest]
+    ((longest, _),) = Counter(pin.other_id for pin in seen).most_common(1)
+    return min((pin for pin in seen if pin.other_id == longest), key=lambda pin: pin.t_ns)
+
+
+def _seen(state: StationState) -> list[Pin]:
+    """The pins that units made, not people."""
+    return [pin for pin in state.pins.values() if pin.by == pin.unit_id]

@@ -10,6 +10,7 @@ import pytest
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
 from shared.channels import SIGHTING, backfilled_key
+from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.messages import Sighting, SightingKind
 from shared.messages.pins import (
@@ -175,8 +176,39 @@ def test_what_units_see_leaves_room_for_what_people_say(
     assert len(walk.script.pipeline.state.pins) == 3
     walk.pin("p1", "FF-01", 250.0)
     assert walk.state("p1") == "used"
+    assert seen_ids(walk) == ["door-2", "door-3", "door-4"]
+
+
+def test_people_s_pins_are_not_given_up_for_what_units_see(
+    walk: Walk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("base_station.pins.sightings.MOST_SIGHTINGS", 2)
+    for pin_id in ("p1", "p2"):
+        walk.pin(pin_id, "FF-01", 250.0)
+    sighting(walk, SightingKind.TAG, "door-3")
+    assert list(walk.script.pipeline.state.pins) == ["p1", "p2"]
     counts = walk.script.pipeline.state.units["FF-01"].not_used
-    assert counts == {"more sightings than are kept": 2}
+    assert counts == {"no room for sightings beside what people pinned": 1}
+
+
+def test_a_long_stay_gives_up_its_beginning_and_a_passing_stays(
+    walk: Walk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Somebody who works beside a beacon for hours crowds nobody out, nor what is seen later."""
+    monkeypatch.setattr("base_station.pins.sightings.MOST_SIGHTINGS", 4)
+    state = walk.script.pipeline.state
+    sighting(walk, SightingKind.TAG, "door-1", captured_s=walk.script.now_s - 250.0)
+    for ago_s in (200.0, 150.0, 100.0, 50.0, 0.0):
+        sighting(walk, SightingKind.BEACON, "pump", captured_s=walk.script.now_s - ago_s)
+    sighting(walk, SightingKind.TAG, "door-2")
+    kept = sorted((pin.t_ns - state.t_ns) / NS_PER_S for pin in state.pins.values())
+    assert kept == [-250.0, -50.0, 0.0, 0.0]
+    assert sorted(seen_ids(walk)) == ["door-1", "door-2", "pump", "pump"]
+
+
+def seen_ids(walk: Walk) -> list[str]:
+    """In the order in which they came, without what people pinned."""
+    return [pin.other_id for pin in walk.script.pipeline.state.pins.values() if pin.other_id]
 
 
 def test_whom_somebody_met_often_is_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
