@@ -6,12 +6,18 @@ position's reasons.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
 
 _LASTING_NS = NS_PER_S
+_TURNS_RADPS = 0.5  # what the gyroscope changes by in a swing, and more
+_SHAKES_MPS2 = 2.0  # the same of the accelerometer
+_MOVED_NS = NS_PER_S // 5  # a swing or two
+_LONGEST_STEP_NS = NS_PER_S // 10  # a hole says nothing of what moved in it
 
 
 class SensorHealth:
@@ -21,6 +27,12 @@ class SensorHealth:
         self._last_t_ns: int | None = None
         self._unusable = _Run("no usable inertial sample for 1 s")
         self._stuck = _Run("the inertial sensor has repeated one value for 1 s")
+        self._accel_hangs = _Hang(
+            "the accelerometer has repeated a value while the unit turned", _TURNS_RADPS
+        )
+        self._gyro_hangs = _Hang(
+            "the gyroscope has repeated a value while the unit moved", _SHAKES_MPS2
+        )
         self._last_row: tuple[float, ...] | None = None
 
     def push(self, imu: ImuBatch) -> list[str]:
@@ -33,6 +45,9 @@ class SensorHealth:
             faults += self._unusable.step(t_ns, holds=not usable)
             values = tuple(row)
             faults += self._stuck.step(t_ns, holds=usable and values == self._last_row)
+            accel, gyro = values[:3], values[3:]
+            faults += self._accel_hangs.step(t_ns, accel, gyro)
+            faults += self._gyro_hangs.step(t_ns, gyro, accel)
             self._last_row = values
             self._last_t_ns = t_ns
         return faults
@@ -66,3 +81,53 @@ class _Run:
             return []
         self._told = True
         return [self._text]
+
+
+class _Hang:
+    """An axis of one of the two sensors repeats itself while the other sensor tells of motion.
+
+    A coarse sensor that lies still repeats itself, too, and is well, and an axis that never showed
+    anything but zero was made so.
+    """
+
+    def __init__(self, text: str, motion: float) -> None:
+        """``motion``: what the other sensor changes by while the unit moves, in its unit."""
+        self._text = text
+        self._motion = motion
+        self._axes = [_Axis(), _Axis(), _Axis()]
+        self._last_t_ns = 0
+        self._told = False
+
+    def step(self, t_ns: int, own: tuple[float, ...], other: tuple[float, ...]) -> list[str]:
+        step_ns = min(max(t_ns - self._last_t_ns, 0), _LONGEST_STEP_NS)
+        self._last_t_ns = t_ns
+        for axis, value in zip(self._axes, own, strict=True):
+            if value != axis.value or not axis.has_felt:
+                axis.begin(value, other)
+                continue
+            axis.lasts_ns += step_ns
+            if math.dist(other, axis.other_before) > self._motion:
+                axis.moved_ns += step_ns
+        hangs = any(axis.hangs for axis in self._axes)
+        news = [self._text] if hangs and not self._told else []
+        self._told = hangs
+        return news
+
+
+class _Axis:
+    """One that has shown the same value since it began."""
+
+    value = math.nan
+    other_before: tuple[float, ...] = ()
+    has_felt = False
+    lasts_ns = 0
+    moved_ns = 0  # of these, how long the other sensor was far from where it began
+
+    def begin(self, value: float, other: tuple[float, ...]) -> None:
+        self.value, self.other_before = value, other
+        self.has_felt = self.has_felt or value != 0.0
+        self.lasts_ns = self.moved_ns = 0
+
+    @property
+    def hangs(self) -> bool:
+        return self.lasts_ns >= _LASTING_NS and self.moved_ns >= _MOVED_NS

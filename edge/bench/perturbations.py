@@ -21,6 +21,7 @@ BIAS_RADPS = np.radians(0.5)
 ACCEL_SCALE = 0.03
 CLIPPED_AT = 0.7  # of the recording's largest reading
 LOST = 0.01
+SPIKES = 0.001  # of the samples
 LEAST_FULL_SCALE_MPS2 = 2.0 * 9.81  # of accelerometers that are made
 HOLE_AT_S = 10.0
 HOLE_S = 0.15
@@ -140,6 +141,29 @@ def hole(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) 
     return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
 
 
+def gyro_spikes(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+    """Some samples have any rate of the recording's range on one axis."""
+    gyro_radps = imu.gyro_radps.copy()
+    rows = np.flatnonzero(rng.random(len(imu)) < SPIKES)
+    highest_radps = np.abs(gyro_radps).max()
+    rates_radps = rng.uniform(-highest_radps, highest_radps, len(rows))
+    gyro_radps[rows, rng.integers(3, size=len(rows))] = rates_radps
+    return description, _with(imu, imu.accel_mps2, gyro_radps)
+
+
+def hangs(columns: slice, lasts_s: float) -> Change:
+    """Repeat one reading of the accelerometer's (0 to 2) or gyroscope's axes (3 to 5)."""
+
+    def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+        since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+        rows = np.flatnonzero((since_s >= HOLE_AT_S) & (since_s < HOLE_AT_S + lasts_s))
+        readings = np.hstack((imu.accel_mps2, imu.gyro_radps))
+        readings[rows, columns] = readings[rows[:1], columns]
+        return description, _with(imu, readings[:, :3], readings[:, 3:])
+
+    return change
+
+
 def late_stamps(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
     late_ns = JITTER * 1e9 / description.rate_hz * rng.random(len(imu))
     t_ns = np.maximum.accumulate(imu.t_ns + late_ns.astype(np.int64))
@@ -184,6 +208,10 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("accelerometer of 2 g, untold", accel_of_2_g_untold),
     Perturbation("1 % of samples lost", samples_lost),
     Perturbation("0.15 s lost at once", hole),
+    Perturbation("0.1 % of rates are spikes", gyro_spikes),
+    Perturbation("accelerometer hangs for 0.3 s", hangs(slice(0, 3), 0.3)),
+    Perturbation("gyroscope hangs for 0.3 s", hangs(slice(3, 6), 0.3)),
+    Perturbation("an axis of it hangs for 2 s", hangs(slice(4, 5), 2.0)),
     Perturbation("stamps late by half a sample", late_stamps),
     Perturbation("100 Hz, filtered", slower(100.0, filtered=True)),
     Perturbation("66 Hz, filtered", slower(66.0, filtered=True)),

@@ -7,6 +7,7 @@ hole.  Times are put right in ``regular_time``.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,14 +24,19 @@ from edge.tracker.plateaus import (
     seek_full_scale,
 )
 from edge.tracker.port import Reason
-from edge.tracker.state import Ring
+from edge.tracker.state import Ring, span
 from shared.errors import ConfigError
 
 BAD_SAMPLES = int(Reason.BAD_SAMPLES)
 SAMPLE_GAP = int(Reason.SAMPLE_GAP)
 
 NEW_CLOCK_SAMPLES = 25  # so many stamps in a row before the last one: the clock was set back
-STUCK_SAMPLES = 8  # so many equal samples in a row that are not rest: the sensor hangs
+STUCK_SAMPLES = 8  # so many equal readings in a row that are not rest: the sensor hangs
+STUCK_S = 0.05  # as long at least: one of the two may be slower than the other
+CLIPPED_S = 0.4  # longer than any swing clips
+SWINGS_RAD2PS2 = 1.0  # square of a rate; a foot that turns so feels something on every axis
+SWINGS_M2PS4 = (64.0, 144.0)  # squares of forces; so does one that feels less or more
+GIVE_UP_S = 0.35  # of bad samples: no hole as long is bridged, and no good one is waited for
 PERIOD_WEIGHT = 0.005  # of one interval in the mean period
 
 _NO_VALUES: Floats = np.zeros(0)
@@ -43,8 +49,12 @@ GATE = np.dtype(
         ("period_s", np.float64),  # mean time between samples
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
+        ("bad_run", np.int64),  # bad samples in a row
         ("backward", np.int64),  # stamps before the last one, in a row
-        ("repeats", np.int64),  # equal samples in a row
+        ("accel_repeats", np.int64, 3),  # equal readings in a row, by axis
+        ("gyro_repeats", np.int64, 3),
+        ("turned", np.bool_),  # the gyroscope has shown a rate
+        ("hangs", np.bool_),  # a sensor or an axis, for as long as it repeats itself
         ("accel_scale", FULL_SCALE),
         ("gyro_scale", FULL_SCALE),
         ("started", np.bool_),
@@ -86,23 +96,38 @@ def new_gate(description: SensorDescription, saturation_ratio: float) -> NDArray
     return gate
 
 
-def admit_batch(
-    ring: Ring, received: int, gate: NDArray[Any], limits: Limits, gap_s: float, batch: ImuBatch
-) -> None:
-    """Append a batch to the ring that has taken ``received`` samples before."""
-    admit(
-        ring,
-        received,
-        gate,
-        limits,
-        gap_s,
-        _plain(batch.t_ns, np.int64),
-        _plain(batch.accel_mps2, np.float64),
-        _plain(batch.gyro_radps, np.float64),
-        _optional(batch.mag_ut, _NO_VECTORS),
-        _optional(batch.pressure_pa, _NO_VALUES),
-        _optional(batch.imu_temperature_degc, _NO_VALUES),
-    )
+def admit_parts(
+    ring: Ring,
+    progress: NDArray[Any],
+    gate: NDArray[Any],
+    limits: Limits,
+    gap_s: float,
+    batch: ImuBatch,
+) -> Iterator[bool]:
+    """Append a batch to the ring, of which ``progress`` counts the samples ``received``.
+
+    Gives, after each part that the ring has room for, whether no good sample has come for so long
+    that none is to be waited for.  That depends on the samples alone, not on how they come.
+    """
+    first = 0
+    while first < len(batch):
+        part = batch.part(slice(first, first + span(ring)))
+        taken = admit(
+            ring,
+            int(progress["received"][0]),
+            gate,
+            limits,
+            gap_s,
+            _plain(part.t_ns, np.int64),
+            _plain(part.accel_mps2, np.float64),
+            _plain(part.gyro_radps, np.float64),
+            _optional(part.mag_ut, _NO_VECTORS),
+            _optional(part.pressure_pa, _NO_VALUES),
+            _optional(part.imu_temperature_degc, _NO_VALUES),
+        )
+        first += taken
+        progress["received"] += taken
+        yield bool(_gives_up(gate))
 
 
 def _optional(values: Floats | None, absent: Floats) -> Floats:
@@ -130,10 +155,11 @@ def admit(
     mag_ut: Floats,
     pressure_pa: Floats,
     temperature_degc: Floats,
-) -> None:
+) -> int:
     """Append samples (n,), (n, 3), (n, 3) to the ring of ``received`` with flags and times.
 
-    Of the other sensors (n, 3), (n,), (n,) the column is empty where there is none.
+    Of the other sensors (n, 3), (n,), (n,) the column is empty where there is none.  Returns how
+    many were taken: no more than up to where it gives up waiting for a good one.
     """
     mask = len(ring) - 1
     for i in range(len(t_ns)):
@@ -155,6 +181,18 @@ def admit(
             sample.mag_ut[j] = mag_ut[i, j] if len(mag_ut) else np.nan
         sample.pressure_pa = pressure_pa[i] if len(pressure_pa) else np.nan
         sample.temperature_degc = temperature_degc[i] if len(temperature_degc) else np.nan
+        gate[0].bad_run = gate[0].bad_run + 1 if flags & BAD_SAMPLES else 0
+        if _gives_up(gate):
+            return i + 1
+    return len(t_ns)
+
+
+@njit()
+def _gives_up(gate: NDArray[Any]) -> bool:
+    if gate[0].bad_run == 0:
+        return False
+    every = max(1, int(GIVE_UP_S / gate[0].period_s))
+    return bool(gate[0].bad_run % every == 0)
 
 
 @njit()
@@ -183,22 +221,59 @@ def _write_good(sample: Any, gate: Any, flags: int) -> None:
 
 @njit()
 def _reading_flags(gate: NDArray[Any], limits: Limits, accel: Floats, gyro: Floats) -> int:
-    flags = 0
-    same = gate[0].started
+    for j in range(3):
+        if not (
+            abs(accel[j]) <= limits.accel_absurd_mps2 and abs(gyro[j]) <= limits.gyro_absurd_radps
+        ):
+            return BAD_SAMPLES  # also when not finite
+    return BAD_SAMPLES if _hangs(gate[0], accel, gyro) else 0
+
+
+@njit()
+def _hangs(gate: Any, accel: Floats, gyro: Floats) -> bool:
+    """Whether a sensor repeats itself though it does not rest, or one axis does in a swing.
+
+    What may have clipped is left to ``plateaus``.  An axis of exactly zero was made so, and a
+    gyroscope that never showed anything else.
+    """
     accel_square = 0.0
     rate_square = 0.0
+    axis_repeats = 0
     for j in range(3):
         a, w = accel[j], gyro[j]
-        if not (abs(a) <= limits.accel_absurd_mps2 and abs(w) <= limits.gyro_absurd_radps):
-            return BAD_SAMPLES  # also when not finite
-        same = same and a == gate[0].accel_mps2[j] and w == gate[0].gyro_radps[j]
+        same = gate.started and a == gate.accel_mps2[j]
+        gate.accel_repeats[j] = gate.accel_repeats[j] + 1 if same else 0
+        same = gate.started and w == gate.gyro_radps[j]
+        gate.gyro_repeats[j] = gate.gyro_repeats[j] + 1 if same else 0
+        below = abs(a) < gate.accel_scale.floor[j]
+        if a != 0.0 and (below or gate.accel_repeats[j] * gate.period_s > CLIPPED_S):
+            axis_repeats = max(axis_repeats, gate.accel_repeats[j])
+        below = abs(w) < gate.gyro_scale.floor[j]
+        if w != 0.0 and (below or gate.gyro_repeats[j] * gate.period_s > CLIPPED_S):
+            axis_repeats = max(axis_repeats, gate.gyro_repeats[j])
         accel_square += a * a
         rate_square += w * w
-    gate[0].repeats = gate[0].repeats + 1 if same else 0
+    gate.turned = gate.turned or rate_square > 0.0
+    sensor_repeats = _least(gate.accel_repeats)
+    if gate.turned:
+        sensor_repeats = max(sensor_repeats, _least(gate.gyro_repeats))
     resting = 81.0 < accel_square < 115.0 and rate_square < 0.04
-    if gate[0].repeats >= STUCK_SAMPLES and not resting:
-        return BAD_SAMPLES
-    return flags
+    swings = rate_square > SWINGS_RAD2PS2
+    swings = swings or not SWINGS_M2PS4[0] < accel_square < SWINGS_M2PS4[1]
+    gate.hangs = (_lasts(gate, sensor_repeats) and (gate.hangs or not resting)) or (
+        _lasts(gate, axis_repeats) and (gate.hangs or swings)
+    )
+    return bool(gate.hangs)
+
+
+@njit()
+def _least(repeats: NDArray[np.int64]) -> int:
+    return int(min(repeats[0], repeats[1], repeats[2]))
+
+
+@njit()
+def _lasts(gate: Any, repeats: int) -> bool:
+    return bool(repeats >= STUCK_SAMPLES and repeats * gate.period_s >= STUCK_S)
 
 
 @njit()
@@ -215,7 +290,7 @@ def _time_flags(gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
             return BAD_SAMPLES
         flags = SAMPLE_GAP  # of unknown length
         step_s = NEW_CLOCK_SAMPLES * gate[0].period_s
-    elif step_s == 0.0 and gate[0].repeats > 0:
+    elif step_s == 0.0 and min(_least(gate[0].accel_repeats), _least(gate[0].gyro_repeats)) > 0:
         return BAD_SAMPLES  # the same sample twice
     gate[0].backward = 0
     gate[0].last_ns = t_ns

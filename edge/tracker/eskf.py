@@ -1,7 +1,7 @@
 """The default tracker: error-state filter, stride-adaptive stance, fixed-lag smoothing.
 
 Samples pass through stages, each a few samples to half a second behind the one
-before: admitted, put in time, measured for stillness, filtered, smoothed and
+before: admitted, cleaned of spikes, put in time, measured for stillness, filtered, smoothed and
 released.  Every stage looks at sample numbers and sample times only, so the rows
 do not depend on how the samples were batched.
 """
@@ -16,12 +16,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_time
+from edge.tracker.conditioning import admit_parts, limits_of, new_gate, regular_time
 from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.filter import filter_sample
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
+from edge.tracker.spikes import AROUND, leave_out_spike
 from edge.tracker.state import (
     RING,
     STEP,
@@ -31,6 +32,7 @@ from edge.tracker.state import (
     new_filter_state,
     new_progress,
     reach,
+    span,
 )
 from edge.tracker.zero_velocity import measure_motion, stride_minimum
 from shared.earth_field import EarthField
@@ -50,12 +52,11 @@ class EskfTracker:
         rate_hz = max(description.rate_hz, MIN_RING_HZ)
         slots = 1 << int(np.ceil(np.log2(RING_S * rate_hz)))
         self._ring = np.zeros(slots, RING)
-        self._trail = np.zeros(slots // 4, STEP)
         self._progress = new_progress()
         self._limits = limits_of(description)
         self._progress["rest_norm_mps2"] = self.config.gravity_mps2
         self._state = new_filter_state()
-        self._block = slots // 4
+        self._trail = np.zeros(span(self._ring), STEP)
         self._parameters = config_record(self.config)
         self._state["gains"]["std"] = gain_std(description, self.config)
         self._state["unshown_bias_std_radps"] = unshown_bias_std_radps(description, self.config)
@@ -65,12 +66,10 @@ class EskfTracker:
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
         released = []
-        for first in range(0, len(batch), self._block):
-            part = batch.part(slice(first, first + self._block))
-            received = int(self._progress["received"][0])
-            admit_batch(self._ring, received, self._gate, self._limits, self.config.gap_s, part)
-            self._progress["received"] += len(part)
-            rows = self._work(final=False)
+        for gives_up in admit_parts(
+            self._ring, self._progress, self._gate, self._limits, self.config.gap_s, batch
+        ):
+            rows = self._work(final=gives_up)
             if len(rows):
                 released.append(rows)
         return join_rows(released)
@@ -126,12 +125,17 @@ def work(
 ) -> int:
     """Take every sample as far as it can go; return one past the last released row."""
     memory, config = progress[0], parameters[0]
-    while memory.timed < memory.received:
+    while memory.cleaned < memory.received - AROUND:
+        leave_out_spike(ring, memory.cleaned)
+        memory.cleaned += 1
+    if final:
+        memory.cleaned = memory.received
+    while memory.timed < memory.cleaned:
         k = memory.timed
-        if not final and not _has_arrived(ring, memory.received, k, config):
+        if not final and not _has_arrived(ring, memory.cleaned, k, config):
             break
         slot = k & (len(ring) - 1)
-        stop = min(memory.received, reach(ring, k))
+        stop = min(memory.cleaned, reach(ring, k))
         ring[slot].t_s = regular_time(ring, k, stop, config.late_delivery_s)
         memory.timed = k + 1
     while memory.measured < memory.timed:

@@ -23,7 +23,7 @@ from edge.tracker.error_model import (
 from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
-from edge.tracker.gaps import doubt_hole, stand_over
+from edge.tracker.gaps import doubt_hole, open_hole_s, stand_over
 from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
@@ -54,6 +54,7 @@ def filter_sample(
     if ring[slot].flags & ACCEL_SATURATED:
         bridge_force(ring, k, min(progress.measured, reach(ring, k)), config)
     good = ring[slot].flags & BAD_SAMPLES == 0
+    open_s = open_hole_s(ring, progress, slot, good, config)
     if k == 0:
         _start(ring, progress, state, config)
     else:
@@ -82,8 +83,8 @@ def filter_sample(
         state.faulty_stride = True
     _count_steps(progress, state, still, ring[slot].t_s)
     _write_row(ring, progress, state, slot, still)
-    state_position(ring, step, state, slot, config)
-    judge(ring, progress, state, slot, config)
+    state_position(ring, step, state, slot, open_s, config)
+    judge(ring, progress, state, slot, open_s, config)
 
 
 @njit()

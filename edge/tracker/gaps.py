@@ -18,7 +18,7 @@ from edge.samples import Floats
 from edge.tracker.alignment import level
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, POSITION, SIZE, VELOCITY
-from edge.tracker.state import FilterState, Progress, Ring, reach
+from edge.tracker.state import FilterState, Progress, Ring, reach, span
 from edge.tracker.strapdown import rotation_matrix
 
 
@@ -63,7 +63,7 @@ def _around(
     now_s = ring[k & mask].t_s
     most = min(progress.measured, reach(ring, k))
     first = k
-    while first > 0 and k - first < mask // 4:
+    while first > 0 and k - first < span(ring):
         if now_s - ring[(first - 1) & mask].t_s > before_s:
             break
         first -= 1
@@ -102,6 +102,19 @@ def stand_over(
         _forget(state, ATTITUDE + i, tilt_std_rad**2)
     heading = ATTITUDE + 2
     state.covariance[heading, heading] += turn_std_rad**2
+
+
+@njit()
+def open_hole_s(ring: Ring, progress: Progress, slot: int, good: bool, config: EskfConfig) -> float:
+    """Return for how long no good sample has come, zero while that may still be bridged.
+
+    The filter's time stands still until the next good one, which then spans the hole; the row of
+    a bad sample has to say by itself how far the foot may have gone meanwhile.
+    """
+    if good or progress.filtered == 0:  # before the first sample nobody went anywhere
+        progress.good_ns = ring[slot].t_ns
+    open_s = 1e-9 * (ring[slot].t_ns - progress.good_ns)
+    return float(open_s) if open_s > config.gap_bridged_s else 0.0
 
 
 @njit()

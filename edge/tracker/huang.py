@@ -15,14 +15,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.conditioning import admit_batch, limits_of, new_gate, regular_time
+from edge.tracker.conditioning import admit_parts, limits_of, new_gate, regular_time
 from edge.tracker.huang_stance import follow_pitch_axis, is_stance, pitch_rate
 from edge.tracker.huang_state import HUANG, HuangConfig, HuangState
 from edge.tracker.huang_swing import keep_row, mark_reset, settle_swing, step, turn_to_true_north
 from edge.tracker.port import Quality, Reason, TrackBatch
 from edge.tracker.quasi_static import static_orientation
 from edge.tracker.rows import join_rows, rows_of
-from edge.tracker.state import RING, Ring, reach
+from edge.tracker.state import RING, Ring, reach, span
 from shared.earth_field import EarthField
 
 SLOTS_S = 4.0
@@ -44,18 +44,13 @@ class HuangTracker:
         self._state = np.zeros(1, HUANG)
         self._state["quaternion_nb"][0, 0] = self._state["reset_quaternion_nb"][0, 0] = 1.0
         self._state["pitch_axis_b"][0] = np.full(3, 3.0**-0.5)
-        self._block = len(self._ring) // 4
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
-        released = []
-        for first in range(0, len(batch), self._block):
-            part = batch.part(slice(first, first + self._block))
-            received = int(self._state["received"][0])
-            admit_batch(self._ring, received, self._gate, self._limits, self.config.gap_s, part)
-            self._state["received"] += len(part)
-            released.append(self._work(final=False))
-        return join_rows(released)
+        parts = admit_parts(
+            self._ring, self._state, self._gate, self._limits, self.config.gap_s, batch
+        )
+        return join_rows([self._work(final=gives_up) for gives_up in parts])
 
     def learn_field(self, field: EarthField, t_ns: int) -> None:
         """From then on headings are true; what was walked before stays as it was."""
@@ -161,7 +156,6 @@ def _release(ring: Ring, state: HuangState, k: int, config: HuangConfig) -> None
         return
     now_s = ring[k & mask].t_s
     while state.released <= k and (
-        now_s - ring[state.released & mask].t_s >= config.hold_s
-        or k - state.released >= len(ring) // 4
+        now_s - ring[state.released & mask].t_s >= config.hold_s or k - state.released >= span(ring)
     ):
         state.released += 1

@@ -12,7 +12,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.huang_state import HuangConfig, HuangState
 from edge.tracker.quasi_static import static_orientation, turn_heading
-from edge.tracker.state import Ring
+from edge.tracker.state import Ring, span
 from edge.tracker.strapdown import advance, rotation_matrix
 
 MIN_STRIDE_M = 0.15
@@ -71,7 +71,7 @@ def settle_swing(ring: Ring, state: HuangState, k: int, config: HuangConfig) -> 
     static_orientation(ring, state.timed, k, config.low_pass_s, state.declination_rad, state)
     static = state.quaternion_nb.copy()
     swung = not state.settled and state.stance_from > state.swing_from >= state.reset_at
-    if swung and since_s > 0.0 and k - state.reset_at < mask // 2:
+    if swung and since_s > 0.0 and k - state.reset_at < 2 * span(ring):
         bias_radps = _turn_between(static, tracked) / since_s
         still = np.zeros(3)
         drift_mps = _replay(ring, state, k, bias_radps, still, config)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from edge.samples import Floats
 from edge.tracker.port import Reason
-from edge.tracker.state import Ring
+from edge.tracker.state import Ring, span
 
 GYRO_SATURATED = int(Reason.GYRO_SATURATED)
 ACCEL_SATURATED = int(Reason.ACCEL_SATURATED)
@@ -93,7 +93,7 @@ def seek_full_scale(
 @njit()
 def _mark_back(ring: Ring, k: int, known: Any, axis: int, now_s: float) -> None:
     mask = len(ring) - 1
-    for i in range(k - 1, max(-1, k - mask // 8), -1):
+    for i in range(k - 1, max(-1, k - span(ring) // 2), -1):
         sample = ring[i & mask]
         if now_s - sample.arrival_s > MARK_BACK_S:
             break

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.state import Ring, reach
+from edge.tracker.state import Ring, reach, span
 from edge.tracker.strapdown import rotate_navigation, rotation_matrix
 
 QUIET_RADPS = 0.6  # a foot that turns faster swings
@@ -52,7 +52,7 @@ def _low_pass(
     now_s = ring[k & mask].t_s
     half_s = 0.5 * low_pass_s
     first = k
-    while first > 0 and k - first < mask // 4:
+    while first > 0 and k - first < span(ring):
         if now_s - ring[(first - 1) & mask].t_s >= half_s or _swings(ring, first - 1):
             break
         first -= 1

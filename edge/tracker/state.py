@@ -231,6 +231,7 @@ FILTER = np.dtype(
 PROGRESS = np.dtype(
     [
         ("received", np.int64),  # samples in the ring so far
+        ("cleaned", np.int64),  # ... looked at for spikes
         ("timed", np.int64),  # ... with their regular time
         ("measured", np.int64),  # ... with their motion statistic
         ("filtered", np.int64),  # ... passed through the filter
@@ -243,6 +244,7 @@ PROGRESS = np.dtype(
         ("temperature_degc", np.float64),  # smoothed; NaN while unknown
         ("temperature_s", np.float64),  # of the sample that said it
         ("warmed_degc", np.float64),  # for which the gyroscope bias holds
+        ("good_ns", np.int64),  # stamp of the last sample that was not bad
         ("in_stance", np.bool_),
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),
@@ -273,12 +275,18 @@ PROGRESS = np.dtype(
 
 @njit()
 def reach(ring: Ring, k: int) -> int:
-    """Return one past the last sample that work on sample ``k`` may look at.
+    """Return one past the last sample that work on sample ``k`` may look at."""
+    return k + span(ring)
 
-    A ring made for a much lower rate than the samples have cannot hold the whole
-    look-ahead; the bound is the same however the samples come.
+
+@njit()
+def span(ring: Ring) -> int:
+    """Return how many samples any stage waits for, or looks ahead or back over.
+
+    Time bounds most looks, but a ring made for a much lower rate than the samples have cannot hold
+    the whole look-ahead; the bound is the same however the samples come.
     """
-    return k + len(ring) // 4
+    return len(ring) // 4
 
 
 def new_filter_state() -> NDArray[Any]:

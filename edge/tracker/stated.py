@@ -35,9 +35,12 @@ def bend_way(state: FilterState, dt_s: float) -> None:
 
 @njit()
 def state_position(
-    ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig
+    ring: Ring, step: Step, state: FilterState, slot: int, open_s: float, config: EskfConfig
 ) -> None:
-    """Write the stated covariance of a row's position, and the rows that the smoother needs."""
+    """Write the stated covariance of a row's position, and the rows that the smoother needs.
+
+    ``open_s``: for how long no good sample has come.
+    """
     for i in range(10):
         for j in range(SIZE):
             step.covariance[i, j] = state.covariance[i, j]
@@ -45,6 +48,7 @@ def state_position(
     for i in range(3):
         for j in range(3):
             stated_m2[i, j] = state.covariance[i, j]
+        stated_m2[i, i] += (config.gap_speed_std_mps * open_s) ** 2
     gains = state.gains
     for i in range(2):
         step.covariance[i, TURN] = along(gains.carried_m[i], gains.turned_column)

@@ -39,9 +39,17 @@ def note_faults(ring: Ring, progress: Progress, slot: int) -> bool:
 
 @njit()
 def judge(
-    ring: Ring, progress: Progress, state: FilterState, slot: int, config: EskfConfig
+    ring: Ring,
+    progress: Progress,
+    state: FilterState,
+    slot: int,
+    open_s: float,
+    config: EskfConfig,
 ) -> None:
-    """Write ``reasons``, ``quality`` and ``heading_std_rad`` of the row in ``slot``."""
+    """Write ``reasons``, ``quality`` and ``heading_std_rad`` of the row in ``slot``.
+
+    ``open_s``: for how long no good sample has come.
+    """
     t_s = ring[slot].t_s
     p = state.covariance
     reasons = ring[slot].flags & BAD_SAMPLES
@@ -54,7 +62,7 @@ def judge(
     tilt_variance = max(p[ATTITUDE, ATTITUDE], p[ATTITUDE + 1, ATTITUDE + 1])
     if tilt_variance > config.aligned_tilt_std_rad**2:
         reasons |= ALIGNING
-    unseen_s = t_s - progress.last_stance_s
+    unseen_s = t_s + open_s - progress.last_stance_s
     if unseen_s > config.no_stance_degraded_s:
         reasons |= NO_STANCE
     stated_m2 = ring[slot].position_cov_m2
@@ -69,5 +77,5 @@ def judge(
     yaw = ATTITUDE + 2
     heading_var = heading_variance(p) + (noise_scale(state, config) - 1.0) * p[yaw, yaw]
     heading_var += (gain_scale(state, config) - 1.0) * p[TURN, TURN]
-    heading_var += unshown_heading_variance(state)
+    heading_var += unshown_heading_variance(state) + (config.gap_turn_std_radps * open_s) ** 2
     ring[slot].heading_std_rad = math.sqrt(heading_var)

@@ -18,7 +18,7 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
-from edge.tracker.state import FilterState, Progress, Ring, reach
+from edge.tracker.state import FilterState, Progress, Ring, reach, span
 
 
 @njit()
@@ -48,7 +48,7 @@ def motion_statistic(
     first = k
     while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.half_window_s:
         first -= 1
-        if k - first > mask // 4:
+        if k - first > span(ring):
             break
     mean_x = 0.0
     mean_y = 0.0
@@ -133,7 +133,7 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
     now_s = ring[k & mask].t_s
     stop = min(progress.measured, reach(ring, k))
     first = k
-    while first > 0 and k - first < mask // 4:
+    while first > 0 and k - first < span(ring):
         if now_s - ring[(first - 1) & mask].t_s > config.unrest_half_window_s:
             break
         first -= 1

@@ -54,3 +54,49 @@ def test_a_hole_in_time_is_told_and_a_small_one_is_not(next_s: float, words: lis
     found = told(health, samples(0.1, from_s=next_s))
     assert len(found) == len(words)
     assert all(word in fault for word, fault in zip(words, found, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("hung", "sensor"),
+    [
+        (slice(0, 3), "accelerometer"),
+        (slice(3, 6), "gyroscope"),
+        (slice(1, 2), "accelerometer"),
+        (slice(5, 6), "gyroscope"),
+    ],
+)
+def test_what_hangs_while_the_other_sensor_tells_of_motion_is_told_once(
+    hung: slice, sensor: str
+) -> None:
+    rows = moving()
+    rows[150:, hung] = 1.0
+    rows[200] = np.nan  # one that was lost begins anew
+    (fault,) = told(SensorHealth(), imu_of(rows))
+    assert fault.startswith(f"the {sensor} has repeated")
+    rows[320:] = moving()[320:]
+    rows[370:, hung] = 0.0
+    assert len(told(SensorHealth(), imu_of(rows))) == 2
+
+
+@pytest.mark.parametrize("hung", [slice(0, 3), slice(3, 6), slice(1, 2), slice(5, 6)])
+def test_a_coarse_sensor_that_lies_still_repeats_itself_and_is_well(hung: slice) -> None:
+    rows = 0.1 * np.random.default_rng(3).normal(size=(60 * RATE_HZ, 6))
+    rows[:, hung] = 1.0
+    assert told(SensorHealth(), imu_of(rows)) == []
+
+
+def test_an_axis_in_which_nothing_was_made_to_move_is_well() -> None:
+    rows = moving()
+    rows[:, (1, 5)] = 0.0  # a walk in a plane
+    assert told(SensorHealth(), imu_of(rows)) == []
+
+
+def moving() -> np.ndarray:
+    """Accelerations and rates of 5 s."""
+    spread = np.array([5.0, 5.0, 5.0, 2.0, 2.0, 2.0])
+    return spread * np.random.default_rng(3).normal(size=(5 * RATE_HZ, 6))
+
+
+def imu_of(rows: np.ndarray) -> ImuBatch:
+    t_ns = np.arange(len(rows)) * (NS_PER_S // RATE_HZ)
+    return ImuBatch(t_ns, rows[:, :3], rows[:, 3:])
