@@ -1,4 +1,4 @@
-"""Which of many samples are published: the first in each period of the sample clock."""
+"""Which of many samples are published: one in each period of the sample clock."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from shared.clock import NS_PER_S
 
 
 class Decimator:
-    """Picks one sample a period, whatever the batching.
+    """Picks the first sample in each period, whatever the batching.
 
     Periods lie on a fixed grid of time, so nothing drifts, and a clock that jumps in either
     direction costs nothing.
@@ -36,3 +36,24 @@ class Decimator:
     def takes(self, t_ns: int) -> bool:
         """Whether the one sample at ``t_ns`` is to be published."""
         return bool(self.picks(np.array([t_ns], dtype=np.int64)))
+
+
+class OncePerPeriod:
+    """Takes one at a time of what may itself come once a period, and then loses none of it.
+
+    The first one lies in the middle of its period, so that half a period of jitter or of drift
+    puts no two of them into one.
+    """
+
+    def __init__(self, rate_hz: float) -> None:
+        self._period_ns = round(NS_PER_S / rate_hz)
+        self._from_ns: int | None = None
+        self._last: int | None = None
+
+    def takes(self, t_ns: int) -> bool:
+        """Whether the one at ``t_ns`` is to be published."""
+        if self._from_ns is None:
+            self._from_ns = t_ns - self._period_ns // 2
+        period = (t_ns - self._from_ns) // self._period_ns
+        taken, self._last = period != self._last, period
+        return taken

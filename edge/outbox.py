@@ -39,6 +39,7 @@ class Outbox:
         self._unsaved: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)
         self._unsaved_alerts: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)  # nothing ousts them
         self._storage_fault: str | None = None
+        self._bus_fails = False
         self._urgent = Event()
         self._closed = False
         self.never_saved = 0  # messages that were sent but could not be written
@@ -77,8 +78,7 @@ class Outbox:
             group = self._drain(first)
             last_commit_s = time.monotonic()
             self._save(group)
-            for each in group:
-                self._publish(each.channel.key(self._unit_id), each.payload, each.channel.qos)
+            self._send(group)
 
     def _drain(self, first: Message | None) -> list[Journaled]:
         group = []
@@ -88,10 +88,22 @@ class Outbox:
                 if message is None:
                     self._closed = True
                 else:
-                    group.append(_journaled(message))
+                    group += _journaled(message)
                 message = self._waiting.get_nowait()
         except Empty:
             return group
+
+    def _send(self, group: list[Journaled]) -> None:
+        """A bus that fails ends nothing: the link opens it anew, and the journal has the rest."""
+        for each in group:
+            try:
+                self._publish(each.channel.key(self._unit_id), each.payload, each.channel.qos)
+            except Exception:
+                if not self._bus_fails:
+                    logger.exception("messages cannot be sent; the journal keeps them")
+                self._bus_fails = True
+            else:
+                self._bus_fails = False
 
     def _save(self, group: list[Journaled]) -> None:
         """A refusal stops nothing: the messages are sent, and written when the disk allows."""
@@ -121,7 +133,11 @@ class Outbox:
             self._unsaved_alerts.clear()
 
 
-def _journaled(message: Message) -> Journaled:
-    return Journaled(
-        message.header.seq, channel_of(message), message.header.t_utc_ns, encode(message)
-    )
+def _journaled(message: Message) -> list[Journaled]:
+    """What cannot be put into bytes is left out: it is not to cost the alert behind it."""
+    header, channel = message.header, channel_of(message)
+    try:
+        return [Journaled(header.seq, channel, header.t_utc_ns, encode(message))]
+    except ValueError:
+        logger.exception("a %s message cannot be sent", channel.name)
+        return []

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from edge.calibration import Calibration, identity
-from edge.decimation import Decimator
+from edge.decimation import Decimator, OncePerPeriod
 from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
 from edge.raw_stream import gps_fix, says_what, sighting
@@ -77,13 +77,13 @@ class TrackerPipeline:
         self._monitor = ActivityMonitor()
         self._health = SensorHealth()
         self._whereabouts = Whereabouts(identity.place)
-        self._status_times = _decimator(STATUS)
+        self._status_times = Decimator(_rate_hz(STATUS))
         self._raw_uplink = raw_uplink
-        self._description_times = _decimator(DESCRIPTION)
-        if raw_uplink is not None:
-            self._description_times.set_rate(_DESCRIPTION_FOR_TRACKER_HZ)
-        self._gps_times = _decimator(GPS)
-        self._temperature_times = _decimator(TEMPERATURE)
+        self._description_times = Decimator(
+            _rate_hz(DESCRIPTION) if raw_uplink is None else _DESCRIPTION_FOR_TRACKER_HZ
+        )
+        self._gps_times = OncePerPeriod(_rate_hz(GPS))
+        self._temperature_times = Decimator(_rate_hz(TEMPERATURE))
         self._battery: float | None = None
         self._mayday = mayday
         self._has_gps = False
@@ -239,9 +239,9 @@ class TrackerPipeline:
         return UnitEvent(self._stamper.header(mono_ns), kind, detail)
 
 
-def _decimator(channel: Channel) -> Decimator:
+def _rate_hz(channel: Channel) -> float:
     assert channel.rate_hz is not None
-    return Decimator(channel.rate_hz)
+    return channel.rate_hz
 
 
 def _last_source_ns(batch: SensorBatch) -> int | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Iterator
 from datetime import UTC
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +30,8 @@ def read_calibration(path: Path) -> Calibration:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
         calibration = msgspec.convert(table, Calibration)
+        if not all(map(isfinite, _numbers(table))):
+            raise msgspec.ValidationError("a value that is no number")
     except FileNotFoundError:
         raise ConfigError(f"there is no calibration file {path}; check the path") from None
     except OSError as error:
@@ -63,6 +67,17 @@ def to_toml(calibration: Calibration) -> str:
             if value is not None
         ]
     return "\n".join(lines) + "\n"
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """All that are in a table."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for one in value:
+            yield from _numbers(one)
+    elif isinstance(value, float):
+        yield value
 
 
 def _value(value: Any) -> str:

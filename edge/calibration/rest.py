@@ -52,9 +52,12 @@ class RestFinder:
         for start, stop in pairwise(starts):
             if start == stop:
                 continue
-            if cells[start] != self._cell:
+            cell = int(cells[start])
+            if cell != self._cell:
                 self._close()
-                self._cell = int(cells[start])
+                if cell - 1 != self._cell:
+                    self._settling = True  # nobody saw what was done with it meanwhile
+                self._cell = cell
             self._parts.append(samples[start:stop])
 
     def _close(self) -> None:

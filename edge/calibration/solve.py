@@ -14,7 +14,7 @@ GRAVITY_MPS2 = 9.80665
 _POSE_NOISE_MPS2 = 0.003  # of a pose's mean: what a table's tremble and slow noise leave
 _MISALIGNED_MPS2 = 0.03  # what unknown misalignment does to the length
 _FIELD_NOISE_SHARE = 0.002
-_EDGE = 0.35  # share of gravity on two axes at once that tells of the angle between them
+_SURE = 5.0  # times a pose's noise: an angle between two axes that is known no better is not
 _ENOUGH_POSES = 10
 _NOISE_SHARE = 0.7  # what is not credited to noise counts as walk, the worse of the two
 _BLOCK = 20  # windows that are averaged: slow noise makes neighbours alike
@@ -64,11 +64,15 @@ def _force_slope(poses: list[Window], rates: Floats) -> tuple[Floats, Floats]:
 
 
 def tells_misalignment(directions: Floats) -> tuple[bool, bool, bool]:
-    """Whether poses (n, 3) are tilted between x and y, x and z, y and z."""
-    return tuple(  # type: ignore[return-value]  # three pairs give three answers
-        bool((np.minimum(abs(directions[:, j]), abs(directions[:, k])) > _EDGE).any())
-        for j, k in ((0, 1), (0, 2), (1, 2))
-    )
+    """Whether poses (n, 3) determine the angles between x and y, x and z, y and z: each beside
+    the others, scale and bias.  A corner that points up tells of all three, and of none by itself.
+    """
+    x, y, z = directions.T
+    table = np.column_stack((x * y, x * z, y * z, directions**2, directions))
+    # The second part: what no pose tells of is as good as unknown, and spoils nothing else.
+    inverse = np.linalg.inv(table.T @ table + 1e-6 * np.eye(table.shape[1]))
+    xy, xz, yz = (np.diag(inverse)[:3] < _SURE**2).tolist()
+    return xy, xz, yz
 
 
 def solve_accelerometer(poses: list[Window], warmth: Warmth | None) -> Accelerometer:

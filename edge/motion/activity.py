@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 
 from edge.motion.air_height import AirHeight
-from edge.motion.body_motion import BodyMotion, MotionWindow, by_window
+from edge.motion.body_motion import WINDOW_NS, BodyMotion, MotionWindow, by_window
 from edge.motion.falls import FallDetector
 from edge.motion.posture import Posture
 from edge.motion.strides import Stride, StrideCutter
@@ -22,6 +22,7 @@ from shared.messages import Activity
 _CADENCE_OVER_NS = 4 * NS_PER_S
 _GOES_ON_NS = 5 * NS_PER_S // 2  # after the last footfall that is known
 _AT_REST_S = 1.0  # longer than a foot stands still in any stride
+_SILENT_NS = 2 * NS_PER_S  # since the last samples: who knows what has become of the wearer
 _STIRRING_S = 1.0  # of motion before the first stride of a walk is known
 _RUNNING_MPS = 2.0  # people change from walking to running here (Hreljac 1995)
 _RUNNING_PERIOD_S = 0.8
@@ -49,9 +50,8 @@ class ActivityMonitor:
         self._doing = Activity.STILL
         self._stride_count = 0
         self._stirring_s = 0.0
-        self._window_ns = 0
+        self._window_ns: int | None = None  # the end of the last one
         self._fall_told = False
-        self._seen = False
 
     @property
     def motionless_s(self) -> float:
@@ -82,7 +82,7 @@ class ActivityMonitor:
         return 2.0 * len(self._strides) / sum(stride.period_s for stride in self._strides)
 
     def activity(self, t_ns: int) -> Activity:
-        if not self._seen:
+        if self._window_ns is None or t_ns - self._window_ns > _SILENT_NS:
             return Activity.UNKNOWN
         if self._falls.falling:
             return Activity.FALLING
@@ -106,7 +106,7 @@ class ActivityMonitor:
         self._doing = self._kind(stride)
         self._stride_count += 1
         self._strides.append(stride)
-        while self._strides[0].end_ns < stride.end_ns - _CADENCE_OVER_NS:
+        while not 0 <= stride.end_ns - self._strides[0].end_ns <= _CADENCE_OVER_NS:
             self._strides.popleft()
 
     def _kind(self, stride: Stride) -> Activity:
@@ -141,10 +141,8 @@ class ActivityMonitor:
 
     def _take_window(self, window: MotionWindow) -> bool:
         """Return whether it confirms a fall."""
-        lasted_s = (window.end_ns - self._window_ns) / NS_PER_S if self._seen else 0.0
-        self._seen = True
         self._window_ns = window.end_ns
-        self._stirring_s = self._stirring_s + max(lasted_s, 0.0) if window.moving else 0.0
+        self._stirring_s = self._stirring_s + WINDOW_NS / NS_PER_S if window.moving else 0.0
         motionless_s = self._motion.motionless_s
         self._posture.take_window(window, motionless_s)
         struck = self._falls.confirm(window.end_ns, motionless_s)

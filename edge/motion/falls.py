@@ -16,6 +16,7 @@ from shared.clock import NS_PER_S
 
 _WEIGHTLESS_MPS2 = 4.0
 _WEIGHTLESS_NS = NS_PER_S // 4  # a drop of 0.3 m
+_HOLE_NS = NS_PER_S // 10  # between two samples; in a longer one there may have been weight
 _BLOW_MPS2 = 30.0
 _BLOW_WITHIN_NS = NS_PER_S // 2
 _DOWN_FOR_S = 2.0  # motionless after the blow
@@ -27,6 +28,7 @@ class FallDetector:
 
     def __init__(self) -> None:
         self._weightless_since_ns: int | None = None
+        self._weightless_ns = 0  # the last such sample
         self._weightless_until_ns: int | None = None
         self._blow_ns: int | None = None
 
@@ -58,7 +60,9 @@ class FallDetector:
         if isnan(force_mps2):
             return  # a sample that was missed does not end a drop
         if force_mps2 < _WEIGHTLESS_MPS2:
-            if self._weightless_since_ns is None:
+            went_on = 0 <= t_ns - self._weightless_ns <= _HOLE_NS
+            self._weightless_ns = t_ns
+            if self._weightless_since_ns is None or not went_on:
                 self._weightless_since_ns = t_ns
             if t_ns - self._weightless_since_ns >= _WEIGHTLESS_NS:
                 self._weightless_until_ns = t_ns
@@ -71,4 +75,3 @@ class FallDetector:
             and 0 <= t_ns - dropped_ns <= _BLOW_WITHIN_NS
         ):
             self._blow_ns = t_ns
-            self._weightless_until_ns = None

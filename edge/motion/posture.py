@@ -25,6 +25,7 @@ _SUDDEN_NS = 2 * NS_PER_S  # from upright to rest
 _SUDDEN_RADPS = 2.4  # nobody tips the foot so fast who lies or kneels down
 _COLLAPSED_S = 1.0
 _TIPPED_FOR_NS = 3 * NS_PER_S // 2
+_LATE_NS = 10 * NS_PER_S  # a stride is told long before; what is earlier is of a clock that was set
 
 
 class Posture:
@@ -35,6 +36,7 @@ class Posture:
         self._upright_ns: int | None = None
         self._tipped_since_ns: int | None = None
         self._now_ns = 0
+        self._rest_ns: int | None = None  # since when nothing moves
         self._peaks: deque[tuple[int, float]] = deque(maxlen=16)  # (start, rate) of each window
         self._tipped_step_b: Floats | None = None  # up at the last step if it was tipped
         self.crawling = False  # the last two steps were tipped the same way
@@ -50,7 +52,7 @@ class Posture:
     def tipped(self) -> bool:
         """Not held as in standing for longer than a swing lasts."""
         since_ns = self._tipped_since_ns
-        return since_ns is not None and self._now_ns - since_ns >= _TIPPED_FOR_NS
+        return since_ns is not None and not 0 <= self._now_ns - since_ns < _TIPPED_FOR_NS
 
     def take_stride(self, stride: Stride) -> None:
         if stride.length_m >= _LONG_STRIDE_M:
@@ -68,7 +70,12 @@ class Posture:
     def take_window(self, window: MotionWindow, motionless_s: float) -> None:
         """Take the next half second; ``motionless_s`` counts it."""
         self._now_ns = window.end_ns
-        self._peaks.append((window.end_ns - WINDOW_NS, window.peak_rate_radps))
+        start_ns = window.end_ns - WINDOW_NS
+        self._peaks.append((start_ns, window.peak_rate_radps))
+        if window.moving:
+            self._rest_ns = None
+        elif self._rest_ns is None:
+            self._rest_ns = start_ns
         if self._standing_b is None and not window.moving:
             self._standing_b = window.force_mps2
         if self._standing_b is None:
@@ -82,12 +89,9 @@ class Posture:
             return
         if self._tipped_since_ns is None:
             self._tipped_since_ns = window.end_ns
-        if window.moving:
-            self.collapsed = False
-            return
-        self._rest_tipped(window, motionless_s)
+        self._hold_tipped(window, motionless_s)
 
-    def _rest_tipped(self, window: MotionWindow, motionless_s: float) -> None:
+    def _hold_tipped(self, window: MotionWindow, motionless_s: float) -> None:
         step_b = self._tipped_step_b
         kneeling = (
             self.crawling and step_b is not None and cosine(step_b, window.force_mps2) > _SAME_COS
@@ -95,14 +99,12 @@ class Posture:
         if motionless_s >= (_KNEELING_S if kneeling else _LYING_AFTER_S):
             self.lying = True
         self.collapsed = (
-            motionless_s >= _COLLAPSED_S
-            and not kneeling
-            and self._went_down_suddenly(window.end_ns - round(motionless_s * NS_PER_S))
+            motionless_s >= _COLLAPSED_S and not kneeling and self._went_down_suddenly()
         )
 
-    def _went_down_suddenly(self, rest_ns: int) -> bool:
-        upright_ns = self._upright_ns
-        if upright_ns is None or rest_ns - upright_ns > _SUDDEN_NS:
+    def _went_down_suddenly(self) -> bool:
+        upright_ns, rest_ns = self._upright_ns, self._rest_ns
+        if upright_ns is None or rest_ns is None or rest_ns - upright_ns > _SUDDEN_NS:
             return False
         rates_radps = (rate for start_ns, rate in self._peaks if upright_ns <= start_ns < rest_ns)
         return max(rates_radps, default=0.0) > _SUDDEN_RADPS
@@ -115,4 +117,5 @@ class Posture:
         )
 
     def _stand(self, t_ns: int) -> None:
-        self._upright_ns = t_ns if self._upright_ns is None else max(self._upright_ns, t_ns)
+        if self._upright_ns is None or not 0 <= self._upright_ns - t_ns <= _LATE_NS:
+            self._upright_ns = t_ns

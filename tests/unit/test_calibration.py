@@ -76,6 +76,18 @@ def test_six_poses_give_scale_and_bias_and_no_misalignment():
     assert (np.abs(found.bias_mps2 - true) < 3.0 * np.array(found.bias_std_mps2)).all()
 
 
+def test_poses_that_leave_an_angle_open_give_scale_and_bias_and_no_misalignment():
+    """A corner tells of the three angles' sum; angles that fit that alone may be anything."""
+    corners = np.array([[1, 1, 1], [-1, -1, -1]])
+    unit = HandledUnit(1)
+    ups = np.vstack((SIDES, corners, EDGES[[0, 1, 6]], [[-1, 1, 0]]))
+    step = gathered(PosesStep(), [*unit.poses(ups), unit.turn(X, 1.0)])
+    assert len(step.poses()) == 12
+    found = known(solved(step).accelerometer)
+    assert np.array(found.gain_std)[0, 1] == 0.0
+    assert np.abs(np.array(found.gain) @ unit.imu._accel._gain - np.eye(3)).max() < 0.02
+
+
 def test_hard_and_soft_iron_are_found_within_their_standard_deviations():
     hard, soft = [], []
     for seed in SEEDS:

@@ -48,6 +48,19 @@ def test_a_damaged_file_is_one_sentence(text, said, tmp_path):
         read_calibration(tmp_path / "c.toml")
 
 
+@pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
+def test_a_file_with_what_is_no_number_is_damaged(calibration, number, tmp_path):
+    """With it every sample would be none, and the unit nowhere, with a sensor that is well."""
+    write_calibration(calibration, tmp_path / "c.toml")
+    text = (tmp_path / "c.toml").read_text()
+    for first in ("bias_radps = [", "residual_radps = "):
+        before, after = text.split(first)
+        rest = after[after.index("," if first.endswith("[") else "\n") :]
+        (tmp_path / "spoilt.toml").write_text(f"{before}{first}{number}{rest}")
+        with pytest.raises(ConfigError, match=r"is damaged \(a value that is no number\)"):
+            read_calibration(tmp_path / "spoilt.toml")
+
+
 def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
     with pytest.raises(ConfigError, match="check the path"):
         read_calibration(tmp_path / "none.toml")

@@ -169,3 +169,40 @@ def test_what_nobody_saw_ends_a_rest():
     for part in (felt(5.0, 0.0, 0.0, 0.0), silent, felt(5.0, 7.0, 0.0, 0.0)):
         finder.push(part)
     assert [len(rest) for rest in finder.rests] == [9, 9]
+
+
+@pytest.mark.parametrize("next_s", [7.0, -3.0], ids=["lost", "set back"])
+def test_samples_that_never_came_end_a_rest_too(next_s):
+    finder = RestFinder()
+    for part in (felt(5.0, 0.0, 0.0, 0.0), felt(5.0, next_s, 0.0, 0.0)):
+        finder.push(part)
+    assert [len(rest) for rest in finder.rests] == [9, 9]
+
+
+def test_two_short_rests_with_a_hole_between_them_are_not_a_long_one():
+    """Nobody knows whether it was touched meanwhile: on the air, batches are lost."""
+    unit = HandledUnit(0)
+    before, _, after = unit.rest(6.0), unit.turn(X, 1.0), unit.rest(6.0)
+    after = replace(after, accel_mps2=before.accel_mps2, gyro_radps=before.gyro_radps)
+    assert "lay still for only 5.5 s" in refusal(StillStep(), [before, after])
+
+
+def test_a_temperature_that_is_told_now_and_then_is_that_of_the_window():
+    """Most sensors measure it more seldom than they measure motion."""
+    finder = RestFinder()
+    rest = felt(3.0, 0.0, 0.0, 0.0)
+    degc = np.full(len(rest), np.nan)
+    degc[::10] = 21.5
+    finder.push(replace(rest, imu_temperature_degc=degc))
+    (windows,) = finder.rests
+    assert [window.temperature_degc for window in windows] == [21.5] * 4
+
+
+def test_readings_in_one_plane_are_refused_in_words_though_nobody_checked_them():
+    angle = np.linspace(0.0, 6.2, 200)
+    level = 48.0 * np.column_stack((np.cos(angle), np.sin(angle), np.zeros(200)))
+    none = np.zeros((200, 3))
+    step = TurningStep()
+    step.push(ImuBatch(np.arange(200), none, none, mag_ut=level))
+    with pytest.raises(UserError, match="do not lie on an ellipsoid"):
+        solved(step)

@@ -152,6 +152,15 @@ def test_six_sides_do_and_edges_and_more_of_them_are_asked_for() -> None:
     assert bench.step.missing() is None
 
 
+def test_corners_tell_of_three_angles_at_once_and_each_is_asked_for_by_itself() -> None:
+    """Twelve poses, some of which lean between any two axes, and two angles that nobody knows."""
+    bench = Bench(PosesStep())
+    bench.lies_on(*FACES, X + Y + Z, -X - Y - Z, X + Y, X - Y, Y - X, -X - Y)
+    assert bench.step.wanted() == "lean it half way between x and z, or y and z"
+    bench.lies_on(X + Z)
+    assert bench.step.wanted() is None, "two angles and the sum of three give the third"
+
+
 def fields(step: TurningStep, readings: Floats) -> None:
     none = np.zeros((len(readings), 3))
     step.push(ImuBatch(np.arange(len(readings)), none, none, mag_ut=readings))

@@ -143,6 +143,53 @@ def test_a_blow_without_a_drop_is_no_fall():
     assert not falls.falling
 
 
+def pushed(monitor: ActivityMonitor, *pieces: ImuBatch) -> Activity:
+    """What is said at the end of them."""
+    for piece in pieces:
+        monitor.push(piece, empty_rows())
+    return monitor.activity(int(pieces[-1].t_ns[-1]))
+
+
+def test_of_a_sensor_that_has_stopped_nobody_knows_what_its_wearer_does():
+    """It broke in mid walk; what else the unit has to say goes on."""
+    monitor = ActivityMonitor()
+    assert pushed(monitor, samples(5.0, shake=1.0)) is Activity.WALKING
+    assert monitor.activity(6 * NS_PER_S) is Activity.WALKING
+    assert monitor.activity(10 * NS_PER_S) is Activity.UNKNOWN
+    silent = samples(5.0, 5.0)
+    silent.accel_mps2[:] = np.nan
+    assert pushed(monitor, silent) is Activity.UNKNOWN
+    assert pushed(monitor, samples(2.0, 10.0)) is Activity.STILL
+
+
+def test_who_stirs_for_a_moment_after_a_hole_does_not_walk():
+    monitor = ActivityMonitor()
+    pieces = samples(3.0), samples(0.5, 60.0, shake=1.0), samples(0.1, 60.5)
+    assert pushed(monitor, *pieces) is Activity.STILL
+
+
+def test_a_collapse_is_told_though_samples_were_lost_behind_it():
+    monitor = ActivityMonitor()
+    going_down = replace(samples(1.0, 3.0, (9.0, 0.0, 4.0), shake=1.0))
+    going_down.gyro_radps[:, 1] += 3.0
+    pieces = samples(3.0), going_down, samples(1.2, 4.0, (9.81, 0.0, 0.0))
+    falls = sum(monitor.push(piece, empty_rows()) for piece in pieces)
+    falls += monitor.push(samples(5.0, 9.0, (9.81, 0.0, 0.0)), empty_rows())
+    assert falls == 1
+
+
+def test_the_cadence_is_of_the_last_strides_also_where_the_clock_was_set_back():
+    monitor = ActivityMonitor()
+    monitor.push(samples(12.5, 100.0, shake=1.0), empty_rows())
+    slow = footsteps([(float(t), 2.0 * t, 0.0, t % 2 == 0) for t in range(100, 113)])
+    monitor.push(samples(0.0), slow)
+    assert monitor.cadence_hz(112 * NS_PER_S) == pytest.approx(1.0)
+    monitor.push(samples(3.0, shake=1.0), empty_rows())
+    quick = footsteps([(t / 2, t / 2, 0.0, t % 2 == 0) for t in range(7)])
+    monitor.push(samples(0.0), quick)
+    assert monitor.cadence_hz(3 * NS_PER_S) == pytest.approx(2.0, rel=0.2)
+
+
 def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity]:
     """What the unit says from ``after_s`` into each time in which the wearer does ``kind``."""
     score = ActivityScore()

@@ -52,7 +52,7 @@ def fallen(wearer: Wearer) -> Wearer:
 
 @pytest.mark.parametrize(
     ("force_mps2", "duration_s", "falls"),
-    [(3.5, 0.3, True), (4.5, 0.3, False), (0.5, 0.28, True), (0.5, 0.2, False)],
+    [(3.5, 0.3, True), (4.5, 0.3, False), (0.5, 0.28, True), (0.5, 0.24, False)],
 )
 def test_a_drop_is_a_quarter_of_a_second_with_hardly_any_weight(
     wearer: Wearer, force_mps2: float, duration_s: float, falls: bool
@@ -76,10 +76,11 @@ def test_the_blow_is_three_times_the_weight_and_follows_at_once(
     assert wearer.falls.falling is falls
 
 
-def test_two_hops_are_no_drop(wearer: Wearer) -> None:
+@pytest.mark.parametrize("stood_s", [0.02, 0.2])
+def test_two_hops_are_no_drop(wearer: Wearer, stood_s: float) -> None:
     """Between them the foot stood, in a batch that has nothing else in it."""
     wearer.drops(duration_s=0.2)
-    wearer.feels(WEIGHT_MPS2, 0.2)
+    wearer.feels(WEIGHT_MPS2, stood_s)
     wearer.drops(duration_s=0.2)
     wearer.strikes()
     assert not wearer.falls.falling
@@ -122,5 +123,37 @@ def test_a_sample_that_was_missed_does_not_make_two_hops_of_a_drop(wearer: Weare
     wearer.drops(duration_s=0.15)
     wearer.feels(float("nan"), 0.02)
     wearer.drops(duration_s=0.15)
+    wearer.strikes()
+    assert wearer.falls.falling
+
+
+@pytest.mark.parametrize("batched", [False, True])
+def test_what_was_not_heard_is_no_drop(wearer: Wearer, batched: bool) -> None:
+    """A foot in mid swing weighs nothing for a moment; then the samples stop for a while."""
+    wearer.drops(duration_s=0.02)
+    if batched:
+        wearer.feels(float("nan"), 0.5)
+    else:
+        wearer.now_s += 0.5
+    wearer.drops(duration_s=0.02)
+    wearer.strikes()
+    assert not wearer.falls.falling
+
+
+@pytest.mark.parametrize(("missed_s", "falls"), [(0.08, True), (0.1, False)])
+def test_a_tenth_of_a_second_at_most_is_missed_of_a_drop(
+    wearer: Wearer, missed_s: float, falls: bool
+) -> None:
+    wearer.drops(duration_s=0.15)
+    wearer.now_s += missed_s
+    wearer.drops(duration_s=0.15)
+    wearer.strikes()
+    assert wearer.falls.falling is falls
+
+
+def test_a_drop_that_was_half_heard_is_one_if_that_half_was_long_enough(wearer: Wearer) -> None:
+    wearer.drops(duration_s=0.02)
+    wearer.now_s += 0.5
+    wearer.drops(duration_s=0.3)
     wearer.strikes()
     assert wearer.falls.falling

@@ -12,7 +12,7 @@ import pytest
 from edge.outbox import Outbox
 from edge.spool import Spool
 from shared.channels import Qos
-from shared.errors import StoreError
+from shared.errors import BusError, StoreError
 from shared.messages import EventKind, Temperature, UnitEvent
 from tests.waiting import until
 
@@ -126,6 +126,34 @@ def test_what_a_full_disk_cost_is_counted_and_said(spool, stamper, monkeypatch, 
     assert said[1:] == [
         "the journal can be written again; 3 messages were sent and not kept since the start"
     ]
+
+
+def test_a_bus_that_fails_ends_nothing(spool, stamper, caplog):
+    sent = []
+
+    def publish(key: str, payload: bytes, qos: Qos) -> None:
+        sent.append(key)
+        if len(sent) in (2, 3):
+            raise BusError("the bus is closed")
+
+    outbox = Outbox("FF-01", spool, publish)
+    for number in range(1, 6):
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        until(partial(holds, sent, number))
+    assert outbox.is_working
+    outbox.close()
+    assert [entry.seq for entry in spool.read(spool.boot_id, 1, 9)] == [1, 2, 3, 4, 5]
+    assert len(caplog.records) == 1
+
+
+def test_what_cannot_be_put_into_bytes_does_not_cost_the_alert_behind_it(spool, stamper):
+    sent = []
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(key))
+    nonsense = Temperature(stamper.header(), float("nan"))
+    outbox.put((nonsense, UnitEvent(stamper.header(), EventKind.MAYDAY)))
+    outbox.close()
+    assert sent == ["muster/v1/FF-01/alert/event"]
+    assert [entry.seq for entry in spool.read(spool.boot_id, 1, 9)] == [2]
 
 
 def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):

@@ -19,11 +19,11 @@ KNEELING_DEG, ON_THE_BACK_DEG = 80.0, -90.0
 class Foot:
     """Held at an angle to standing, half a second at a time."""
 
-    def __init__(self) -> None:
+    def __init__(self, stands_s: float = 1.0) -> None:
         self.posture = Posture()
         self.now_ns = 0
         self.still = 0  # windows
-        self.held(0.0, 1.0)
+        self.held(0.0, stands_s)
 
     def held(self, angle_deg: float, duration_s: float, rate_radps: float | None = None) -> None:
         """Still, or moving at a rate."""
@@ -102,6 +102,43 @@ def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> N
     foot.held(25.0, 5.0, 1.0)
     foot.steps(10.0, length_m=1.3)
     foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 1.0)
+    assert foot.posture.collapsed
+
+
+def test_what_was_not_heard_of_the_rest_undoes_no_collapse(foot: Foot) -> None:
+    """A blow may cost some seconds of samples."""
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 0.5)
+    foot.now_ns += 10 * WINDOW_NS
+    collapsed = []
+    for _ in range(7):
+        foot.held(90.0, 0.5)
+        collapsed.append(foot.posture.collapsed)
+    assert collapsed == [True] * 7
+
+
+@pytest.mark.parametrize("by_step", [False, True])
+def test_a_clock_that_was_set_back_hides_no_collapse(by_step: bool) -> None:
+    foot = Foot()
+    foot.now_ns += 2000 * WINDOW_NS
+    foot.held(0.0, 1.0)
+    foot.steps(0.0, length_m=1.3)
+    foot.now_ns = 0
+    foot.held(25.0 if by_step else 0.0, 2.0, 1.0)
+    if by_step:
+        foot.steps(10.0, length_m=1.3)
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 1.0)
+    assert foot.posture.collapsed
+
+
+def test_a_step_that_is_told_late_takes_nothing_from_what_is_known(foot: Foot) -> None:
+    """Of rows that the tracker held back for a second."""
+    late = Stride(foot.now_ns, 1.0, 1.3, 0.0, up(10.0))
+    foot.held(0.0, 1.0)
+    foot.posture.take_stride(late)
+    foot.held(70.0, 1.5, 3.0)
     foot.held(90.0, 1.0)
     assert foot.posture.collapsed
 
@@ -196,6 +233,14 @@ def test_tipped_is_longer_than_a_swing(foot: Foot) -> None:
     assert tipped == [False, False, False, True, False]
 
 
+def test_a_clock_that_was_set_back_stands_nobody_up(foot: Foot) -> None:
+    foot.now_ns += 100 * WINDOW_NS
+    foot.held(70.0, 3.0, 1.0)
+    foot.now_ns = 0
+    foot.held(70.0, 0.5, 1.0)
+    assert foot.posture.tipped
+
+
 def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
     """It was strapped on while its wearer sat, thirty degrees aside."""
     foot = Foot()
@@ -204,6 +249,20 @@ def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
         foot.steps(30.0, length_m=1.3)
     foot.held(-40.0, 3.0)
     assert foot.posture.lying, "seventy degrees from how it stands"
+
+
+def test_who_walks_before_ever_resting_is_known_by_the_strides() -> None:
+    foot = Foot(stands_s=0.0)
+    foot.held(25.0, 2.0, 1.0)
+    foot.steps(0.0, length_m=1.3)
+    foot.held(90.0, 3.0)
+    assert foot.posture.lying
+
+
+def test_however_long_somebody_crawls_it_does_not_become_standing(foot: Foot) -> None:
+    for _ in range(50):
+        foot.steps(KNEELING_DEG)
+    assert foot.posture.crawling
 
 
 def test_one_odd_footfall_does_not_make_standing_lying(foot: Foot) -> None:
