@@ -108,7 +108,7 @@ class GpsInertialFuser:
         memory, last = self._memory, self._memory.last
         t_ns = position.header.t_mono_ns
         if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart()
+            self._restart(max(0, last.header.t_mono_ns - t_ns))
             last = None
         duration_s = 0.0
         if last is not None:
@@ -124,6 +124,7 @@ class GpsInertialFuser:
                 self._horizontal.spread(min(strayed_m, jumped_m) ** 2)
                 memory.last, memory.path = position, PathMemory()
                 memory.path.note(position)
+                memory.trust.lose_path()
                 self._own.jump(position)
                 return "the unit's own path jumped"
         stretch = self._own.stretch(position, max(duration_s, 0.0))
@@ -157,7 +158,7 @@ class GpsInertialFuser:
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         self._horizontal.reframe(turn_rad, north_m, east_m)
         self._height.shift(down_m)
-        self._memory.trust.outliers.clear()
+        self._memory.trust.lose_path()
         self._memory.recognition.forget()
 
     def estimate(self) -> Estimate | None:
@@ -250,11 +251,19 @@ class GpsInertialFuser:
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
-    def _restart(self) -> None:
-        """The unit began anew: its frame starts where the wearer got to since, heading unknown."""
+    def _restart(self, back_ns: int) -> None:
+        """The unit began anew: its frame starts where the wearer got to since, heading unknown.
+        Where its clock went back with it, fixes are as old as they were.
+        """
+        memory = self._memory
         self._horizontal.spread(self._kind.restart_m**2)
         self._horizontal.forget_heading()
-        self._memory.path = PathMemory()
+        memory.path = PathMemory()
+        memory.trust.lose_path()
+        if memory.fix_t_mono_ns is not None:
+            memory.fix_t_mono_ns -= back_ns
+        if memory.wander_t_mono_ns is not None:
+            memory.wander_t_mono_ns -= back_ns
         self._own = OwnPath(self._kind)
-        self._memory.recognition = Recognition(shared_m2=self._memory.recognition.shared_m2)
+        memory.recognition = Recognition(shared_m2=memory.recognition.shared_m2)
         self._horizontal.hear_anew()

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from base_station.bench.fusion.walks import Receiver, Walk
+from base_station.bench.rig.said import mono_ns
 from base_station.fusion import FUSERS
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
@@ -156,6 +157,43 @@ def test_what_is_said_last_is_followed_though_the_clock_was_ahead_before(
     estimate = fuser.estimate()
     assert estimate is not None
     assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[199]) < 10.0
+
+
+def begun_anew(kind: FuserKind, behind_s: float) -> list[Estimate]:
+    """A minute in, a unit's program begins anew, with a clock that is so far behind; no fixes for
+    ten seconds about it, and after the second minute.
+    """
+    fuser, source, restart = kind.new(), receiver(), 300
+    walk = Walk.wander(np.random.default_rng(1), 180.0)
+    walk.own_m[restart:] -= walk.own_m[restart - 1]
+    estimates = []
+    for index in range(len(walk)):
+        t_s = float(walk.t_s[index])
+        t_mono_ns = mono_ns(t_s - behind_s if index >= restart else t_s)
+        position = walk.position(index, boot_id=1 if index < restart else 2)
+        header = msgspec.structs.replace(position.header, t_mono_ns=t_mono_ns)
+        fuser.advance(msgspec.structs.replace(position, header=header))
+        if index % 5 == 0 and index < 600 and abs(index - restart) > 50:
+            fix = source.fix(t_s, walk.truth_m[index])
+            assert fuser.correct(msgspec.structs.replace(fix, t_mono_ns=t_mono_ns)).accepted
+        estimate = fuser.estimate()
+        assert estimate is not None
+        assert estimate.t_mono_ns == t_mono_ns
+        estimates.append(estimate)
+    return estimates
+
+
+def test_a_unit_s_fixes_are_as_old_and_as_good_though_its_clock_began_anew(
+    kind: FuserKind,
+) -> None:
+    """With another battery the clock of its machine begins at nought."""
+    usual, anew = begun_anew(kind, 0.0), begun_anew(kind, 900.0)
+    for one, other in zip(usual, anew, strict=True):
+        assert other.since_gps_s == pytest.approx(one.since_gps_s, abs=0.3)
+        std_m = math.hypot(one.std_north_m, one.std_east_m)
+        assert math.hypot(other.std_north_m, other.std_east_m) == pytest.approx(std_m, rel=0.05)
+    assert anew[-1].since_gps_s is not None
+    assert anew[-1].since_gps_s > 60.0
 
 
 def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:

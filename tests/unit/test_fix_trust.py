@@ -3,28 +3,42 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
+import msgspec
 import numpy as np
 import pytest
 
+from base_station.bench.rig import said
 from base_station.fusion.fixes.sky import common_m2
-from base_station.fusion.fixes.trust import SURPRISE_MOST, FixTrust
+from base_station.fusion.fixes.trust import FRESH_LEAST, FRESH_PART, SURPRISE_MOST, FixTrust
+from base_station.fusion.gps_inertial import GpsInertial, GpsInertialFuser
+from base_station.fusion.parameters import Parameters
 from base_station.fusion.path.memory import OwnPlace
 from base_station.fusion.port import PlaceFix
+from base_station.fusion.remembered import Memory
 from shared.clock import NS_PER_S
+from shared.messages import Header
 
 STD_M = 2.0
 OWN_M2 = STD_M**2 - common_m2(STD_M)
 
 
-def after_walk(fresh_part: float, turn_rad: float, seconds: int = 600, step_s: int = 1) -> FixTrust:
+def after_walk(
+    fresh_part: float,
+    turn_rad: float,
+    seconds: int = 600,
+    step_s: int = 1,
+    trust: FixTrust | None = None,
+) -> FixTrust:
     """Somebody walks a metre a second; so much of the receiver's variance is new with each fix."""
-    rng, trust = np.random.default_rng(3), FixTrust()
+    rng, trust = np.random.default_rng(3), trust or FixTrust()
     for second in range(0, seconds, step_s):
         along = second * np.array([math.cos(turn_rad), math.sin(turn_rad)])
         north_m, east_m = along + rng.normal(0.0, math.sqrt(fresh_part * OWN_M2), 2)
         fix = PlaceFix(second * NS_PER_S, float(north_m), float(east_m), 0.0, STD_M, None)
-        trust.compare_pair(fix, OwnPlace(second * NS_PER_S, float(second), 0.0, float(second)))
+        place = OwnPlace(second * NS_PER_S, 0.6 * second, 0.8 * second, float(second))
+        trust.compare_pair(fix, place)
     return trust
 
 
@@ -38,8 +52,51 @@ def test_how_much_is_new_with_every_fix_is_learnt_whatever_the_heading(
 
 def test_a_few_fixes_hardly_tell_and_gaps_nothing() -> None:
     known = FixTrust().fresh_part
+    assert known == FRESH_PART
     assert after_walk(0.0, 0.0, seconds=4).fresh_part > 0.6 * known
     assert after_walk(0.9, 0.0, step_s=10).fresh_part == known
+    assert after_walk(3.0, 0.0).fresh_part == 1.0, "never more than all of it"
+
+
+def test_a_receiver_that_errs_otherwise_now_is_known_anew() -> None:
+    """After some minutes: it was in the open, and is between houses."""
+    trust = after_walk(0.15, 0.0, seconds=1200)
+    assert after_walk(0.9, 0.0, seconds=600, trust=trust).fresh_part > 0.7
+    assert after_walk(0.15, 0.0, seconds=600, trust=trust).fresh_part < 0.3
+
+
+def test_a_wall_makes_a_fix_worse_and_so_does_what_it_admits() -> None:
+    trust = FixTrust()
+    best = PlaceFix(0, 0.0, 0.0, 0.0, STD_M, None)
+    trust.believe(best)
+    assert trust.doubt_m2(best, 0.0) == pytest.approx(0.0)
+    assert trust.doubt_m2(best, 4.0) == pytest.approx(4.0**2)
+    worse = msgspec.structs.replace(best, horizontal_std_m=5.0)
+    common_more_m2 = common_m2(5.0) - common_m2(STD_M)
+    excess_m2 = 4.0 * (5.0**2 - STD_M**2 - common_more_m2)
+    assert trust.doubt_m2(worse, 4.0) == pytest.approx(4.0**2 + excess_m2)
+
+
+def test_who_stands_still_has_no_receiver_that_hangs_nor_has_who_came_a_long_way_since() -> None:
+    trust, kind = FixTrust(), Parameters()
+    for second in range(20):
+        assert not trust.is_stuck(kind, fix_at(second, 7.0), 500.0)
+    assert trust.is_stuck(kind, fix_at(20, 7.0), 500.0 + 1.1 * kind.stuck_m)
+    assert not trust.is_stuck(kind, fix_at(21, 7.1), 500.0 + 2.0 * kind.stuck_m)
+    twice = trust.is_stuck(kind, fix_at(22, 7.1), 500.0 + 5.0 * kind.stuck_m)
+    assert not twice, "it gave it twice"
+
+
+def test_a_receiver_that_was_wrong_fits_twice_as_often_before_it_is_believed() -> None:
+    trust, kind = FixTrust(), Parameters()
+    assert trust.fits()
+    for _ in range(100):
+        trust.misses(kind, fix_at(0, 0.0), (0.0, 0.0))
+    unheard = 0
+    while not trust.fits():
+        unheard += 1
+    assert unheard == kind.distrust_most // 2
+    assert trust.outliers.kept == []
 
 
 def surprise_of(worse: float) -> float:
@@ -54,3 +111,106 @@ def surprise_of(worse: float) -> float:
 def test_fixes_that_are_as_they_claim_leave_little_surprise_and_worse_ones_much() -> None:
     assert surprise_of(1.0) < 1.4
     assert 2.0 < surprise_of(2.0) < SURPRISE_MOST
+
+
+def fix_at(second: float, north_m: float, east_m: float = 0.0, std_m: float = STD_M) -> PlaceFix:
+    return PlaceFix(said.mono_ns(second), north_m, east_m, 0.0, std_m, None)
+
+
+def walk(
+    fuser: GpsInertialFuser, seconds: Iterable[int], boot_id: int = 1, own_m: float = 0.0
+) -> None:
+    """North at a metre a second, by an own path that is so far ahead."""
+    for second in seconds:
+        for fifth in range(5):
+            t_s = second + fifth / 5
+            header = Header("FF-01", boot_id, 5 * second + fifth, said.mono_ns(t_s))
+            way_m = t_s + own_m
+            fuser.advance(said.position(header, north_m=way_m, distance_m=way_m))
+
+
+def walk_with_fixes(
+    fuser: GpsInertialFuser, seconds: range, own_m: float = 0.0, std_m: float = STD_M
+) -> None:
+    rng = np.random.default_rng(seconds.start)
+    for second in seconds:
+        walk(fuser, [second], own_m=own_m)
+        north_m, east_m = rng.normal(0.0, 0.6 * std_m, 2).tolist()
+        fuser.correct(fix_at(second + 0.8, second + 0.8 + north_m, east_m, std_m))
+
+
+def trust_of(fuser: GpsInertialFuser) -> FixTrust:
+    return msgspec.msgpack.decode(fuser.save(), type=Memory).trust
+
+
+def test_what_a_fix_claims_that_was_turned_away_makes_no_good_one_worse() -> None:
+    """Inside a receiver says once that it knows to the metre where it is not."""
+    stds_m = []
+    for wrong in (False, True):
+        fuser = GpsInertial().new()
+        walk_with_fixes(fuser, range(60), std_m=3.0)
+        walk(fuser, range(60, 120))
+        if wrong:
+            assert not fuser.correct(fix_at(119.8, 300.0, 200.0, 1.27)).accepted
+        walk_with_fixes(fuser, range(120, 140), std_m=3.0)
+        estimate = fuser.estimate()
+        assert estimate is not None
+        stds_m.append(estimate.std_east_m)
+    assert stds_m[1] == pytest.approx(stds_m[0], rel=0.05)
+
+
+def test_the_best_that_a_taken_fix_claimed_is_what_the_receiver_can() -> None:
+    """Worse than that is what surrounds it; late or in time."""
+    for late_s in (0.0, 30.0):
+        fuser = GpsInertial().new()
+        walk_with_fixes(fuser, range(60), std_m=3.0)
+        assert fuser.correct(fix_at(59.9 - late_s, 59.9 - late_s, 0.0, 1.5)).accepted
+        trust = trust_of(fuser)
+        assert trust.own_m2(fix_at(60.0, 60.0, 0.0, 3.0)) == 1.5**2 - common_m2(1.5)
+        assert trust.doubt_m2(fix_at(60.0, 60.0, 0.0, 3.0), 0.0) > 3.0**2
+
+
+def test_a_path_that_jumps_tells_nothing_of_how_a_receiver_jumps() -> None:
+    fuser = GpsInertial().new()
+    walk_with_fixes(fuser, range(60))
+    before = trust_of(fuser).fresh_part
+    assert before > 2.0 * FRESH_LEAST
+    walk_with_fixes(fuser, range(60, 65), own_m=500.0)
+    assert trust_of(fuser).fresh_part == pytest.approx(before, rel=0.25)
+
+
+def test_a_receiver_that_hangs_is_noticed_though_the_unit_begins_anew() -> None:
+    fuser = GpsInertial().new()
+    walk_with_fixes(fuser, range(60))
+    hangs_m = 60.5
+    verdicts = []
+    for second in range(60, 80):
+        boot_id, own_m = (1, 0.0) if second < 63 else (2, -63.0)
+        walk(fuser, [second], boot_id, own_m)
+        verdicts.append(fuser.correct(fix_at(second + 0.8, hangs_m)))
+    reasons = [verdict.reason for verdict in verdicts]
+    assert reasons[-6:] == ["the receiver is stuck"] * 6
+
+
+@pytest.mark.parametrize("turn_rad", [-2.0, 0.5])
+def test_fixes_draw_the_walk_of_a_run_that_has_just_begun(turn_rad: float) -> None:
+    """Those that were turned away before are of a path that goes another way."""
+    trust, kind, shape = FixTrust(), Parameters(), None
+    for second in range(19):
+        assert trust.misses(kind, fix_at(second, second), (0.0, float(second))) is None
+    trust.lose_path()
+    for second in range(30):
+        own_m = second * math.cos(turn_rad), -second * math.sin(turn_rad)
+        shape = shape or trust.misses(kind, fix_at(20 + second, 20.0 + second), own_m)
+    assert shape is not None
+    assert shape.turn_rad == pytest.approx(turn_rad)
+    assert trust.fits(), "they were right after all"
+
+
+def test_fixes_that_were_worse_than_they_claim_make_the_next_one_worse() -> None:
+    trust = FixTrust()
+    best = PlaceFix(0, 0.0, 0.0, 0.0, STD_M, None)
+    for _ in range(4):
+        trust.compare(9.7)
+    assert trust.surprise > 2.0
+    assert trust.doubt_m2(best, 0.0) == pytest.approx(STD_M**2 * (trust.surprise - 1.0))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.led import Led
 from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.packed import CHUNK, MOST_CHUNKS
 from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART
@@ -254,6 +255,64 @@ def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when(
     expected_m = [place.place(own_north_m, 5.0) for own_north_m in arrays.own_m[:, 0].tolist()]
     assert arrays.shown_m == pytest.approx(np.array(expected_m), abs=0.05)
     assert arrays.down_m == pytest.approx(-2.0, abs=0.02)
+
+
+def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(
+    at: Callable[..., Position],
+) -> None:
+    """Packed or not, in a frame that has moved since."""
+    history = walked(at, 800)
+    history.reframe(0.4, 3.0, -2.0, 1.5)
+    before, begin_ns = history.arrays(), 100 * NS_PER_S
+    assert history.packed
+    assert history.packed.begin < begin_ns // 1_000_000
+    history.lead(Led(begin_ns, 50.0, -20.0, 0.6, 0.8, 2.5))
+    after = history.arrays()
+    run = before.t_ns >= begin_ns
+    own_m = before.own_m[run]
+    assert np.array_equal(after.shown_m[~run], before.shown_m[~run])
+    assert np.array_equal(after.down_m[~run], before.down_m[~run])
+    north_m = 50.0 + 0.6 * own_m[:, 0] - 0.8 * own_m[:, 1]
+    east_m = -20.0 + 0.8 * own_m[:, 0] + 0.6 * own_m[:, 1]
+    assert after.shown_m[run] == pytest.approx(np.column_stack((north_m, east_m)), abs=0.03)
+    assert after.down_m[run] == pytest.approx(before.down_m[run] + 2.5, abs=0.011)
+    assert np.array_equal(after.own_m, before.own_m)
+
+
+def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now(
+    at: Callable[..., Position],
+) -> None:
+    history = walked(at, 20)
+    assert not history.move_fixes(0.3, 1.0, 2.0)
+    for second in range(0, 800, 2):
+        history.fix(PlaceFix(0, 0.1 * second, 5.0, 0.0, 3.0, None), second * NS_PER_S)
+    history.reframe(0.4, 3.0, -2.0, 0.0)
+    before = history.arrays()
+    assert history.fixes.packed
+    assert history.move_fixes(-0.7, 10.0, 4.0)
+    assert history.is_refixed
+    after = history.arrays()
+    expected_m = [Moved(-0.7, 10.0, 4.0).place(*place_m) for place_m in before.fix_m.tolist()]
+    assert after.fix_m == pytest.approx(np.array(expected_m), abs=0.04)
+    assert np.array_equal(after.shown_m, before.shown_m)
+    assert not after.shown_std_m.any(), "what was estimated with them tells nothing"
+
+
+def test_what_is_undone_is_where_it_was() -> None:
+    move = Moved(0.8, 30.0, -7.0, 2.0)
+    assert move.undone().place(*move.place(4.0, 9.0)) == pytest.approx((4.0, 9.0))
+    same = msgspec.structs.astuple(move.and_then(move.undone()))
+    assert same == pytest.approx((0.0,) * 4, abs=1e-9)
+
+
+def test_times_that_go_back_stay_apart_and_in_order(at: Callable[..., Position]) -> None:
+    history = PathHistory()
+    assert (history.begin_ns, history.end_ns, history.shown_m) == (None, None, None)
+    for t_s in (100, 20, 21, 22, 101):
+        history.note(at(float(t_s), 2.0 * t_s), t_s * NS_PER_S, jumped=False)
+    times_ns = history.arrays().t_ns
+    assert (np.diff(times_ns) > 0).all()
+    assert (times_ns[0], times_ns[-1]) == (100 * NS_PER_S, 101 * NS_PER_S)
 
 
 def test_trimmed_it_begins_later(at: Callable[..., Position]) -> None:

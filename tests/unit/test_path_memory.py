@@ -68,6 +68,39 @@ def test_the_newest_counts_for_what_is_to_come(hour: PathMemory) -> None:
     assert then.t_ns == 3600 * NS_PER_S - FIFTH_NS
 
 
+def test_before_the_first_place_that_is_known_a_wearer_was_there_for_some_seconds(at: At) -> None:
+    memory = PathMemory()
+    memory.note(at(100 * NS_PER_S))
+    just_before = memory.at(96 * NS_PER_S)
+    assert not isinstance(just_before, str)
+    assert just_before.north_m == 100.0
+    assert memory.at(94 * NS_PER_S) == "too old"
+
+
+def test_where_positions_come_fast_the_newest_is_known_and_no_more_are_kept(at: At) -> None:
+    """A hundred a second."""
+    memory = PathMemory()
+    for step in range(5000):
+        t_ns = step * NS_PER_S // 100
+        memory.note(at(t_ns))
+        newest = memory.at(t_ns + NS_PER_S)
+        assert not isinstance(newest, str)
+        assert newest.t_ns == t_ns
+    assert len(memory.points) <= 54 * 5
+
+
+def test_the_last_minute_is_known_as_it_was_walked(at: At) -> None:
+    """To and fro every second; of what is older, only where it began and ended."""
+    memory = PathMemory()
+    for t_ns in range(0, 300 * NS_PER_S, FIFTH_NS):
+        memory.note(at(t_ns, north_m=t_ns // NS_PER_S % 2))
+    for ago_s in range(1, 59):
+        t_ns = 299 * NS_PER_S - ago_s * NS_PER_S + 2 * FIFTH_NS
+        then = memory.at(t_ns)
+        assert not isinstance(then, str)
+        assert then.north_m == t_ns // NS_PER_S % 2
+
+
 @pytest.mark.parametrize("late_s", [1480, 900])
 def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
     memory, late_ns = PathMemory(), late_s * NS_PER_S
@@ -83,6 +116,14 @@ def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
     further = memory.at(late_ns + FIFTH_NS // 2)
     assert not isinstance(further, str)
     assert further.north_m == pytest.approx(7.0 + 0.1 * (late_s + 10.2 - 7.0) / 10.2, abs=0.01)
+
+
+def test_what_comes_late_and_is_too_old_is_not_kept(at: At, hour: PathMemory) -> None:
+    """Out of a journal of hours; it would have to be sorted in, one by one."""
+    before = msgspec.msgpack.encode(hour)
+    for t_s in range(1, 1799, 100):
+        hour.fill(at(t_s * NS_PER_S))
+    assert msgspec.msgpack.encode(hour) == before
 
 
 def test_a_place_farther_than_a_row_holds_is_at_its_end(at: At) -> None:

@@ -58,6 +58,7 @@ class FixTaker:
             memory.trust.compare(distance2)
             memory.trust.compare_pair(fix, then)
         self._horizontal.update(self._sighting(fix, then, self._kind.doubt_lasts))
+        memory.trust.believe(fix)
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
             self._height.correct(fix.down_m, std_m)
@@ -77,6 +78,7 @@ class FixTaker:
             return FixVerdict(False, "does not fit the path walked")
         lasting_m2 = 2.0 * self._kind.slow_s * slow_m2 + own_m2
         self._horizontal.update(msgspec.structs.replace(once, white_m2=lasting_m2))
+        self._memory.trust.believe(fix)
         return FixVerdict(True)
 
     def _sighting(self, fix: PlaceFix, then: OwnPlace, lasts: float) -> Sighting:

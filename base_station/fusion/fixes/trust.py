@@ -37,7 +37,7 @@ class FixTrust(msgspec.Struct):
     same_since_m: float = 0.0  # distance walked when the fix last changed
     distrust: int = 0  # grows by one with a fix that does not fit, falls by two with one that does
     outliers: Outliers = msgspec.field(default_factory=Outliers)
-    best_own_m2: float = math.inf  # least variance of its own that the receiver ever claimed
+    best_own_m2: float = math.inf  # least variance of its own claimed by a fix that was taken
     surprise: float = 1.0  # how much worse fixes fit than they claim, as a variance
     before: tuple[PlaceFix, OwnPlace] | None = None  # the last fix and the own path's place then
     fresh_sum: float = FRESH_FIXES * FRESH_PART
@@ -62,9 +62,16 @@ class FixTrust(msgspec.Struct):
 
     def own_m2(self, fix: PlaceFix) -> float:
         """Variance of what the receiver errs by itself where nothing disturbs it."""
-        claimed_m2 = fix.horizontal_std_m**2 - self.common_m2(fix)
-        self.best_own_m2 = min(self.best_own_m2, claimed_m2)
-        return self.best_own_m2
+        return min(self.best_own_m2, self._claimed_m2(fix))
+
+    def believe(self, fix: PlaceFix) -> None:
+        """Note a fix that was taken; what one claims that was turned away tells nothing."""
+        self.best_own_m2 = self.own_m2(fix)
+
+    def lose_path(self) -> None:
+        """No fix and no place of the own path of before can be held against those to come."""
+        self.last_fix_m, self.before = None, None
+        self.outliers.clear()
 
     @property
     def fresh_part(self) -> float:
@@ -81,8 +88,7 @@ class FixTrust(msgspec.Struct):
         (last, was) = before
         apart_m2 = (fix.north_m - last.north_m) ** 2 + (fix.east_m - last.east_m) ** 2
         way_m2 = (then.north_m - was.north_m) ** 2 + (then.east_m - was.east_m) ** 2
-        claimed_m2 = fix.horizontal_std_m**2 - self.common_m2(fix)
-        part = min((apart_m2 - way_m2) / (4.0 * claimed_m2), FRESH_MOST)
+        part = min((apart_m2 - way_m2) / (4.0 * self._claimed_m2(fix)), FRESH_MOST)
         keep = 1.0 - 1.0 / FRESH_KEPT
         self.fresh_sum = keep * self.fresh_sum + part
         self.fresh_pairs = keep * self.fresh_pairs + 1.0
@@ -110,3 +116,7 @@ class FixTrust(msgspec.Struct):
             self.outliers.clear()
             self.distrust = 0
         return shape
+
+    def _claimed_m2(self, fix: PlaceFix) -> float:
+        """Variance of what the receiver says that it errs by itself."""
+        return fix.horizontal_std_m**2 - self.common_m2(fix)

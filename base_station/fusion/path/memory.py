@@ -52,6 +52,8 @@ class PathMemory(msgspec.Struct):
     def fill(self, position: Position) -> None:
         """A point that came late, where none is near."""
         point = _point(position)
+        if self.points and point.t_ns < self.points[-1].t_ns - KEPT_NS:
+            return
         near = [one for one in self._around(point.t_ns) if one is not None]
         if not near or any(abs(one.t_ns - point.t_ns) < STEP_NS for one in near):
             return

@@ -32,6 +32,8 @@ class Rides(msgspec.Struct):
         climbed by so much meanwhile, does not; 0 where it does not say so.
         """
         felt, now_ns = self.felt, air.t_mono_ns
+        if felt and now_ns < felt[-1][0]:  # the unit's clock went back
+            felt.clear()
         felt.append((now_ns, air.down_m))
         if now_ns - felt[0][0] < BEGIN_NS + OVER_NS:
             return 0.0

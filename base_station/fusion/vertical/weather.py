@@ -37,8 +37,13 @@ class Weather(msgspec.Struct):
         rise_m = altitude_m + own_down_m
         source = self.sources.get(name)
         if source is None or t_ns - source.t_ns > FRESH_NS:
+            self.sources = {
+                other: one for other, one in self.sources.items() if t_ns - one.t_ns <= FRESH_NS
+            }
             self.sources[name] = _Source(rise_m - self.rise_m, t_ns)
             self.t_ns = max(t_ns, self.t_ns or t_ns)
+            return
+        if t_ns <= source.t_ns:  # its clock was wrong, now or before
             return
         source_s = (t_ns - source.t_ns) / NS_PER_S
         source.t_ns = t_ns
