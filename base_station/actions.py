@@ -152,8 +152,8 @@ class Actions:
         self._positioning.forget(state, unit)
         met = pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
-        command_book.forget(state, unit)
-        return [unit, TrailFilled(unit.unit_id), _pins_of(met)]
+        told = command_book.forget(state, unit)
+        return [unit, TrailFilled(unit.unit_id), *told, _pins_of(met)]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[Effect]:
         unit = _registered(state, action.unit_id)

@@ -14,7 +14,7 @@ from threading import Condition
 from shared.channels import Qos, parse_key
 from shared.clock import Clock
 from shared.errors import UnknownChannelError
-from shared.mcap_log import LogRecord, read_log
+from shared.mcap_log import LogRecord, read_log, segment_paths
 
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _RECORDS_MAX = 100_000
@@ -170,6 +170,15 @@ class LogFeed:
         """
         self._flush()
         return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
+
+    def watch(self) -> Callable[[], bool]:
+        """Gives what tells whether a segment of now has been written anew since, or is gone."""
+        now = self._files()
+        return lambda: not now <= self._files()
+
+    def _files(self) -> set[tuple[str, int]]:
+        """By name and which file that is: one that is written anew is another."""
+        return {(path.name, path.stat().st_ino) for path in segment_paths(self._folder)}
 
 
 def _is_alert(key: str) -> bool:

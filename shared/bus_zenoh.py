@@ -235,14 +235,16 @@ def _hand_replies_over(replies: _Replies, on_reply: ReplyHandler) -> None:
     """Until no more come; in a thread of its own for the same reason: live data comes over the
     same link, behind the replies.
     """
-    with suppress(zenoh.ZError):
-        while True:
-            reply: zenoh.Reply | None = replies.recv()
-            while reply is not None:
-                if reply.ok is not None:
-                    on_reply(reply.ok.payload.to_bytes())
-                reply = replies.try_recv()
-    on_reply(None)
+    try:
+        with suppress(zenoh.ZError):
+            while True:
+                reply: zenoh.Reply | None = replies.recv()
+                while reply is not None:
+                    if reply.ok is not None:
+                        on_reply(reply.ok.payload.to_bytes())
+                    reply = replies.try_recv()
+    finally:
+        on_reply(None)  # else whoever asked would wait for ever
 
 
 def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from shared.errors import DataFolderInUseError, LogError
@@ -39,8 +40,9 @@ class FolderLock:
             raise DataFolderInUseError(
                 f"another {holder} is using {folder} (process {process or 'unknown'}): {remedy}"
             ) from error
-        os.ftruncate(self._descriptor, 0)
-        os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
+        with suppress(OSError):  # a disk that is full: it is held, and cannot be said by whom
+            os.ftruncate(self._descriptor, 0)
+            os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
 
     @staticmethod
     def is_held(folder: Path) -> bool:

@@ -62,7 +62,8 @@ def walk(n: int, start_s: float = 0.0, shake_mps2: float = 3.0) -> ImuBatch:
     accel = np.tile([0.0, 0.0, 9.81], (n, 1))
     accel[:, 0] = shake_mps2 * np.sin(40.0 * t_ns / NS_PER_S)
     accel[:, 1] = 1e-4 * np.arange(n)  # never the same twice
-    return ImuBatch(t_ns, accel, np.zeros((n, 3)), pressure_pa=np.linspace(0, n - 1, n) + 100_000.0)
+    gyro = np.tile(1e-6 * np.arange(n)[:, np.newaxis], 3)
+    return ImuBatch(t_ns, accel, gyro, pressure_pa=np.linspace(0, n - 1, n) + 100_000.0)
 
 
 def pipeline(tracker=None, rate_hz: float = 5.0) -> TrackerPipeline:

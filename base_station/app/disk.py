@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from base_station.app.parts import Announce, new_pipeline, project_whole_log
+from base_station.app.parts import Announce, past_pipeline, project_whole_log
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
 from base_station.db.projection import SqlProjection
@@ -52,7 +52,7 @@ class Disk:
 
     @property
     def archive(self) -> Archive:
-        return Archive(self.log.records, self.checkpoints, new_pipeline)
+        return Archive(self.log.records, self.checkpoints, past_pipeline, self.log.watch)
 
     def hindsight(self) -> Hindsight:
         return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
@@ -80,9 +80,9 @@ class Disk:
             save_soon()
 
         def obstacle(wish: Forgetting) -> str:
-            if not wish.told:
-                return "" if leads() else "this station is the standby; ask the one that leads"
-            # Nobody has asked whether one is open here; of what it follows, the other one has.
+            if not wish.told and not leads():
+                return "this station is the standby; ask the one that leads"
+            # One may have opened since it was wished; of what it follows, the other one has asked.
             is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
             return "an incident is open; it is done when that is closed" if is_open else ""
 

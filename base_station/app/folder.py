@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from base_station.app.parts import new_pipeline, project_whole_log
+from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.assessment.wearers import wearers
 from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
@@ -119,7 +119,8 @@ def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
     clock = SystemClock()
     records = Records(store, clock)
     incident = records.require_incident(incident_id)
-    archive = Archive(LogFeed(folder.log).records, Checkpoints(folder.checkpoints), new_pipeline)
+    log = LogFeed(folder.log)
+    archive = Archive(log.records, Checkpoints(folder.checkpoints), past_pipeline, log.watch)
     hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
     return LookBack(hindsight, records, incident, wearers(Roster(store, clock), incident))
 

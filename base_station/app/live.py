@@ -29,6 +29,7 @@ from base_station.config import StationConfig
 from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
 from base_station.db.kept import KeptTables
+from base_station.ended_threads import EndedThreads
 from base_station.fair_share import FairShare
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
@@ -98,6 +99,7 @@ class _LiveStation:
         self._again: _Again | None = None
         bus, steady = opened.bus, self._disk.clock
         self._lacking = Lacking()
+        self._ended = closing.enter_context(EndedThreads())
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
         self._reported: Mapping[str, str] = {}  # problems of the station's parts, by the log
         self._side = self._new_side()
@@ -296,7 +298,7 @@ class _LiveStation:
         not, and the service manager hears of it.
         """
         self._manager.working()
-        others = (self._forgettings, self._disk.check, self._lacking)
+        others = (self._forgettings, self._disk.check, self._lacking, self._ended)
         return facts_of(self._opened, self._disk.clock, self._side, others)
 
     def _ready(self, line: str) -> None:

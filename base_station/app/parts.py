@@ -19,6 +19,7 @@ from base_station.feed import LogFeed
 from base_station.first_login import USERNAME, ensure_administrator
 from base_station.fusion import FUSERS
 from base_station.live.sinks import Projection
+from base_station.past.past_pipeline import PastPipeline
 from base_station.past.playback import Archive
 from base_station.past.rebuild import project_log
 from base_station.past.replay import ReplaySession, Window
@@ -31,7 +32,12 @@ Announce = Callable[[str], None]
 
 
 def new_pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
+    """The live station's, which sees to its mistakes."""
     return StationPipeline(ALARMS, FUSERS[0], checkpoint)
+
+
+def past_pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
+    return PastPipeline(ALARMS, FUSERS[0], checkpoint)
 
 
 def replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartReplay:
@@ -66,7 +72,7 @@ def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], No
 
     count = project_log(
         LogFeed(log).records(),
-        new_pipeline(None),
+        past_pipeline(None),
         write,
         lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
     )

@@ -14,7 +14,7 @@ from base_station.api.services import Services
 from base_station.app.parts import (
     Announce,
     announce_first_login,
-    new_pipeline,
+    past_pipeline,
     project_whole_log,
     replay_starter,
 )
@@ -85,7 +85,7 @@ def run_replay_station(
 def _archive(folder: DataFolder, scratch: Path) -> Archive:
     """Begins at what the station saved, where it did; nothing is saved beside it."""
     saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
-    return Archive(LogFeed(folder.log).records, Checkpoints(saved), new_pipeline)
+    return Archive(LogFeed(folder.log).records, Checkpoints(saved), past_pipeline)
 
 
 def _ignore(_: object) -> None:

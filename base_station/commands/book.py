@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from base_station.commands.state import Delivery, Order, SentCommand
+from base_station.commands.state import Delivery, DeliveryState, Order, SentCommand
 from base_station.live_state import FORGOTTEN, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.errors import UserError
@@ -19,6 +19,7 @@ from shared.messages.station import ConfirmCommand, SendCommand
 
 MOST_OPEN = 50
 CLOSED_KEPT = 10  # at hand; the log has all of them
+_NOT_THERE: frozenset[DeliveryState] = frozenset({"queued", "sent"})  # as far as is known
 
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
@@ -93,13 +94,21 @@ def expire(state: StationState) -> Iterator[SentCommand]:
         yield command
 
 
-def forget(state: StationState, unit: UnitState) -> None:
-    """Who of this unit's wearers acknowledged what, and texts to them."""
+def forget(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
+    """Who of this unit's wearers acknowledged what, and texts to them.  Of a message nothing is
+    left then: for whom it has not reached its time is over.
+    """
     for command in state.commands.values():
         delivery = command.deliveries.get(unit.unit_id)
-        if delivery is not None:
-            delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
-            command.text = FORGOTTEN if command.text else ""
+        if delivery is None:
+            continue
+        delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
+        command.text = FORGOTTEN if command.text else ""
+        if command.kind is CommandKind.TEXT:
+            for one in command.deliveries.values():
+                if command.state_of(one) in _NOT_THERE:
+                    one.expired_ns = state.t_ns
+        yield command
 
 
 def unanswered(state: StationState) -> tuple[Order, ...]:
@@ -111,12 +120,12 @@ def unanswered(state: StationState) -> tuple[Order, ...]:
             kind=command.kind,
             issued_by=command.issued_by,
             expires_ns=command.expires_ns,
-            text=command.text,
+            text="" if command.text == FORGOTTEN else command.text,
             position_rate_hz=command.position_rate_hz,
         )
         for command in state.commands.values()
         for delivery in command.deliveries.values()
-        if command.state_of(delivery) in {"queued", "sent"}
+        if command.state_of(delivery) in _NOT_THERE
     )
 
 

@@ -70,33 +70,38 @@ class Downlink:
                 if self._closed:
                     return
                 orders, self._changed = self._orders, False
-            self._try(orders)
-
-    def _try(self, orders: Sequence[Order]) -> None:
-        """No failure may end the thread: the next look tries again."""
-        try:
             self._say_all(orders)
-        except Exception:
-            if not self._failing:
-                logger.exception("commands cannot be sent; trying again")
-            self._failing = True
-        else:
-            self._failing = False
 
     def _say_all(self, orders: Sequence[Order]) -> None:
+        """What cannot be said ends nothing, and keeps nobody else from being told: the next look
+        tries again.
+        """
         now_ns = self._clock.monotonic_ns()
         said_ns = {}
+        failure: Exception | None = None
         for order in orders:
-            key = COMMAND.key(order.unit_id)
-            if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
-                continue  # what is forgotten here is said at once when the unit is back
             name = order.unit_id, order.command_id
-            before_ns = self._said_ns.get(name)
-            if before_ns is None or now_ns - before_ns >= _AGAIN_AFTER_NS:
-                self._bus.publish(key, encode(self._command(order)), COMMAND.qos)
-                before_ns = now_ns
-            said_ns[name] = before_ns
+            try:
+                last_ns = self._say(order, self._said_ns.get(name), now_ns)
+            except Exception as error:  # noqa: BLE001  # whatever it is, others are to be told
+                failure = error
+                continue
+            if last_ns is not None:
+                said_ns[name] = last_ns
         self._said_ns = said_ns
+        if failure is not None and not self._failing:
+            logger.error("a command cannot be sent; trying again", exc_info=failure)
+        self._failing = failure is not None
+
+    def _say(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
+        """When it was said last; None where it is not for now."""
+        key = COMMAND.key(order.unit_id)
+        if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
+            return None  # what is forgotten here is said at once when the unit is back
+        if before_ns is not None and now_ns - before_ns < _AGAIN_AFTER_NS:
+            return before_ns
+        self._bus.publish(key, encode(self._command(order)), COMMAND.qos)
+        return now_ns
 
     def _command(self, order: Order) -> Command:
         return Command(

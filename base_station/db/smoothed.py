@@ -5,7 +5,7 @@ smoothed trails, the units' own, and an assessment.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
 from sqlalchemy import delete, select
@@ -31,8 +31,13 @@ class SmoothedTracks:
         made_ns: int,
         tracks: Mapping[str, Sequence[TrackSample]],
         raw: Mapping[str, Sequence[TrackSample]],
-    ) -> None:
-        """In the place of what was made before, the assessment included."""
+        report: bytes | None,
+        is_outdated: Callable[[], bool] = lambda: False,
+    ) -> bool:
+        """In the place of what was made before, the assessment included; None: not assessed yet.
+
+        False where it ``is_outdated`` by the time that nobody else writes: nothing is kept then.
+        """
         raw_tracks = zlib.compress(msgspec.msgpack.encode(raw))
         rows = [
             {"incident_id": incident_id, "unit_id": unit_id}
@@ -41,6 +46,8 @@ class SmoothedTracks:
             for sample in track
         ]
         with self._store.write() as session:
+            if is_outdated():
+                return False
             for table in (SmoothedPoint, SmoothedIncident, LookedBack):
                 session.execute(delete(table).where(table.incident_id == incident_id))
             session.execute(
@@ -49,17 +56,13 @@ class SmoothedTracks:
                 )
             )
             session.execute(
-                insert(LookedBack).values(incident_id=incident_id, raw_tracks=raw_tracks)
+                insert(LookedBack).values(
+                    incident_id=incident_id, raw_tracks=raw_tracks, report=report
+                )
             )
             if rows:
                 session.execute(insert(SmoothedPoint), rows)
-
-    def put_report(self, incident_id: str, report: bytes) -> None:
-        """Of trails that are kept; without them it is not."""
-        with self._store.write() as session:
-            kept = session.get(LookedBack, incident_id)
-            if kept is not None:
-                kept.report = report
+        return True
 
     def report(self, incident_id: str) -> bytes | None:
         with self._store.read() as session:

@@ -21,7 +21,7 @@ from shared.bus import Bus
 from shared.channels import ROOT, backfilled_key, unread_key
 from shared.clock import Clock
 from shared.codec import header_of
-from shared.errors import BusError, WireError
+from shared.errors import WireError
 from shared.messages import JournalEntry
 
 logger = logging.getLogger(__name__)
@@ -69,6 +69,7 @@ class Backfill:
         self._turns: deque[str] = deque()  # units that may have something to be asked, by turns
         self._reported: Report = {}
         self._asking: dict[str, _Asked] = {}
+        self._backlogs = 0  # of these, questions behind live data
         self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
         self._news = Condition()
         self._report: Report | None = None
@@ -159,6 +160,7 @@ class Backfill:
 
     def _end(self, asked: _Asked) -> None:
         del self._asking[asked.unit_id]
+        self._backlogs -= not asked.question.urgent
         took_ns = self._clock.monotonic_ns() - asked.asked_ns
         self._journals[asked.unit_id].end(asked.question, took_ns)
         if asked.unit_id in self._reported:
@@ -171,7 +173,7 @@ class Backfill:
             question = self._journals[unit_id].next_question()
             if question is None or (question.what == "acknowledge" and not self._may_forget()):
                 continue
-            if question.urgent or len(self._asking) < AT_ONCE:
+            if question.urgent or self._backlogs < AT_ONCE:
                 self._ask(unit_id, question)
             else:
                 self._turns.append(unit_id)
@@ -179,6 +181,7 @@ class Backfill:
     def _ask(self, unit_id: str, question: Question) -> None:
         asked = _Asked(unit_id, question, self._clock.monotonic_ns())
         self._asking[unit_id] = asked
+        self._backlogs += not question.urgent
         with self._news:
             self._came_bytes[unit_id] = 0
         try:
@@ -189,7 +192,7 @@ class Backfill:
                 partial(self._note_reply, asked),
                 urgent=question.urgent,
             )
-        except BusError as error:
+        except Exception as error:  # noqa: BLE001  # or nobody's journal is asked any more
             logger.warning("the journal of %s cannot be asked: %s", unit_id, error)
             self._note_reply(asked, None)
 

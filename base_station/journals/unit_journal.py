@@ -63,6 +63,7 @@ class _Boot:
         self.first = 1  # the oldest that the journal has
         self.newest = 0  # that is known of
         self._settled_to = 0  # a number up to here that is missing is lost, not under way
+        self.unanswered: int | None = None  # from here on it said nothing of alerts, asked last
         self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
         self.acknowledged = 0
 
@@ -92,7 +93,7 @@ class _Boot:
         """The newest of what is missing and not under way, so many numbers at most; across a few
         that are there, rather than to ask again for each of many holes.
         """
-        lost = self._have.newest_missing(self.first, self._settled_to)
+        lost = self._have.newest_missing(self.first, self._answered_to(self._settled_to))
         if lost is None:
             return None
         last, least = lost.last, lost.last - count + 1
@@ -118,10 +119,13 @@ class _Boot:
         last words of a run that ended out of reach.
         """
         last = max(self.held.lasts[-1], self._settled_to) if self.held.lasts else self.newest
-        newest = self._known.newest_missing(self.first, last)
+        newest = self._known.newest_missing(self.first, self._answered_to(last))
         if newest is None:
             return None
         return Run(self._known.complete_to(self.first) + 1, newest.last)
+
+    def _answered_to(self, last: int) -> int:
+        return last if self.unanswered is None else min(last, self.unanswered - 1)
 
 
 class UnitJournal:
@@ -162,7 +166,7 @@ class UnitJournal:
             return None
         if self._index_due_ns == 0:
             return Question("index", urgent=True)
-        return self._ask_alerts() or self._ask_piece() or self._acknowledge()
+        return self._ask_missing() or self._ask_unanswered() or self._acknowledge()
 
     def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
         """Learn from one reply; what it brings is to be kept.
@@ -194,6 +198,7 @@ class UnitJournal:
     def end(self, question: Question, took_ns: int) -> None:
         """No more replies come to this question."""
         told, self._told = self._told, 0
+        self._note_answered(question, told)
         if not told:
             self._silent = True
             if question.what == "range":
@@ -218,6 +223,25 @@ class UnitJournal:
 
     def _newest_first(self) -> Iterator[tuple[int, _Boot]]:
         return ((boot_id, self._boots[boot_id]) for boot_id in reversed(self._indexed))
+
+    def _note_answered(self, question: Question, told: int) -> None:
+        """What a unit's disk does not take it says, and cannot give until later: what it wrote
+        before that is not to wait for it.  So where it said nothing about alerts, one question
+        about what is before these has its turn.
+        """
+        asked = dict(question.parameters)
+        boot = self._boots.get(asked["epoch"]) if "from" in asked else None
+        if boot is not None:
+            boot.unanswered = None if told or question.what != "urgent" else asked["from"]
+
+    def _ask_missing(self) -> Question | None:
+        return self._ask_alerts() or self._ask_piece()
+
+    def _ask_unanswered(self) -> Question | None:
+        """There is nothing else to ask for."""
+        for boot in self._boots.values():
+            boot.unanswered = None
+        return self._ask_missing()
 
     def _ask_alerts(self) -> Question | None:
         for boot_id, boot in self._newest_first():

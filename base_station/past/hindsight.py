@@ -56,6 +56,7 @@ class Known:
 
     state: StationState
     solution: Solution
+    is_outdated: Callable[[], bool]  # somebody was forgotten since
 
 
 class Hindsight:
@@ -80,18 +81,21 @@ class Hindsight:
 
     def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
         """Make it again from the log; ``on_progress`` hears the fraction done."""
-        return self._keep(incident, self.known(incident, on_progress))
+        return self._keep(incident, self.known(incident, on_progress), self._clock.utc_ns())
 
-    def _keep(self, incident: Incident, known: Known) -> Smoothed:
+    def _keep(
+        self, incident: Incident, known: Known, made_ns: int, report: IncidentReport | None = None
+    ) -> Smoothed:
+        """All of it at once: no assessment stands beside trails that it does not belong to."""
         incident_id, smoother = incident.incident_id, self._smoother.name
-        made_ns = self._clock.utc_ns()
         tracks = _without_empty(_smoothed_tracks(incident, known))
         is_kept = False
         if incident.closed_ns is not None:
             raw = _without_empty(_raw_tracks(incident, known))
+            packed = None if report is None else msgspec.msgpack.encode(report)
             with self._keeping:
-                self._store.put(incident_id, smoother, made_ns, tracks, raw)
-                is_kept = True
+                what = (incident_id, smoother, made_ns, tracks, raw, packed)
+                is_kept = self._store.put(*what, is_outdated=known.is_outdated)
         return Smoothed(incident_id, smoother, made_ns, tracks, is_kept)
 
     def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
@@ -154,36 +158,36 @@ class Hindsight:
     def _make_raw(self, incident: Incident) -> Tracks:
         known = self.known(incident)
         if incident.closed_ns is not None:
-            self._keep(incident, known)
+            self._keep(incident, known, self._clock.utc_ns())
         return _without_empty(_raw_tracks(incident, known))
 
     def _assess(self, incident: Incident, live: Tracks) -> IncidentReport:
-        known = self.known(incident)
+        known, made_ns = self.known(incident), self._clock.utc_ns()
         report = assess(
             incident.incident_id,
             self._smoother.name,
-            self._clock.utc_ns() // NS_PER_MS,
+            made_ns // NS_PER_MS,
             known.state,
             known.solution.verdicts,
             live,
             _smoothed_tracks(incident, known),
             _raw_tracks(incident, known),
         )
-        if incident.closed_ns is not None and self._keep(incident, known).is_kept:
-            with self._keeping:
-                self._store.put_report(incident.incident_id, msgspec.msgpack.encode(report))
+        if incident.closed_ns is not None:
+            self._keep(incident, known, made_ns, report)
         return report
 
     def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> Known:
         with self._working:
             until_ns = incident.closed_ns or self._clock.utc_ns()
+            is_outdated = self._archive.watch()
             state = self._state_at(until_ns, on_progress)
             evidence = evidence_of_all(state, FloorGrid.of(state.plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
                 solution = self._smoother.smooth(evidence, ties_of(state))
             on_progress(1.0)
-            return Known(state, solution)
+            return Known(state, solution, is_outdated)
 
     def _state_at(self, until_ns: int, on_progress: Progress) -> StationState:
         playback = Playback(self._archive)

@@ -23,6 +23,7 @@ from shared.messages import STATION_ID, AlarmChange, FusedPosition
 Record = tuple[int, str, bytes]  # station time, key, payload
 OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
+Watch = Callable[[], Callable[[], bool]]  # what it gives tells whether the past was changed since
 Decision = FusedPosition | AlarmChange
 
 BURST = 1000  # events
@@ -36,6 +37,7 @@ class Archive:
     open_log: OpenLog
     checkpoints: Checkpoints
     make_pipeline: MakePipeline
+    watch: Watch = lambda: lambda: False
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
         """The newest state that was saved of this log, as ``Checkpoints.latest``: its place is

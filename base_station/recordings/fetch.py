@@ -7,6 +7,7 @@ the disk and is not asked for again, whichever of the two was ended in between.
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import re
 import shutil
@@ -22,7 +23,6 @@ from base_station.journals.pace import Pace
 from shared.bus import Bus
 from shared.channels import ROOT
 from shared.clock import NS_PER_S, Clock
-from shared.errors import BusError, WireError
 from shared.folder_lock import FolderLock
 from shared.messages.recording import (
     RecordedFile,
@@ -30,6 +30,8 @@ from shared.messages.recording import (
     RecordingIndex,
     RecordingPiece,
 )
+
+logger = logging.getLogger(__name__)
 
 HASHES = "SHA256SUMS"  # as `sha256sum --check` reads it
 _SPARED_BYTES = 256_000_000  # of the disk, for the station's log
@@ -171,14 +173,12 @@ class Fetch:
         """Have all of one file; False where the unit does not have it any more."""
         whole, part = self._paths(file)
         whole.parent.mkdir(exist_ok=True)
-        earlier_bytes = 0
         if 0 < _size(whole) <= file.size_bytes and not part.exists():
-            earlier_bytes = _size(whole)
-            whole.rename(part)  # it may have grown since, and is looked at again
+            shutil.copyfile(whole, part)  # it may have grown; until more of it is here it stays
         for _ in range(_CHANCES):
             if not (yield from self._bytes(file, part, before_bytes)):
-                if earlier_bytes:
-                    _put_back(part, whole, earlier_bytes)
+                if whole.exists():
+                    part.unlink()
                 return False
             answer = yield from self._answer(
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
@@ -190,11 +190,7 @@ class Fetch:
                 part.replace(whole)
                 self._hashes[file.path] = digest.hex()
                 return True
-            if earlier_bytes:
-                _put_back(part, whole, earlier_bytes)
-                earlier_bytes = 0
-            else:
-                part.unlink()
+            part.unlink()
         raise _HopelessError(
             f"{file.path} came out different from what {self.wanted.unit_id} has, {_CHANCES} "
             "times: check the station's and the unit's disk"
@@ -242,8 +238,8 @@ class Fetch:
                     understood = read(answer)
                     self.state, self.problem = FetchState.FETCHING, ""
                     return understood
-            except (BusError, WireError):
-                pass  # the same as no answer: it is asked again
+            except Exception as error:  # noqa: BLE001  # whatever it is, it is no answer
+                logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
             self._pace.note_nothing()
             self.state = FetchState.WAITING
             self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
@@ -251,8 +247,10 @@ class Fetch:
     def _write_hashes(self) -> None:
         """Beside those of earlier pulls."""
         path = self.folder / HASHES
-        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-        known = {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
+        said = path.read_bytes().decode("utf-8", "replace") if path.exists() else ""
+        known = {
+            name: digest for digest, _, name in (line.partition("  ") for line in said.splitlines())
+        }
         text = "".join(
             f"{digest}  {name}\n" for name, digest in sorted((known | self._hashes).items())
         )
@@ -264,12 +262,6 @@ class Fetch:
 def _size(path: Path) -> int:
     """Of a file; 0 where there is none."""
     return path.stat().st_size if path.exists() else 0
-
-
-def _put_back(part: Path, whole: Path, size_bytes: int) -> None:
-    """What was whole before more was added to it still is."""
-    os.truncate(part, size_bytes)
-    part.replace(whole)
 
 
 def _is_safe(name: str) -> bool:

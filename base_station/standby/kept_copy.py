@@ -80,6 +80,7 @@ class KeptCopy:
         pki: PkiFolder,
         leader: Callable[[], str | None],
         other: Callable[[], str | None],
+        others_run: Callable[[], int],
         caught_up: Callable[[], bool],
         on_people: Callable[[], None],
         on_forgotten: Callable[[str], None],
@@ -87,6 +88,7 @@ class KeptCopy:
     ) -> None:
         """``leader``: whom to copy from, where that is another; ``other``: whose audit to add,
         when this station's log has ``caught_up``: what it tells to forget must be there.
+        ``others_run`` tells whether its program has started again, perhaps on another machine.
 
         ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
         or an incident ("person ID") that the other station has forgotten, and again if that cannot
@@ -97,6 +99,7 @@ class KeptCopy:
         self._pki = pki
         self._leader = leader
         self._other = other
+        self._others_run = others_run
         self._caught_up = caught_up
         self._on_people = on_people
         self._on_forgotten = on_forgotten
@@ -104,6 +107,7 @@ class KeptCopy:
         self._known = self._known_enrolled = b""
         self._base_map: tuple[Row, ...] = ()  # of the leader
         self._audit_number = 0  # up to which the other station's audit is here
+        self._audit_run = 0  # of its program, in which that was counted
 
     def look(self, stop: Event) -> None:
         """One round; ``stop`` ends it early.  Raises MusterError where the bus or a store fails."""
@@ -144,6 +148,9 @@ class KeptCopy:
                 self._tables.put_base_map(row, image)
 
     def _add_audit(self, other: str) -> None:
+        run = self._others_run()
+        if run != self._audit_run:
+            self._audit_run, self._audit_number = run, 0
         answer = self._ask(other, "audit", b"%d" % self._audit_number)
         entries = [] if answer is None else unpack(answer, list[Row])
         if not entries:

@@ -90,6 +90,7 @@ class Merging:
         self._deliver = deliver
         self._settled = settled
         self._other = other
+        self._noted: set[DoneApart] = set()  # written down, of parts that are fetched again
 
     def look(self, stop: Event) -> None:
         """One round; ``stop`` ends it early, and the next one begins the part again.
@@ -104,7 +105,7 @@ class Merging:
 
     def _merge(self, station: str, name: bytes, stop: Event) -> None:
         taken = 0
-        noted: list[Future[ActionDone]] = []
+        noted: dict[DoneApart, Future[ActionDone]] = {}
         while True:
             question = b"%s %d" % (name, taken)
             batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
@@ -114,38 +115,41 @@ class Merging:
             if not records:
                 break
             for record in records:
-                noted += self._take(station, record)
+                done = self._take(station, record)
+                if done is not None and done not in self._noted:
+                    noted[done] = self._gate.submit(STATION_ID, done)
             taken += len(records)
+        told = list(noted.values())
         if noted:
             text = (
                 f"While the stations were apart, people acted at {station} ({len(noted)} times), "
                 "and that is not in force here: the audit names it; do again what still matters"
             )
-            noted.append(self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text)))
-        while not (all(one.done() for one in noted) and self._settled()):
+            told.append(self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text)))
+        while not (all(one.done() for one in told) and self._settled()):
             if stop.wait(_SETTLE_S):
                 return
-        if any(one.exception() for one in noted):
+        if any(one.exception() for one in told):
             return  # this station does not lead any more: who does takes it
+        self._noted.update(noted)
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
 
-    def _take(self, station: str, record: Record) -> list[Future[ActionDone]]:
+    def _take(self, station: str, record: Record) -> DoneApart | None:
         """Gives what is to be written down of a person."""
         t_ns, key, payload = record
         try:
             unit_id, channel = parse_key(key)
         except UnknownChannelError:
             self._deliver(key, payload)
-            return []
+            return None
         if channel.direction is Direction.UP:
             self._deliver(backfilled_key(unit_id, channel.suffix), payload)
         elif channel is OPERATOR:
             action = _persons_action(payload)
             if action is not None:
-                done = DoneApart(station, t_ns, action.by, _in_words(action))
-                return [self._gate.submit(STATION_ID, done)]
-        return []
+                return DoneApart(station, t_ns, action.by, _in_words(action))
+        return None
 
 
 def _persons_action(payload: bytes) -> OperatorAction | None:

@@ -134,6 +134,11 @@ class Pair:
         there = self._election.is_there(self._around.clock.monotonic_ns())
         return other.station if other is not None and there else None
 
+    def others_run(self) -> int:
+        """Which run of its program the other station is in, as last heard."""
+        other = self._election.other
+        return other.run if other is not None else 0
+
     def take_over(self) -> None:
         """A person wants this station to lead, whatever it hears; soon."""
         with self._told:

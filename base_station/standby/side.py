@@ -194,6 +194,7 @@ class OneOfTwo:
             parts.pki,
             leader=pair.followed,
             other=pair.other_there,
+            others_run=pair.others_run,
             caught_up=lambda: pair.leads or pair.in_step,
             on_people=parts.on_people,
             on_forgotten=parts.forget,

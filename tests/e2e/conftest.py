@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect, sync_playwright
 
 from tests.e2e.console_files import CONSOLE, DIST
 from tests.e2e.enlisting import enlist
@@ -17,6 +17,7 @@ from tests.e2e.wearable import Wearable
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 UNIT = "FF-07"
+expect.set_options(timeout=60_000)  # in ms; a loaded machine draws late, and nothing is timed here
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,6 @@ from playwright.sync_api import Locator, Page
 from tests.e2e.console_files import CONSOLE
 
 AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
-SOON_MS = 15_000
 
 
 def menu(page: Page, name: str) -> Locator:
@@ -86,7 +85,7 @@ def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, 
     page.mouse.down()
     page.mouse.move(*on_plan(page, *end), steps=8)
     with page.expect_response(
-        lambda one: one.request.method == "PUT" and "/pins/" in one.url, timeout=SOON_MS
+        lambda one: one.request.method == "PUT" and "/pins/" in one.url
     ) as moved:
         page.mouse.up()
     pin: dict[str, Any] = moved.value.json()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.e2e.console_page import SOON_MS, close, menu
+from tests.e2e.console_page import close, menu
 
 INCIDENT = "Mill Road 7"
 NAME = "Ana Kovač"
@@ -21,7 +21,7 @@ def enlist(page: Page, card: Locator, unit_id: str) -> None:
 def register(card: Locator, unit_id: str) -> None:
     """In one press."""
     card.get_by_role("button", name="Register").click()
-    expect(card.get_by_label(f"Who wears {unit_id}")).to_be_visible(timeout=SOON_MS)
+    expect(card.get_by_label(f"Who wears {unit_id}")).to_be_visible()
 
 
 def add_person(page: Page) -> None:
@@ -30,7 +30,7 @@ def add_person(page: Page) -> None:
     dialog.get_by_label("Crew").fill("Ladder 1")
     dialog.get_by_label("Role").fill("Officer")
     dialog.get_by_role("button", name="Add person").click()
-    expect(dialog.get_by_role("row", name=NAME)).to_be_visible(timeout=SOON_MS)
+    expect(dialog.get_by_role("row", name=NAME)).to_be_visible()
     close(dialog)
 
 
@@ -45,5 +45,5 @@ def open_incident(page: Page) -> None:
     dialog.get_by_label("Name of the new incident").fill(INCIDENT)
     dialog.get_by_label("Roll call every, min").first.fill("10")
     dialog.get_by_role("button", name="Open incident").click()
-    expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible(timeout=SOON_MS)
+    expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible()
     close(dialog)

@@ -14,7 +14,6 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e.conftest import UNIT
 from tests.e2e.console_page import (
-    SOON_MS,
     answer_to,
     barriers,
     click_plan,
@@ -32,13 +31,13 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     card.get_by_role("button", name="Pin on the plan").click()
     form = page.get_by_role("form", name=f"Pin: {NAME}")
     click_plan(page, -150, -80)
-    expect(form.get_by_label("North, m")).not_to_have_value("", timeout=SOON_MS)
+    expect(form.get_by_label("North, m")).not_to_have_value("")
     form.get_by_label("Sure to within").select_option("4")
     form.get_by_role("button", name="Set pin").click()
-    expect(form).to_have_count(0, timeout=SOON_MS)
+    expect(form).to_have_count(0)
     (pin,) = pins(page)
     assert (pin["unit_id"], pin["std_m"], pin["by"]) == (UNIT, 2.0, "admin")
-    expect(page.get_by_text("Pins 1")).to_be_visible(timeout=SOON_MS)
+    expect(page.get_by_text("Pins 1")).to_be_visible()
     moved = drag(page, (-150, -80), (-90, -40))
     assert moved["pin_id"] == pin["pin_id"]
     right_m, down_m = moved["east_m"] - pin["east_m"], pin["north_m"] - moved["north_m"]
@@ -46,9 +45,9 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     assert down_m == pytest.approx(right_m * 40 / 60, rel=0.1)
     page.get_by_role("button", name="Pins 1").click()
     page.get_by_role("button", name=f"{NAME} here").click()
-    expect(form.get_by_label("East, m")).to_have_value(f"{moved['east_m']:.1f}", timeout=SOON_MS)
+    expect(form.get_by_label("East, m")).to_have_value(f"{moved['east_m']:.1f}")
     confirm(form, "Remove pin")
-    expect(form).to_have_count(0, timeout=SOON_MS)
+    expect(form).to_have_count(0)
     assert pins(page) == []
 
 
@@ -67,7 +66,7 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
             kinds.get_by_label(word).check()
         (trail,) = said.value.json()["trails"]
         assert (trail["unit_id"], len(trail["points"]) > 1) == (UNIT, True)
-        expect(kinds).not_to_contain_text("is worked out", timeout=SOON_MS)
+        expect(kinds).not_to_contain_text("is worked out")
         page.wait_for_timeout(300)
         assert painted(page, colour) > before + 50, kind
         kinds.get_by_label(word).uncheck()
@@ -102,7 +101,7 @@ def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator)
     expect(form.get_by_role("alert")).to_contain_text("m apart on the plan")
     fill_point(form, 1, (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m)
     form.get_by_role("button", name="Set place").click()
-    expect(form).to_have_count(0, timeout=SOON_MS)
+    expect(form).to_have_count(0)
     anchor = answer_to(page, "site/anchor")
     assert anchor["lat_deg"] * 110_574.3 == pytest.approx(-south_m, abs=0.5)
     assert (anchor["lon_deg"] - 16.0) * per_degree_m == pytest.approx(-west_m, abs=0.5)
@@ -122,7 +121,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
     site.get_by_label("Picture").set_input_files(picture)
     site.get_by_label("World file").set_input_files(world)
     site.get_by_role("button", name="Set base map").click()
-    expect(site.get_by_role("button", name="Remove base map")).to_be_visible(timeout=SOON_MS)
+    expect(site.get_by_role("button", name="Remove base map")).to_be_visible()
     site.get_by_role("button", name="By two points of the plan").click()
     form = page.get_by_role("form", name="Place on the Earth")
     click_plan(page, -150, 60)
@@ -137,7 +136,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
         at = {"x": across + to_east_m * scale, "y": down - to_north_m * scale}
         ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
     form.get_by_role("button", name="Set place").click()
-    expect(form).to_have_count(0, timeout=SOON_MS)
+    expect(form).to_have_count(0)
     anchor = answer_to(page, "site/anchor")
     assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.05)
     lon_m = (anchor["lon_deg"] - 16.0) * per_degree_m

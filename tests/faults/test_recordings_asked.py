@@ -304,6 +304,49 @@ def test_what_was_whole_stays_so_though_the_unit_has_another_now_and_gives_it_up
     assert pulled(tmp_path)["a.mcap"] == b"before" * 20
 
 
+def test_what_was_whole_stays_so_while_more_of_it_is_on_its_way(tmp_path: Path) -> None:
+    """The unit may never come back, and whoever pulls may be killed."""
+    unit, before = TellingUnit(a=b"before" * 20), b"before" * 20
+    finish(unit.pull(tmp_path))
+    grown = unit.files["boot/a.mcap"] = before + bytes(100_000)
+    fetch = unit.pull(tmp_path)
+    for _ in range(4):
+        fetch.step()
+    assert 0 < fetch.done_bytes < fetch.total_bytes
+    assert pulled(tmp_path)["a.mcap"] == before
+    fetch.close()
+    unit.pieces.clear()
+    assert finish(unit.pull(tmp_path)).state is FetchState.DONE
+    assert pulled(tmp_path) == {"a.mcap": grown}
+    assert sum(unit.pieces) < len(grown) - len(before), "what had come is not asked for again"
+
+
+def test_a_list_of_hashes_that_is_damaged_ends_no_pull(tmp_path: Path) -> None:
+    unit = TellingUnit(a=b"all of it")
+    finish(unit.pull(tmp_path))
+    hashes = tmp_path / U / fetching.HASHES
+    hashes.write_bytes(b"\xff\xfe" + hashes.read_bytes())
+    unit.files["boot/b.mcap"] = b"another"
+    assert finish(unit.pull(tmp_path)).state is FetchState.DONE
+    digest = hashlib.sha256(b"another").hexdigest()
+    assert f"{digest}  boot/b.mcap" in hashes.read_text(encoding="utf-8").splitlines()
+
+
+def test_a_bus_that_fails_ends_no_pull(tmp_path: Path) -> None:
+    unit, failures = TellingUnit(a=b"all of it"), [RuntimeError("can't start new thread")]
+
+    def fail_once(_: str) -> None:
+        if failures:
+            raise failures.pop()
+
+    unit.before = fail_once
+    fetch = unit.pull(tmp_path)
+    fetch.step()
+    fetch.step()
+    assert (fetch.state, "does not answer" in fetch.problem) == (FetchState.WAITING, True)
+    assert finish(fetch).state is FetchState.DONE
+
+
 def test_a_unit_that_has_another_file_under_the_name_gives_that(tmp_path: Path) -> None:
     unit = TellingUnit(a=b"before" * 20, b=b"before" * 20)
     finish(unit.pull(tmp_path))

@@ -16,7 +16,7 @@ from shared.messages import Temperature
 from tests.station_command import Browser, Command, Unit
 
 KILLS = 2
-SAFE_AFTER_NS = 1 * NS_PER_S  # flushed every half second, and a machine under test is slow
+SAFE_AFTER_NS = 3 * NS_PER_S  # flushed every half second, and a machine under test may be busy
 KEY = TEMPERATURE.key("anna")
 
 
@@ -69,7 +69,7 @@ def test_what_was_written_and_what_was_promised_outlives_a_kill(tmp_path: Path) 
                 for incident in known:
                     browser.status("POST", f"/incidents/{incident}/close")
                 speaker = Speaker(port, boot_id)
-                time.sleep(2.0 + chance.random())
+                time.sleep(4.0 + chance.random())
                 opened = browser.call("POST", "/incidents", json={"name": f"fire {boot_id}"})
                 promised.append(opened["incident_id"])
             station.kill()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from base_station.commands import downlink
@@ -207,3 +208,26 @@ def test_who_was_away_is_told_at_once(
         down._say_all(orders)
         clock.advance(0.1)
     assert len(unit.heard) == 2
+
+
+def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
+    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor are the others told again and again for it."""
+    down, unit, clock = link
+    unit.come()
+    heard = down._bus.is_heard
+
+    def fail_for_one(key: str) -> bool:
+        if "FF-00" in key or "FF-99" in key:
+            raise BusError("no")
+        return heard(key)
+
+    monkeypatch.setattr(down._bus, "is_heard", fail_for_one)
+    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 2 * 10**9)
+    order = an_order(clock.utc_ns() + 10**12)
+    orders = [msgspec.structs.replace(order, unit_id=one) for one in ("FF-00", U, "FF-99")]
+    for _ in range(3):
+        down._say_all(orders)
+        clock.advance(0.2)
+    assert len(unit.heard) == 1

@@ -13,7 +13,9 @@ from typing import Any, cast
 import msgspec
 import pytest
 
+from base_station.app.disk import open_disk
 from base_station.data_folder import DataFolder
+from base_station.db.models import Incident
 from base_station.db.principals import Role
 from base_station.db.records import EVER, Records
 from base_station.db.roster import Roster
@@ -22,16 +24,20 @@ from base_station.forgetting import forgetter as forgetter_module
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import ClosedLog, Forgetter, Tally
 from base_station.past.checkpoints import Checkpoints
+from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import FetchState, Wanted
 from shared.clock import ManualClock, SystemClock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import SegmentWriter, read_log, rewrite_segment
+from shared.messages import CommandKind
 from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
 from shared.messages.station import (
     Assign,
+    ConfirmCommand,
     RegisterUnit,
     ResolveAlarm,
+    SendCommand,
     Unassign,
 )
 from tests.forgetting_story import ANA, BO, Story, Walker, names_in, stored_in
@@ -111,6 +117,23 @@ async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStat
     assert not any(ANA in one["detail"] for one in entries)
 
 
+async def test_a_message_that_is_on_its_way_is_not_forgotten_before_it_is_there(
+    desk: DeskStation,
+) -> None:
+    desk.hub.connect(asyncio.get_running_loop(), desk.drive)
+    message = SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, "north door", 0.0, 600.0)
+    for action in (RegisterUnit("FF-01", "one"), message):
+        desk.drive.submit("chief", action)
+    async with desk.client(Role.ADMINISTRATOR) as administrator:
+        person = (await administrator.post("/people", json={"name": ANA})).json()
+        path = f"/people/{person['person_id']}/forget"
+        refused = await administrator.post(path, json={"name": ANA})
+        assert refused.status_code == 409
+        assert "message" in refused.json()["detail"]
+        desk.drive.submit("chief", ConfirmCommand("c1", "FF-01"))
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 202
+
+
 def forgetter_of(data: DataFolder, store: Store, records: Records) -> Forgetter:
     """Of a station that does not run."""
     log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
@@ -119,6 +142,28 @@ def forgetter_of(data: DataFolder, store: Store, records: Records) -> Forgetter:
 
 class PowerCut(BaseException):
     """In the middle of forgetting."""
+
+
+def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: Path) -> None:
+    folder, clock, acted = DataFolder(tmp_path), SystemClock(), []
+    with ExitStack() as closing:
+        recorder = Recorder(folder.log, clock)
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        with disk.store.write() as session:
+            session.add(
+                Incident(
+                    incident_id="i1", name="", opened_ns=1, opened_by="bo", closed_ns=None,
+                    closed_by="",
+                )
+            )  # fmt: skip
+        desk = disk.forgetting_desk(
+            NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True
+        )
+        with desk:
+            desk.add("ada", "person", "p-77")
+            until(lambda: "an incident is open" in desk.all()[0].problem)
+        assert acted == []
 
 
 def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> None:

@@ -175,12 +175,22 @@ def copy_over_the_bus(
 ) -> KeptCopy:
     router = MemoryRouter()
     KeptServer("active", router.attach_station(), active.tables, active.pki)
+    return copy_from(router, standby, on_forgotten)
+
+
+def copy_from(
+    router: MemoryRouter,
+    standby: Side,
+    on_forgotten: Callable[[str], None] = lambda _: None,
+    others_run: Callable[[], int] = lambda: 1,
+) -> KeptCopy:
     return KeptCopy(
         router.attach_station(),
         standby.tables,
         standby.pki,
         leader=lambda: "active",
         other=lambda: "active",
+        others_run=others_run,
         caught_up=lambda: True,
         on_people=standby.roster.read_again,
         on_forgotten=on_forgotten,
@@ -207,6 +217,29 @@ def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(sides: tuple[Si
         copying.look(Event())
     assert audit_of(standby) == audit_of(active)
     assert len(audit_of(standby)) == 1202
+
+
+def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_beginning(
+    sides: tuple[Side, Side], tmp_path: Path
+) -> None:
+    gone, standby = sides
+    router = MemoryRouter()
+    run = 1
+    copying = copy_from(router, standby, others_run=lambda: run)
+    serving = KeptServer("active", router.attach_station(), gone.tables, gone.pki)
+    for number in range(3):
+        gone.records.audit("ada", "LoggedIn", f"login {number}")
+    copying.look(Event())
+    serving.close()
+    with Store(tmp_path / "new.sqlite") as store:
+        new = Side(tmp_path, store)
+        new.records.audit("ada", "LoggedIn", "at the new machine")
+        new.tables.add_audit(standby.tables.audit_behind(0, 9))  # so it has as many, and more
+        KeptServer("active", router.attach_station(), new.tables, new.pki)
+        run = 2
+        copying.look(Event())
+        assert "at the new machine" in audit_of(standby)
+        assert len(audit_of(standby)) == 4
 
 
 def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(

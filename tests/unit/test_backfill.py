@@ -314,3 +314,42 @@ def test_what_a_unit_answers_far_beyond_what_was_asked_is_not_kept(monkeypatch):
     backfill.close()
     assert 0 < len(delivered) < 10
     assert bus.first_asked["A"] == len(delivered) + 1
+
+
+def test_units_that_are_silent_when_asked_for_alerts_keep_no_backlog_from_coming():
+    bus = StubBus()
+    backfill = Backfill(cast("Bus", bus), lambda *_: None, ManualClock())
+    backfill.start()
+    units = [f"FF-{number:02}" for number in range(AT_ONCE + 1)]
+    index = JournalIndex((JournalBoot(BOOT, 1, 101, 0, 0),)).to_bytes()
+
+    def report() -> None:
+        tell(backfill, {unit_id: (Held(BOOT, (Run(101, 101),)),) for unit_id in units})
+
+    report()
+    until(lambda: len(bus.asked) == len(units))
+    for unit_id in units:
+        bus.answer(unit_id, index)
+    until(lambda: len(bus.asked) == len(units))
+    bus.answer("FF-00", JournalChunk(BOOT, 1, 100, (), urgent_only=True).to_bytes())
+    report()
+    until(lambda: ("FF-00", "range") in bus.questions)
+    backfill.close()
+
+
+def test_a_bus_that_fails_once_ends_no_backfill(monkeypatch):
+    bus, failures = StubBus(), [RuntimeError("can't start new thread")]
+    ask = bus.ask
+
+    def fail_once(*arguments, **named) -> None:
+        if failures:
+            raise failures.pop()
+        ask(*arguments, **named)
+
+    monkeypatch.setattr(bus, "ask", fail_once)
+    backfill = Backfill(cast("Bus", bus), lambda *_: None, ManualClock())
+    backfill.start()
+    for _ in range(2):
+        tell(backfill, {"A": (Held(BOOT, (Run(101, 101),)),)})
+    until(lambda: bus.questions == [("A", "index")])
+    backfill.close()

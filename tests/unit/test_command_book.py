@@ -144,6 +144,18 @@ def test_repeats_change_nothing():
         assert repr(script.pipeline.state.commands) == before
 
 
+@pytest.mark.parametrize("unit_id", ["FF-01", "FF-02", "stranger"])
+def test_what_is_said_of_a_command_that_is_not_known_any_more_changes_nothing(unit_id):
+    """It was closed long ago, or went to another unit."""
+    script = to_one()
+    before = repr(script.pipeline.state.commands)
+    for command_id in ("c1", "c9"):
+        if (unit_id, command_id) != ("FF-01", "c1"):
+            script.command(unit_id, command_id)
+            script.reply(unit_id, command_id, RECEIVED)
+    assert repr(script.pipeline.state.commands) == before
+
+
 def test_a_unit_is_not_heard_because_it_was_told_something():
     script = to_one()
     script.command("FF-01", "c1")
@@ -262,6 +274,26 @@ def test_what_was_said_to_a_wearer_and_who_answered_is_forgotten():
     hers, his = script.pipeline.state.commands.values()
     assert (hers.text, hers.deliveries["FF-01"].acknowledged_by) == (FORGOTTEN, FORGOTTEN)
     assert (his.text, his.deliveries["FF-02"].acknowledged_by) == ("come, 2", "Person 2")
+
+
+def test_a_message_of_which_nothing_is_left_is_told_to_nobody_any_more():
+    script = crewed()
+    script.act(order(kind=CommandKind.TEXT, everyone=True, text="by the north door"))
+    script.command("FF-01", "c1")
+    script.reply("FF-02", "c1", RECEIVED)
+    outputs = script.act(ForgetWearers("FF-01"))
+    assert CommandTouched("c1") in outputs, "whoever looks at it sees it go"
+    assert states(script) == {"FF-01": "expired", "FF-02": "received", "FF-03": "expired"}
+    assert not unanswered(script.pipeline.state)
+    script.reply("FF-01", "c1", ACKNOWLEDGED)  # it had come all the same
+    assert states(script)["FF-01"] == "acknowledged"
+
+
+def test_an_evacuation_goes_on_without_the_words_that_were_forgotten():
+    script = to_one(CommandKind.EVACUATE)
+    script.act(ForgetWearers("FF-01"))
+    (left,) = unanswered(script.pipeline.state)
+    assert (left.kind, left.text) == (CommandKind.EVACUATE, "")
 
 
 def test_nobody_is_forgotten_while_an_incident_is_open():

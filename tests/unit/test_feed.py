@@ -160,3 +160,20 @@ def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) ->
     assert [payload[0] for _, _, payload in feed.records()] == list(range(10))
     window = feed.records(3 * NS_PER_S, 8 * NS_PER_S, {KEY})
     assert [payload[0] for _, _, payload in window] == [3, 5, 7]
+
+
+def test_a_log_tells_when_what_was_there_is_written_anew_and_not_when_it_grows(
+    tmp_path: Path,
+) -> None:
+    first, second = (tmp_path / f"{number:06d}-20261122T070000Z.mcap" for number in (1, 2))
+    first.write_bytes(b"with a name in it")
+    changed = LogFeed(tmp_path).watch()
+    with first.open("ab") as growing:
+        growing.write(b" and more")
+    second.write_bytes(b"the next one")
+    assert not changed()
+    anew = tmp_path / "anew"
+    anew.write_bytes(b"without")
+    anew.replace(first)
+    assert changed()
+    assert not LogFeed(tmp_path).watch()()

@@ -60,3 +60,17 @@ def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file")
     with pytest.raises(LogError, match="cannot be used"):
         FolderLock(tmp_path / "data")
+
+
+def test_a_folder_on_a_full_disk_is_held_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "pwrite", full)
+    lock = FolderLock(tmp_path)
+    with pytest.raises(DataFolderInUseError, match="process unknown"):
+        FolderLock(tmp_path)
+    lock.close()
+    assert not FolderLock.is_held(tmp_path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -123,7 +124,7 @@ def test_who_asks_while_it_is_made_gets_the_same(past: Past, store: Store) -> No
 def test_what_closed_lately_is_smoothed_without_being_asked(
     past: Past, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    past.kept.put("i1", "gone", 0, {}, {})
+    past.kept.put("i1", "gone", 0, {}, {}, None)
     past.hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
     assert past.kept.of("i1") == ("gone", 0, {})
     monkeypatch.setattr(past.kept, "has", lambda _: False)
@@ -140,11 +141,11 @@ class FullStore(SmoothedTracks):
     full = True
     tries = 0
 
-    def put(self, *what: Any) -> None:
+    def put(self, *what: Any, **how: Any) -> bool:
         self.tries += 1
         if self.full:
             raise StoreError("the disk is full")
-        super().put(*what)
+        return super().put(*what, **how)
 
 
 def test_on_a_full_disk_it_is_answered_told_once_and_kept_when_there_is_room(
@@ -188,8 +189,60 @@ def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(pas
     past.hindsight.smooth(past.incident)
     assert past.kept.report("i1") is None
     past.hindsight.assess(past.incident, shown)
-    past.kept.put_report("i1", b"of another version")
+    past.kept.put("i1", "of another version", 0, {}, {}, b"of another version")
     assert past.hindsight.assess(past.incident, shown).units == report.units
+
+
+class SmoothedBeside(SmoothedTracks):
+    """Somebody else works it out again as soon as something has been kept of it."""
+
+    def __init__(self, store: Store, incident: Incident) -> None:
+        super().__init__(store)
+        self.incident = incident
+        self.beside: Hindsight | None = None
+
+    def put(self, *what: Any, **how: Any) -> bool:
+        kept = super().put(*what, **how)
+        if self.beside is not None:
+            beside, self.beside = self.beside, None
+            beside.smooth(self.incident)
+        return kept
+
+
+def test_no_assessment_is_kept_beside_trails_that_were_worked_out_since(
+    past: Past, store: Store
+) -> None:
+    """`muster base smooth` beside a station that is just assessing the same incident."""
+    clock, kept = ManualClock(), SmoothedBeside(store, past.incident)
+    station = Hindsight(past.archive, SMOOTHERS[0], kept, clock)
+    later = ManualClock(utc_ns=clock.utc_ns() + 60 * 10**9)
+    kept.beside = Hindsight(past.archive, SMOOTHERS[0], SmoothedTracks(store), later)
+    shown = past.records.tracks_of(past.incident)
+    station.assess(past.incident, shown)
+    trails = station.smoothed(past.incident)
+    assert trails.made_ns == later.utc_ns()
+    assert kept.report("i1") is None
+    again = station.assess(past.incident, shown)
+    assert kept.report("i1") is not None
+    assert again.made_ms == station.smoothed(past.incident).made_ns // 10**6
+
+
+def test_what_was_worked_out_of_a_log_that_was_written_anew_meanwhile_is_not_kept(
+    past: Past, store: Store
+) -> None:
+    """It may hold the way of somebody who was forgotten."""
+    rewritten = False
+    archive = replace(past.archive, watch=lambda: lambda: rewritten)
+    kept = SmoothedTracks(store)
+    station = Hindsight(archive, SMOOTHERS[0], kept, ManualClock(utc_ns=0))
+    shown = past.records.tracks_of(past.incident)
+    rewritten = True
+    station.assess(past.incident, shown)
+    assert not station.smooth(past.incident).is_kept
+    assert not kept.has("i1")
+    rewritten = False
+    station.catch_up([past.incident], lambda _: shown)
+    assert kept.has("i1")
 
 
 def test_the_assessment_says_how_long_the_lights_were_which(past: Past) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from edge.journal_server import JournalServer
 from edge.spool import Journaled, Spool
-from shared.channels import EVENT, POSITION
+from shared.channels import EVENT, IMU, POSITION
 from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalIndex
 
@@ -44,6 +44,29 @@ def test_total_bounds_the_answer_but_lets_one_message_through(spool):
     assert [(chunk.from_seq, chunk.to_seq) for chunk in answers] == [(1, 5), (6, 9)]
     (chunk,) = chunks(spool, "epoch=9;from=1;to=100;total=1")
     assert (chunk.from_seq, chunk.to_seq) == (1, 1)
+
+
+def test_bounds_in_bytes_are_kept_to_the_byte(spool):
+    """Each message is said to take 24 bytes beside its own 100."""
+    (chunk,) = chunks(spool, "epoch=9;from=1;to=100;total=248")
+    assert (chunk.from_seq, chunk.to_seq) == (1, 2)
+    answers = chunks(spool, "epoch=9;from=1;to=6;bytes=248")
+    assert [(chunk.from_seq, chunk.to_seq) for chunk in answers] == [(1, 2), (3, 4), (5, 6)]
+
+
+def test_a_single_number_that_is_not_kept_is_said_to_be_gone(spool):
+    (chunk,) = chunks(spool, "epoch=9;from=50;to=50")
+    assert (chunk.from_seq, chunk.to_seq, chunk.entries) == (50, 50, ())
+
+
+def test_raw_samples_are_given_by_themselves(spool):
+    spool.append([Journaled(101, POSITION, 0, b"here"), Journaled(102, IMU, 0, b"samples")])
+    (answer,) = ask(spool, "raw", "epoch=9;from=90;to=102")
+    chunk = JournalChunk.from_bytes(answer)
+    assert [entry.seq for entry in chunk.entries] == [102]
+    assert (chunk.from_seq, chunk.to_seq) == (90, 102)
+    assert (chunk.raw_only, chunk.urgent_only) == (True, False)
+    assert not any(one.raw_only for one in chunks(spool, "epoch=9;from=90;to=102"))
 
 
 def test_max_bounds_the_answer_and_its_end_says_where_to_go_on(spool):

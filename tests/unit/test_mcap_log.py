@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from shared.mcap_log import (
     recover_log,
     segment_paths,
 )
+from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.segment_file import SegmentFile
 from shared.messages import Header, Temperature
 
@@ -54,6 +56,19 @@ def test_a_record_is_on_the_disk_half_a_second_of_log_time_later(tmp_path: Path)
     assert on_disk(tmp_path) == []
     writer.advance(T0_NS + 500_000_000)
     assert on_disk(tmp_path) == [b"1", b"2"]
+
+
+def test_what_is_ended_is_let_go_of_and_nobody_elses_to_read(tmp_path: Path) -> None:
+    """A station runs for months, and its log says where people were."""
+    writer = SegmentWriter(tmp_path)
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, b"1", urgent=True)
+        writer.end_segment()
+    held = {link.resolve() for link in Path("/proc/self/fd").iterdir()}
+    paths = segment_paths(tmp_path)
+    assert len(paths) == 3
+    assert held.isdisjoint(paths)
+    assert {path.stat().st_mode & 0o777 for path in paths} == {0o640}
 
 
 def test_an_urgent_record_is_on_the_disk_at_once_with_all_before_it(tmp_path: Path) -> None:
@@ -188,6 +203,32 @@ def test_a_recovery_that_was_cut_off_goes_on(tmp_path: Path) -> None:
     assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, path.name + ".torn"]
 
 
+def test_of_a_segment_that_is_torn_again_and_again_every_original_is_kept(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    for number in range(3):
+        with path.open("ab") as file:
+            file.write(bytes([number]))
+        assert len(recover_log(tmp_path)) == 1
+    names = [f"{path.name}{torn}" for torn in ("", ".torn", ".torn2", ".torn3")]
+    assert sorted(one.name for one in tmp_path.iterdir()) == names
+    assert [(tmp_path / name).read_bytes()[-1] for name in names[1:]] == [0, 1, 2]
+    assert on_disk(tmp_path) == [b"1"]
+
+
+@pytest.mark.parametrize(("torn_off", "said"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")])
+def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    with path.open("ab") as file:
+        file.write(torn_off)
+    [recovery] = recover_log(tmp_path)
+    assert said in str(recovery)
+    assert recover_log(tmp_path) == []
+
+
 def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
     (tmp_path / "log").write_text("a file")
     with pytest.raises(LogError, match="cannot be used"):
@@ -235,4 +276,88 @@ def test_a_damaged_length_takes_no_memory_for_what_is_not_there(tmp_path: Path) 
     assert file.read(1, 2) == b"23"
     with pytest.raises(ValueError, match="ends before"):
         file.read(0, 1 << 60)
+    file.close()
+
+
+def test_what_a_disk_takes_and_then_drops_is_written_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A system drops what it could not bring to the disk, and says so once."""
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    safe_bytes = path.stat().st_size
+
+    def drop(descriptor: int) -> None:
+        os.ftruncate(descriptor, safe_bytes)
+        raise OSError(5, "Input/output error")
+
+    with monkeypatch.context() as failing:
+        failing.setattr("shared.mcap_log.durable_file.os.fsync", drop)
+        writer.write(T0_NS + 1, KEY, b"mayday", urgent=True)
+        assert "Input/output error" in writer.problem
+        assert writer.waiting_bytes > 0
+        writer.write(T0_NS + 2, KEY, b"3", urgent=True)
+    writer.write(T0_NS + 3, KEY, b"4", urgent=True)
+    assert writer.problem == ""
+    assert writer.waiting_bytes == 0
+    writer.close()
+    assert [message.data for *_, message in as_others_read(path)] == [b"1", b"mayday", b"3", b"4"]
+
+
+def test_what_is_written_in_parts_and_then_dropped_is_written_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = DurableFile(tmp_path / "file")
+    write, fsync = os.pwrite, os.fsync
+    full = OSError(28, "No space left on device")
+    troubles = [None, full, full]  # the first write is cut short, the next two are refused
+
+    def write_some(descriptor: int, data: bytes, offset: int) -> int:
+        if troubles:
+            trouble = troubles.pop(0)
+            if trouble is not None:
+                raise trouble
+            data = data[:3]
+        return write(descriptor, data, offset)
+
+    def drop(descriptor: int) -> None:
+        os.ftruncate(descriptor, 0)
+        raise full
+
+    monkeypatch.setattr(os, "pwrite", write_some)
+    file.write(b"first ")
+    file.write(b"second ")
+    for _ in range(2):
+        with pytest.raises(OSError, match="No space"):
+            file.sync()
+        file.write(b"more ")
+    monkeypatch.setattr(os, "fsync", drop)
+    with pytest.raises(OSError, match="No space"):
+        file.sync()
+    monkeypatch.setattr(os, "fsync", fsync)
+    file.sync()
+    assert file.path.read_bytes() == b"first second more more "
+    assert (file.tell(), file.waiting_bytes) == (23, 0)
+    file.close()
+
+
+def test_a_name_that_did_not_reach_the_disk_is_brought_there_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = DurableFile(tmp_path / "file")
+    file.write(b"something")
+    fsync, synced = os.fsync, []
+
+    def fail_once(descriptor: int) -> None:
+        synced.append(Path(f"/proc/self/fd/{descriptor}").readlink())
+        if len(synced) == 1:
+            raise OSError(5, "Input/output error")
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", fail_once)
+    with pytest.raises(OSError, match="Input/output"):
+        file.sync()
+    file.sync()
+    assert synced == [tmp_path, tmp_path, file.path]
     file.close()

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from base_station.api.wire import Snapshot
+from base_station.app.parts import past_pipeline, project_whole_log
+from base_station.db.records import Records
+from base_station.db.store import Store
+from base_station.events import Output, Received, StationEvent
 from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
+from base_station.pipeline import StationPipeline
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import StoreError, UserError
-from shared.messages import EventKind
+from shared.mcap_log import SegmentWriter
+from shared.messages import EventKind, UnitEvent
 from shared.messages.station import Assign, OpenIncident
 from tests.live_station import Screen, make_pipeline
 from tests.station_script import START_NS, Script
@@ -292,6 +299,49 @@ def test_checkpoints_of_another_program_do_not_send_a_seek_back(
         for _ in again.seek(START_NS + second * NS_PER_S):
             pass
     assert opened == [0]
+
+
+@pytest.fixture
+def mistaken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The program has a mistake in what it does about what units tell of themselves."""
+    right = StationPipeline.step
+
+    def step(self: StationPipeline, event: StationEvent) -> list[Output]:
+        if isinstance(event, Received) and isinstance(event.message, UnitEvent):
+            raise ZeroDivisionError("a mistake")
+        return right(self, event)
+
+    monkeypatch.setattr(StationPipeline, "step", step)
+
+
+@pytest.mark.usefixtures("mistaken")
+def test_a_mistake_in_the_program_costs_one_event_of_the_past_as_it_did_live(
+    records: list[Record], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    source = archive(records, tmp_path)
+    playback = Playback(Archive(source.open_log, source.checkpoints, past_pipeline))
+    for _ in playback.seek(START_NS + 100 * NS_PER_S):
+        pass
+    state = playback.pipeline.state
+    assert state.t_ns == START_NS + 100 * NS_PER_S
+    assert state.alarms == {}
+    assert "a mistake" in caplog.text
+
+
+@pytest.mark.usefixtures("mistaken")
+def test_a_database_is_made_of_a_log_in_which_the_program_makes_a_mistake(
+    records: list[Record], tmp_path: Path
+) -> None:
+    """A station whose database is lost makes it anew before it starts."""
+    with closing(SegmentWriter(tmp_path / "log")) as log:
+        for record in records:
+            log.write(*record)
+    with Store(tmp_path / "station.sqlite") as store:
+        count = project_whole_log(store, tmp_path / "log", lambda _: None)
+        incident = Records(store, ManualClock()).require_incident("i1")
+        tracks = Records(store, ManualClock()).tracks_of(incident)
+    assert count == len(records)
+    assert tracks["FF-01"][-1].t_ns > START_NS + 100 * NS_PER_S
 
 
 def test_one_that_breaks_off_is_over(

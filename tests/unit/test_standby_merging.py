@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Event, Thread
@@ -81,6 +81,14 @@ def leading_with(folder: Path, records: Sequence[Record]) -> Leading:
     return Leading(router)
 
 
+def looking_until(leading: Leading, waits: Callable[[], bool]) -> Thread:
+    """A round that has come as far as that."""
+    looking = Thread(target=leading.look)
+    looking.start()
+    until(waits)
+    return looking
+
+
 def closed_by(person: str) -> Record:
     action = OperatorAction(Header(STATION_ID, 1, 1, 5), person, person, CloseIncident("i1"))
     return T0 + UNITS, OPERATOR.key(STATION_ID), encode(action)
@@ -132,9 +140,7 @@ def test_a_part_is_not_told_of_before_what_it_brought_is_on_the_disk(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.settled = False
-    looking = Thread(target=leading.look)
-    looking.start()
-    until(lambda: leading.brought == ALL)
+    looking = looking_until(leading, lambda: leading.brought == ALL)
     looking.join(0.2)
     assert len(parts(tmp_path)) == 1
     leading.settled = True
@@ -147,9 +153,7 @@ def test_a_part_is_not_told_of_before_what_people_did_there_is_written_down(
 ) -> None:
     """A station that dies then would have told nobody of it."""
     leading.written = False
-    looking = Thread(target=leading.look)
-    looking.start()
-    until(lambda: len(leading.done) == 2)
+    looking = looking_until(leading, lambda: len(leading.waiting) == 2)
     for told in leading.waiting:
         assert len(parts(tmp_path)) == 1
         told.set_result(ActionDone("x", T0, None))
@@ -161,9 +165,7 @@ def test_what_people_did_is_left_to_the_station_that_leads_by_then(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.written = False
-    looking = Thread(target=leading.look)
-    looking.start()
-    until(lambda: len(leading.waiting) == 2)
+    looking = looking_until(leading, lambda: len(leading.waiting) == 2)
     for told in leading.waiting:
         told.set_exception(StoreError("the station is stopping"))
     looking.join()
@@ -172,6 +174,16 @@ def test_what_people_did_is_left_to_the_station_that_leads_by_then(
     leading.look()
     assert parts(tmp_path) == []
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem] * 2
+
+
+def test_a_part_that_comes_again_names_what_people_did_once(
+    leading: Leading, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as broken:
+        broken.setattr("base_station.standby.merging.mark_told", lambda *_: None)
+        leading.look()  # the word that it is taken was lost
+    leading.look()
+    assert [type(one) for one in leading.done] == [DoneApart, ReportProblem]
 
 
 def test_a_station_that_does_not_lead_asks_for_nothing(leading: Leading, tmp_path: Path) -> None:
@@ -203,9 +215,7 @@ def test_a_station_that_ends_while_the_disk_does_not_take_it_tells_of_nothing(
 ) -> None:
     leading.settled = False
     leading.stop_after = UNITS + 1  # not before all has come
-    looking = Thread(target=leading.look)
-    looking.start()
-    until(lambda: leading.brought == ALL)
+    looking = looking_until(leading, lambda: leading.brought == ALL)
     leading.stop.set()
     looking.join(10.0)
     assert not looking.is_alive()

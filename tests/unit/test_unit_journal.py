@@ -437,3 +437,35 @@ def test_of_an_answer_only_what_is_missing_is_kept() -> None:
     chunk = journal.take(question, JournalChunk(BOOT, 11, 16, entries).to_bytes(), 1)
     assert chunk is not None
     assert [one.seq for one in chunk.entries] == [11, 12, 15, 16]
+
+
+def test_what_a_unit_wrote_does_not_wait_for_what_its_disk_does_not_take() -> None:
+    """It was said in the dark on a disk that is full: the journal cannot give it for now."""
+    held = (Held(BOOT, (Run(1, 10), Run(91, 100))),)
+    journal = journal_of(*held[0].runs, last=100)
+    written, came, unanswered = 60, SequenceSet(), []
+
+    def ask_all(now_ns: int) -> None:
+        journal.report(held, now_ns)
+        while (question := journal.next_question()) is not None:
+            asked = dict(question.parameters)
+            if question.what == "acknowledge":
+                break
+            last = min(asked["to"], written)
+            if asked["from"] > last:
+                unanswered.append(question.what)
+                journal.end(question, 1)
+                continue
+            urgent = question.what == "urgent"
+            if not urgent:
+                came.add_run(Run(asked["from"], last))
+            answer(journal, question, JournalChunk(BOOT, asked["from"], last, (), urgent))
+
+    for number in range(1, 30):
+        ask_all(number)
+    assert list(came.runs()) == [Run(11, 60)]
+    assert unanswered.count("urgent") >= 10, "whatever else there is, an alert is asked for"
+    written = 100
+    for number in range(30, 33):
+        ask_all(number)
+    assert list(came.runs()) == [Run(11, 90)]

@@ -10,6 +10,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Administrator
 from base_station.api.services import Services, Station
+from base_station.api.wire import CommandView
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
 
 router = APIRouter(tags=["forgetting"])
@@ -74,8 +75,18 @@ def _desk(station: Services) -> ForgettingDesk:
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
+    if any(one.text and _is_under_way(one) for one in station.picture().commands):
+        raise Problem(
+            409,
+            "A message has not reached all to whom it goes, and would not any more: wait until it "
+            "has, or its time is over.",
+        )
     station.settle()  # what still is to be stored would be stored afterwards
     return station.forgettings
+
+
+def _is_under_way(command: CommandView) -> bool:
+    return any(one.state in {"queued", "sent"} for one in command.units)
 
 
 def _require_name(confirmation: Confirmation, name: str) -> None:
