@@ -145,7 +145,7 @@ class ActivityMonitor:
         self._stirring_s = self._stirring_s + WINDOW_NS / NS_PER_S if window.moving else 0.0
         motionless_s = self._motion.motionless_s
         self._posture.take_window(window, motionless_s)
-        struck = self._falls.confirm(window.end_ns, motionless_s)
+        struck = self._falls.confirm(motionless_s)
         collapsed = self._posture.collapsed and motionless_s >= _COLLAPSED_S
         if not (struck or collapsed):
             self._fall_told = self._fall_told and not window.moving

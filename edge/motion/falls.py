@@ -11,6 +11,7 @@ from math import isnan
 
 import numpy as np
 
+from edge.motion.body_motion import WINDOW_NS
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
 
@@ -20,7 +21,7 @@ _HOLE_NS = NS_PER_S // 10  # between two samples; in a longer one there may have
 _BLOW_MPS2 = 30.0
 _BLOW_WITHIN_NS = NS_PER_S // 2
 _DOWN_FOR_S = 2.0  # motionless after the blow
-_DOWN_WITHIN_NS = 8 * NS_PER_S
+_DOWN_WITHIN_NS = 8 * NS_PER_S  # that were seen: in a hole nobody is known to have got up
 
 
 class FallDetector:
@@ -30,11 +31,11 @@ class FallDetector:
         self._weightless_since_ns: int | None = None
         self._weightless_ns = 0  # the last such sample
         self._weightless_until_ns: int | None = None
-        self._blow_ns: int | None = None
+        self._seen_ns: int | None = None  # how long the wearer has been watched since the blow
 
     @property
     def falling(self) -> bool:
-        return self._blow_ns is not None
+        return self._seen_ns is not None
 
     def push(self, imu: ImuBatch) -> None:
         force_mps2 = np.linalg.norm(imu.accel_mps2, axis=1)
@@ -45,16 +46,18 @@ class FallDetector:
         for t_ns, force in zip(imu.t_ns.tolist(), force_mps2.tolist(), strict=True):
             self._step(t_ns, force)
 
-    def confirm(self, t_ns: int, motionless_s: float) -> bool:
-        """Whether the wearer stayed down after the blow: True once a fall."""
-        if self._blow_ns is None:
+    def confirm(self, motionless_s: float) -> bool:
+        """Whether the wearer stayed down after the blow: True once a fall.
+
+        To be asked after every window of motion, from the one with the blow on.
+        """
+        if self._seen_ns is None:
             return False
-        if motionless_s >= _DOWN_FOR_S:
-            self._blow_ns = None
-            return True
-        if not 0 <= t_ns - self._blow_ns <= _DOWN_WITHIN_NS:
-            self._blow_ns = None
-        return False
+        self._seen_ns += WINDOW_NS
+        down = motionless_s >= _DOWN_FOR_S
+        if down or self._seen_ns > _DOWN_WITHIN_NS:
+            self._seen_ns = None
+        return down
 
     def _step(self, t_ns: int, force_mps2: float) -> None:
         if isnan(force_mps2):
@@ -74,4 +77,4 @@ class FallDetector:
             and dropped_ns is not None
             and 0 <= t_ns - dropped_ns <= _BLOW_WITHIN_NS
         ):
-            self._blow_ns = t_ns
+            self._seen_ns = 0

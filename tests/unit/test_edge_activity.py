@@ -137,6 +137,21 @@ def test_a_fall_is_told_at_any_instant_and_however_samples_come(
         assert sum(monitor.push(part, empty_rows()) for part in parts) == falls, struck_s
 
 
+@pytest.mark.parametrize("next_s", [3.0, 9.0, 600.0, -100.0])
+@pytest.mark.parametrize(("after_shake", "falls"), [(0.0, 1), (3.0, 0)])
+def test_who_is_found_down_after_a_hole_behind_the_blow_has_fallen(next_s, after_shake, falls):
+    """The line was cut by the blow; nobody is known to have got up meanwhile."""
+    monitor = ActivityMonitor()
+    pieces = (
+        samples(2.0, shake=1.0),
+        samples(0.4, 2.0, (0.0, 0.0, 0.5)),
+        samples(0.05, 2.4, (0.0, 0.0, 60.0)),
+        samples(12.0, next_s, (9.81, 0.0, 0.0), after_shake),
+    )
+    assert sum(monitor.push(piece, empty_rows()) for piece in pieces) == falls
+    assert monitor.activity(round((next_s + 12.0) * NS_PER_S)) is not Activity.FALLING
+
+
 def test_a_blow_without_a_drop_is_no_fall():
     falls = FallDetector()
     falls.push(samples(0.05, 0.0, (0.0, 0.0, 80.0)))

@@ -33,9 +33,9 @@ class Wearer:
     def strikes(self, force_mps2: float = 60.0) -> None:
         self.feels(force_mps2, 0.03)
 
-    def confirmed(self, after_s: float, motionless_s: float) -> bool:
-        """``after_s`` from now."""
-        return self.falls.confirm(round((self.now_s + after_s) * NS_PER_S), motionless_s)
+    def confirmed(self, motionless_s: float) -> bool:
+        """By the next half second."""
+        return self.falls.confirm(motionless_s)
 
 
 @pytest.fixture
@@ -87,28 +87,34 @@ def test_two_hops_are_no_drop(wearer: Wearer, stood_s: float) -> None:
 
 
 def test_who_stirs_for_some_seconds_and_then_lies_still_has_fallen(fallen: Wearer) -> None:
-    for second in range(8):
-        assert not fallen.confirmed(float(second), 0.0)
+    for _ in range(14):
+        assert not fallen.confirmed(0.0)
         assert fallen.falls.falling
-    assert not fallen.confirmed(7.5, 1.9)
-    assert fallen.confirmed(7.9, 2.0)
+    assert not fallen.confirmed(1.9)
+    assert fallen.confirmed(2.0)
 
 
 def test_a_fall_is_confirmed_once(fallen: Wearer) -> None:
-    assert fallen.confirmed(2.5, 2.0)
+    assert fallen.confirmed(2.0)
     assert not fallen.falls.falling
-    assert not fallen.confirmed(3.0, 2.5)
+    assert not fallen.confirmed(2.5)
 
 
 def test_who_still_moves_after_eight_seconds_got_up(fallen: Wearer) -> None:
-    assert not fallen.confirmed(8.5, 0.0)
+    for _ in range(17):
+        assert not fallen.confirmed(0.0)
     assert not fallen.falls.falling
-    assert not fallen.confirmed(60.0, 30.0), "resting, a minute later"
+    assert not fallen.confirmed(30.0), "resting, a minute later"
 
 
-def test_a_clock_that_was_set_back_keeps_nobody_falling(fallen: Wearer) -> None:
-    assert not fallen.confirmed(-5.0, 0.0)
-    assert not fallen.falls.falling
+def test_after_another_blow_the_seconds_begin_anew(fallen: Wearer) -> None:
+    for _ in range(10):
+        fallen.confirmed(0.0)
+    fallen.drops()
+    fallen.strikes()
+    for _ in range(15):
+        assert not fallen.confirmed(0.0)
+    assert fallen.confirmed(2.0)
 
 
 def test_samples_that_say_nothing_are_neither_drop_nor_blow(wearer: Wearer) -> None:
