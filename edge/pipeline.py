@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from edge.calibration import Calibration, identity
+from edge.calibration import Calibration, Correction, identity
 from edge.decimation import Decimator, OncePerPeriod
 from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
@@ -22,7 +22,6 @@ from edge.samples import (
     BatterySample,
     ButtonPress,
     GpsSample,
-    ImuBatch,
     OtherSample,
     SensorBatch,
     SensorDescription,
@@ -71,6 +70,11 @@ class TrackerPipeline:
         of a unit that sends its samples for somebody else to track with.
         """
         self._identity = identity
+        self._correction = (
+            None
+            if identity.calibration is None
+            else Correction(identity.calibration, identity.sensor)
+        )
         self._tracker = tracker
         self._stamper = stamper
         self._positions = PositionStream(stamper, position_rate_hz)
@@ -100,7 +104,7 @@ class TrackerPipeline:
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
         """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""
         self._learn_field(batch, timeline)
-        imu = self._calibrated(batch.imu)
+        imu = batch.imu if self._correction is None else self._correction.push(batch.imu)
         track = self._tracker.push(imu)
         messages: list[Message] = [
             self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
@@ -139,10 +143,6 @@ class TrackerPipeline:
         learned = self._whereabouts.take(batch, utc_ns_of)
         if learned is not None:
             self._tracker.learn_field(*learned)
-
-    def _calibrated(self, imu: ImuBatch) -> ImuBatch:
-        calibration = self._identity.calibration
-        return imu if calibration is None else calibration.apply(imu, self._identity.sensor)
 
     def _take_other(self, sample: OtherSample, timeline: Timeline) -> list[Message]:
         mono_ns = timeline.to_mono_ns(sample.t_ns)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from edge.calibration.correction import Correction
 from edge.calibration.file import identity, read_calibration, write_calibration
 from edge.calibration.model import Calibration
 
-__all__ = ["Calibration", "identity", "read_calibration", "write_calibration"]
+__all__ = ["Calibration", "Correction", "identity", "read_calibration", "write_calibration"]

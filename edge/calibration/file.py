@@ -32,6 +32,8 @@ def read_calibration(path: Path) -> Calibration:
         calibration = msgspec.convert(table, Calibration)
         if not all(map(isfinite, _numbers(table))):
             raise msgspec.ValidationError("a value that is no number")
+        if impossible := calibration.impossible():
+            raise msgspec.ValidationError(impossible)
     except FileNotFoundError:
         raise ConfigError(f"there is no calibration file {path}; check the path") from None
     except OSError as error:

@@ -92,7 +92,7 @@ def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Cali
                 accelerometer = solve_accelerometer(poses, warmth)
             case TurningStep():
                 magnetometer = _magnetometer(step)
-    return Calibration(
+    found = Calibration(
         unit=unit,
         sensor=sensor,
         made=made,
@@ -101,6 +101,13 @@ def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Cali
         magnetometer=magnetometer,
         warmth=warmth,
     )
+    impossible = found.impossible()
+    if impossible is not None:
+        raise UserError(
+            f"{impossible}, which no sensor that is whole is: are the units and the full scales of "
+            "its samples right?"
+        )
+    return found
 
 
 def _magnetometer(step: TurningStep) -> Magnetometer:

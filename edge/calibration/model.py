@@ -10,6 +10,7 @@ Beyond the temperatures of the warm-up the bias is taken to stay as it was at th
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime, timedelta
 
@@ -23,6 +24,7 @@ OLD_AFTER = timedelta(days=180)
 _POOR_FORCE_MPS2 = 0.05
 _POOR_RATE_RADPS = 5e-4  # 0.03 degrees a second
 _POOR_FIELD_SHARE = 0.03
+_SCALE_AND_BIAS = 6  # unknowns: so many poses fit whatever they show
 _CLIPPED_SHARE = 0.98  # of full scale: from here on a reading says no more than "too much"
 
 Vector = tuple[float, float, float]
@@ -37,6 +39,11 @@ class Accelerometer(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     at_degc: float | None = None  # None: the unit does not tell its temperature
     poses: int
     residual_mps2: float  # root mean square over the poses
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether there were more poses than unknowns: else nothing shows that one was wrong."""
+        return self.poses > _SCALE_AND_BIAS
 
 
 class Gyroscope(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -113,6 +120,10 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def faults(self) -> tuple[str, ...]:
         """What is poor about it, in words; empty where all residuals are as they should be."""
         found = []
+        if self.accelerometer and not self.accelerometer.is_checked:
+            found.append(
+                f"accelerometer of {self.accelerometer.poses} poses only: nothing checks it"
+            )
         if self.accelerometer and self.accelerometer.residual_mps2 > _POOR_FORCE_MPS2:
             found.append(f"accelerometer off by {self.accelerometer.residual_mps2:.3f} m/s2")
         if self.gyroscope and self.gyroscope.residual_radps > _POOR_RATE_RADPS:
@@ -121,6 +132,32 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if magnetometer and magnetometer.residual_ut > _POOR_FIELD_SHARE * magnetometer.field_ut:
             found.append(f"magnetometer off by {magnetometer.residual_ut:.1f} uT")
         return tuple(found)
+
+    def impossible(self) -> str | None:
+        """What no sensor that is whole is off by: the file is damaged, or the samples were of other
+        units.
+        """
+        for what, values, most in self._off_by():
+            if not np.all(np.abs(values) <= most):
+                return f"{what} is off by more than {most:g}"
+        return None
+
+    def _off_by(self) -> Iterator[tuple[str, Floats, float]]:
+        """Each part's name in the file, by what it is off, and the most of that."""
+        if part := self.accelerometer:
+            yield "accelerometer.gain", np.array(part.gain) - np.eye(3), 0.3
+            yield "accelerometer.bias_mps2", np.array(part.bias_mps2), 3.0
+        if gyroscope := self.gyroscope:
+            yield "gyroscope.bias_radps", np.array(gyroscope.bias_radps), 0.2
+            yield "gyroscope.per_force", np.array(gyroscope.per_force or 0.0), 0.02
+        if magnetometer := self.magnetometer:
+            yield "magnetometer.gain", np.array(magnetometer.gain) - np.eye(3), 3.0
+            yield "magnetometer.hard_iron_ut", np.array(magnetometer.hard_iron_ut), 5000.0
+        if warmth := self.warmth:
+            slope = np.array(warmth.accel_bias_per_degc_mps2)
+            yield "warmth.accel_bias_per_degc_mps2", slope, 0.2
+            slope = np.array(warmth.gyro_bias_per_degc_radps)
+            yield "warmth.gyro_bias_per_degc_radps", slope, 0.02
 
     def is_old(self, now: datetime) -> bool:
         return now - self.made > OLD_AFTER

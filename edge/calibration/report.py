@@ -68,7 +68,8 @@ def _table(calibration: Calibration) -> Table:
 def _residuals(calibration: Calibration) -> list[str]:
     said = []
     if accel := calibration.accelerometer:
-        said.append(f"accelerometer {accel.residual_mps2:.4f} m/s2 over {accel.poses} poses")
+        off = f"{accel.residual_mps2:.4f} m/s2" if accel.is_checked else "unknown"
+        said.append(f"accelerometer {off} over {accel.poses} poses")
     if gyro := calibration.gyroscope:
         said.append(f"gyroscope {np.degrees(gyro.residual_radps):.4f} deg/s")
     if mag := calibration.magnetometer:

@@ -42,6 +42,7 @@ class RestFinder:
         self._before_mps2: Floats | None = None
         self._cell: int | None = None
         self._parts: list[Floats] = []
+        self._last_degc = float("nan")  # some sensors tell it more seldom than once a window
 
     def push(self, imu: ImuBatch) -> None:
         cells = imu.t_ns // WINDOW_NS
@@ -69,6 +70,8 @@ class RestFinder:
         if len(samples) < _ENOUGH_SAMPLES:
             self._settling = True
             return
+        degc = _usual(samples[:, 6])
+        self._last_degc = degc if np.isfinite(degc) else self._last_degc
         start_ns = self._cell * WINDOW_NS
         mean = samples[:, :6].mean(axis=0)
         spread = np.sqrt(samples[:, :6].var(axis=0).reshape(2, 3).sum(axis=1))
@@ -85,22 +88,24 @@ class RestFinder:
         if self._settling:
             self.rests.append([])
             self._settling = False
-        warm = samples[:, 6][np.isfinite(samples[:, 6])]
-        degc = float(warm.mean()) if len(warm) else float("nan")
-        self.rests[-1].append(Window(start_ns, mean[:3], mean[3:], degc))
+        self.rests[-1].append(Window(start_ns, mean[:3], mean[3:], self._last_degc))
 
 
 def mean_of(windows: list[Window]) -> Window:
     """One window for all of them."""
-    temperatures = np.array([window.temperature_degc for window in windows])
-    known = temperatures[np.isfinite(temperatures)]
     return Window(
         windows[0].start_ns,
         np.mean([window.accel_mps2 for window in windows], axis=0),
         np.mean([window.gyro_radps for window in windows], axis=0),
-        float(known.mean()) if len(known) else float("nan"),
+        _usual(np.array([window.temperature_degc for window in windows])),
     )
 
 
 def seconds(windows: list[Window]) -> float:
     return len(windows) * WINDOW_NS / NS_PER_S
+
+
+def _usual(degc: Floats) -> float:
+    """The middle of the temperatures that are known: one that was misread moves nothing."""
+    known = degc[np.isfinite(degc)]
+    return float(np.median(known)) if len(known) else float("nan")

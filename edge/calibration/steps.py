@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from edge.calibration.rest import RestFinder, Window, mean_of, seconds
 from edge.calibration.solve import tells_misalignment
@@ -25,6 +26,8 @@ _SAME_POSE_COS = 0.985  # 10 degrees
 _FACE_COS = 0.82  # 35 degrees
 _SPAN_DEGC = 10.0
 _WARM_UP_BLOCKS = 8 * 20  # windows
+_AROUND = 3  # windows on either side of one, by which its temperature is judged
+_MISREAD_DEGC = 2.0  # off those around it: no sensor warms so fast
 _DIRECTIONS = 3.0  # steps from -1 to 1 on each axis in which directions of the field are told
 _FLAT = 0.06  # spread off the best plane against that in it: turned about one axis only
 _FIELDS_UT = (15.0, 90.0)  # of the earth, with what a unit's own iron may add or take
@@ -245,7 +248,8 @@ class WarmUpStep:
 
     def windows(self) -> list[Window]:
         longest = max(self._finder.rests, key=len, default=[])
-        return [window for window in longest if np.isfinite(window.temperature_degc)]
+        known = [window for window in longest if np.isfinite(window.temperature_degc)]
+        return _without_misread(known)
 
     def missing(self) -> str | None:
         windows = self.windows()
@@ -274,6 +278,16 @@ class WarmUpStep:
     def _span_degc(self) -> float:
         degc = [window.temperature_degc for window in self.windows()]
         return max(degc) - min(degc) if degc else 0.0
+
+
+def _without_misread(windows: list[Window]) -> list[Window]:
+    """Those whose temperature is that of the windows around them."""
+    degc = np.array([window.temperature_degc for window in windows])
+    if len(degc) <= _AROUND:
+        return windows
+    around = sliding_window_view(np.pad(degc, _AROUND, mode="reflect"), 2 * _AROUND + 1)
+    off = np.abs(degc - np.median(around, axis=1))
+    return [window for window, by in zip(windows, off, strict=True) if by < _MISREAD_DEGC]
 
 
 def _mean_by_direction(fields_ut: Floats) -> Floats:

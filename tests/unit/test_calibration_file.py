@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import closing
 from datetime import timedelta
 
@@ -9,7 +10,7 @@ import msgspec
 import pytest
 
 from edge.calibration import Calibration, identity, read_calibration, write_calibration
-from edge.calibration.model import Accelerometer, Gyroscope, Magnetometer
+from edge.calibration.model import Accelerometer, Gyroscope, Magnetometer, Warmth
 from edge.calibration.session import calibrate_guided, calibrate_recorded
 from edge.calibration.steps import StillStep
 from edge.simulation.handling import HandledUnit
@@ -21,6 +22,36 @@ from tests.calibrating import MADE, gathered, known, solved
 @pytest.fixture
 def calibration() -> Calibration:
     return solved(gathered(StillStep(), [HandledUnit(2).rest(14.0)]))
+
+
+def whole_calibration(
+    of_force: float = 0.0, of_rate: float = 0.0, of_field: float = 0.0
+) -> Calibration:
+    """All parts, of sensors that err by nothing but these residuals."""
+    zero, gain = (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    none = (zero, zero, zero)
+    return Calibration(
+        "u1",
+        "s",
+        MADE,
+        Accelerometer(
+            gain=gain,
+            gain_std=gain,
+            bias_mps2=zero,
+            bias_std_mps2=zero,
+            poses=12,
+            residual_mps2=of_force,
+        ),
+        Gyroscope(
+            bias_radps=zero,
+            bias_std_radps=zero,
+            per_force=none,
+            per_force_std=none,
+            residual_radps=of_rate,
+        ),
+        Magnetometer(gain, gain, zero, zero, 50.0, of_field),
+        Warmth(zero, zero, zero, zero, 10.0, 30.0, 0.0, 0.0),
+    )
 
 
 def test_a_file_gives_back_the_calibration_and_its_identity(calibration, tmp_path):
@@ -66,6 +97,45 @@ def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
         read_calibration(tmp_path / "none.toml")
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("bias_radps = [0.01, -0.3, 0.0]", "gyroscope.bias_radps is off by more than 0.2"),
+        ("per_force = [[0, 0, 0], [0, 0.03, 0], [0, 0, 0]]", "gyroscope.per_force is off by"),
+        ("gain = [[9.98, 0, 0], [0, 1, 0], [0, 0, 1]]", "accelerometer.gain is off by more than"),
+        ("gain = [[1, 0, 0], [0, 0, 0], [0, 0, 1]]", "accelerometer.gain is off by more than 0.3"),
+        ("bias_mps2 = [0.1, 0.0, -9.8]", "accelerometer.bias_mps2 is off by more than 3"),
+        ("gain = [[4.5, 0, 0], [0, 1, 0], [0, 0, 1]]", "magnetometer.gain is off by more than 3"),
+        ("hard_iron_ut = [0, 0, 1e12]", "magnetometer.hard_iron_ut is off by more than 5000"),
+        ("accel_bias_per_degc_mps2 = [0, 1.5, 0]", "warmth.accel_bias_per_degc_mps2 is off by"),
+        ("gyro_bias_per_degc_radps = [0, -1.5, 0]", "warmth.gyro_bias_per_degc_radps is off by"),
+    ],
+)
+def test_numbers_that_no_sensor_is_off_by_are_damage(line, said, tmp_path):
+    """A digit that flipped would bend every path of a unit whose sensors are well."""
+    part = said.partition(".")[0]
+    file = tmp_path / "c.toml"
+    write_calibration(whole_calibration(), file)
+    assert read_calibration(file) == whole_calibration()
+    before, head, rest = file.read_text().partition(f"[{part}]")
+    name = line.partition(" =")[0]
+    lines = [line if one.startswith(f"{name} =") else one for one in rest.split("\n")]
+    assert lines != rest.split("\n")
+    first = next(number for number, one in enumerate(lines) if one == line)
+    spoilt = [*lines[: first + 1], *rest.split("\n")[first + 1 :]]
+    file.write_text(before + head + "\n".join(spoilt))
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said}")):
+        read_calibration(file)
+
+
+def test_six_poses_fit_whatever_they_show():
+    """As many equations as unknowns: a pose on a table that was pushed would not be noticed."""
+    accelerometer = known(whole_calibration().accelerometer)
+    for poses, said in ((7, ()), (6, ("accelerometer of 6 poses only: nothing checks it",))):
+        few = msgspec.structs.replace(accelerometer, poses=poses)
+        assert msgspec.structs.replace(whole_calibration(), accelerometer=few).faults() == said
+
+
 def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
     assert not calibration.is_old(MADE + timedelta(days=180))
     assert calibration.is_old(MADE + timedelta(days=181))
@@ -84,23 +154,8 @@ def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
     ],
 )
 def test_each_sensor_alone_makes_it_poor(residuals, said):
-    zero, gain = (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     of_force, of_rate, of_field = residuals
-    calibration = Calibration(
-        "u1",
-        "s",
-        MADE,
-        Accelerometer(
-            gain=gain,
-            gain_std=gain,
-            bias_mps2=zero,
-            bias_std_mps2=zero,
-            poses=12,
-            residual_mps2=of_force,
-        ),
-        Gyroscope(bias_radps=zero, bias_std_radps=zero, residual_radps=of_rate),
-        Magnetometer(gain, gain, zero, zero, 50.0, of_field),
-    )
+    calibration = whole_calibration(of_force, of_rate, of_field)
     assert calibration.faults() == said
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from edge.calibration.guide import guide
-from edge.calibration.rest import RestFinder
+from edge.calibration.rest import RestFinder, mean_of
 from edge.calibration.steps import PosesStep, StillStep, TurningStep, WarmUpStep
 from edge.samples import ImuBatch, SensorBatch
 from edge.simulation.handling import SIDES, HandledUnit
@@ -196,6 +196,39 @@ def test_a_temperature_that_is_told_now_and_then_is_that_of_the_window():
     finder.push(replace(rest, imu_temperature_degc=degc))
     (windows,) = finder.rests
     assert [window.temperature_degc for window in windows] == [21.5] * 4
+
+
+def test_a_temperature_that_is_told_more_seldom_than_that_holds():
+    finder = RestFinder()
+    rest = felt(4.0, 0.0, 0.0, 0.0)
+    degc = np.full(len(rest), np.nan)
+    degc[60], degc[260] = 21.0, 22.0
+    finder.push(replace(rest, imu_temperature_degc=degc))
+    (windows,) = finder.rests
+    assert [window.temperature_degc for window in windows] == [21.0] * 4 + [22.0] * 2
+
+
+def test_one_reading_of_a_temperature_that_is_wrong_moves_no_window():
+    finder = RestFinder()
+    rest = felt(3.0, 0.0, 0.0, 0.0)
+    degc = np.full(len(rest), 21.5)
+    degc[60], degc[120] = -128.0, 150.0
+    finder.push(replace(rest, imu_temperature_degc=degc))
+    (windows,) = finder.rests
+    assert {window.temperature_degc for window in windows} == {21.5}
+    misread = [replace(window) for window in windows]
+    misread[1] = replace(misread[1], temperature_degc=-40.0)
+    assert mean_of(misread).temperature_degc == 21.5
+
+
+def test_samples_of_other_units_are_no_calibration():
+    """A source that takes the full scale for twice what it is."""
+    unit = HandledUnit(0)
+    poses = [*unit.poses(SIDES), unit.turn(X, 1.0)]
+    doubled = [replace(batch, accel_mps2=2.0 * batch.accel_mps2) for batch in poses]
+    step = gathered(PosesStep(), doubled)
+    with pytest.raises(UserError, match=r"accelerometer\.gain is off by more than 0\.3, which no"):
+        solved(step)
 
 
 def test_readings_in_one_plane_are_refused_in_words_though_nobody_checked_them():

@@ -24,6 +24,7 @@ class Found:
     misaligned: float = 0.0
     misaligned_std: float = 0.0
     residual_mps2: float = 0.002
+    poses: int = 12
 
     def calibration(self) -> Calibration:
         return Calibration(
@@ -35,7 +36,7 @@ class Found:
                 gain_std=((3e-4, self.misaligned_std, 0.0), (0.0, 3e-4, 0.0), (0.0, 0.0, 3e-4)),
                 bias_mps2=(0.05, -0.1, 0.0),
                 bias_std_mps2=(0.001, 0.001, 0.001),
-                poses=12,
+                poses=self.poses,
                 residual_mps2=self.residual_mps2,
             ),
             Gyroscope(
@@ -103,6 +104,13 @@ def test_what_is_poor_is_to_be_done_again() -> None:
     assert "Poor: accelerometer off by 0.060 m/s2; do it again." in printed(
         Found(residual_mps2=0.06)
     )
+
+
+def test_six_poses_without_a_residual_are_said_to_have_none() -> None:
+    said = printed(Found(residual_mps2=0.0, poses=6))
+    assert "Residuals: accelerometer unknown over 6 poses; " in said
+    assert "Poor: accelerometer of 6 poses only: nothing checks it; do it again." in said
+    assert "lean the unit on its edges" in said
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -315,4 +316,28 @@ def test_what_was_heard_without_a_temperature_does_not_count() -> None:
     bench.lies(Z, 30.0)
     bench.lies(Z, 100.0, degc=(8.0, 20.0))
     assert len(step.windows()) == 199
+    assert step.missing() is None
+
+
+@pytest.mark.parametrize("wrong", [slice(0, 2), slice(90, 93), slice(-2, None)])
+@pytest.mark.parametrize("degc", [-40.0, 85.0])
+def test_temperatures_that_were_misread_warm_nothing_up(wrong: slice, degc: float) -> None:
+    """A sensor's answer is lost for a moment: all ones, all noughts."""
+    step = WarmUpStep()
+    bench = Bench(step)
+    bench.lies(Z, 100.0, degc=(12.0, 21.0))
+    (windows,) = step._finder.rests
+    whole = step.windows()
+    windows[wrong] = [replace(window, temperature_degc=degc) for window in windows[wrong]]
+    assert "changed by only" in (step.missing() or "")
+    assert all(12.0 < window.temperature_degc < 21.0 for window in step.windows())
+    assert len(step.windows()) == len(whole) - len(range(len(whole))[wrong])
+
+
+def test_a_coarse_thermometer_is_not_misread() -> None:
+    step = WarmUpStep()
+    bench = Bench(step)
+    for number in range(12):
+        bench.lies(Z, 10.0, degc=(10.0 + number, 10.0 + number))
+    assert len(step.windows()) == 238
     assert step.missing() is None

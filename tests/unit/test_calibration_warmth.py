@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from edge.calibration import Calibration
+from edge.calibration import Calibration, Correction
 from edge.calibration.model import Accelerometer, Gyroscope, Warmth
 from edge.calibration.rest import Window
 from edge.calibration.solve import solve_accelerometer, solve_gyroscope
-from edge.samples import Floats, ImuBatch, SensorDescription
+from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.samples import Floats, ImuBatch, SensorBatch, SensorDescription
 from edge.simulation.handling import EDGES, SIDES
 from edge.simulation.imu import GRAVITY_MPS2
+from edge.tracker.port import TrackBatch
+from shared.clock import ManualClock
+from shared.envelope import Stamper
 from tests.calibrating import MADE, known
+from tests.straight_ahead import StraightAhead, walk
 
 ACCEL_SLOPE, GYRO_SLOPE = np.array([0.010, -0.020, 0.015]), np.array([4e-4, -3e-4, 2e-4])
 ACCEL_BIAS, GYRO_BIAS = np.array([0.05, 0.10, -0.08]), np.array([0.010, -0.020, 0.005])
@@ -96,6 +103,53 @@ def test_a_unit_that_does_not_tell_its_temperature_is_rid_of_its_biases() -> Non
     after = warm_calibration(20.0).apply(ImuBatch(np.arange(3), none, none), SENSOR)
     assert after.accel_mps2 == pytest.approx(none - ACCEL_BIAS)
     assert after.gyro_radps == pytest.approx(none - GYRO_BIAS)
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 20])
+def test_between_two_readings_of_the_temperature_the_last_one_holds(at_once: int) -> None:
+    """An x-IMU3 tells it five times a second, and motion four hundred times."""
+    degc = np.full(20, np.nan)
+    degc[[3, 11]] = 25.0, 15.0
+    none = np.zeros((20, 3))
+    readings = ImuBatch(np.arange(20), none, none, imu_temperature_degc=degc)
+    correction = Correction(warm_calibration(20.0), SENSOR)
+    parts = [
+        correction.push(readings.part(slice(first, first + at_once)))
+        for first in range(0, 20, at_once)
+    ]
+    counted = np.repeat([0.0, 5.0, -5.0], [3, 8, 9])[:, None]
+    accel_mps2 = np.vstack([part.accel_mps2 for part in parts])
+    assert accel_mps2 == pytest.approx(-ACCEL_BIAS - counted * ACCEL_SLOPE)
+    gyro_radps = np.vstack([part.gyro_radps for part in parts])
+    assert gyro_radps == pytest.approx(-GYRO_BIAS - counted * GYRO_SLOPE)
+    told = np.concatenate([known(part.imu_temperature_degc) for part in parts])
+    assert told.tolist() == pytest.approx(degc.tolist(), nan_ok=True), "as the sensor told it"
+
+
+def test_batches_of_other_sensors_alone_and_without_a_temperature_are_corrected_too() -> None:
+    correction = Correction(warm_calibration(20.0), SENSOR)
+    none = np.zeros((3, 3))
+    warm = ImuBatch(np.arange(3), none, none, imu_temperature_degc=np.full(3, 25.0))
+    assert len(correction.push(warm.part(slice(0, 0)))) == 0
+    correction.push(warm)
+    assert len(correction.push(warm.part(slice(0, 0)))) == 0
+    after = correction.push(replace(warm, imu_temperature_degc=None))
+    assert after.accel_mps2 == pytest.approx(none - ACCEL_BIAS)
+
+
+def test_a_unit_s_tracker_is_given_samples_of_which_the_temperature_has_been_held() -> None:
+    class Noting(StraightAhead):
+        def push(self, batch: ImuBatch) -> TrackBatch:
+            pushed.append(batch.accel_mps2)
+            return super().push(batch)
+
+    pushed: list[Floats] = []
+    identity = UnitIdentity("1.0", "test", "straight", SENSOR, warm_calibration(20.0))
+    pipe = TrackerPipeline(identity, Noting(), Stamper("u1", 7, ManualClock()), 5.0)
+    for degc in (25.0, np.nan):
+        pipe.step(SensorBatch(replace(walk(1), imu_temperature_degc=np.array([degc]))))
+    expected = walk(1).accel_mps2 - ACCEL_BIAS - 5.0 * ACCEL_SLOPE
+    assert np.vstack(pushed) == pytest.approx(np.vstack((expected, expected)))
 
 
 def warm_calibration(at_degc: float) -> Calibration:

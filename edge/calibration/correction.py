@@ -1,0 +1,38 @@
+"""Takes a unit's errors out of its samples as they come."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from edge.calibration.model import Calibration
+from edge.samples import Floats, ImuBatch, SensorDescription
+
+
+class Correction:
+    """Takes the samples of one unit in order; the same however they are batched.
+
+    Most sensors tell their temperature more seldom than they tell motion: what was told last
+    holds until the next.
+    """
+
+    def __init__(self, calibration: Calibration, sensor: SensorDescription) -> None:
+        self._calibration = calibration
+        self._sensor = sensor
+        self._last_degc = math.nan
+
+    def push(self, imu: ImuBatch) -> ImuBatch:
+        degc = imu.imu_temperature_degc
+        if degc is None or not len(imu):
+            return self._calibration.apply(imu, self._sensor)
+        held = replace(imu, imu_temperature_degc=self._held(degc))
+        return replace(self._calibration.apply(held, self._sensor), imu_temperature_degc=degc)
+
+    def _held(self, degc: Floats) -> Floats:
+        rows = np.where(np.isfinite(degc), np.arange(len(degc)), -1)
+        told = np.maximum.accumulate(rows)
+        held = np.where(told < 0, self._last_degc, degc[told])
+        self._last_degc = float(held[-1])
+        return held
