@@ -51,10 +51,10 @@ class Sender(msgspec.Struct):
             return "repeat"
         self.heard_ns = t_ns
         if channel is not GPS:  # a receiver may be wrong about when its fix was valid
-            running = self.boots[-1]
+            running, is_first = self.boots[-1], not boot.is_placed  # its journal came before it
             if boot.note(t_ns, header) and boot is not running:
                 silent_ns = t_ns - running.there_to_ns
-                if silent_ns >= STALE_AFTER_S * NS_PER_S:
+                if is_first or silent_ns >= STALE_AFTER_S * NS_PER_S:
                     self._let_run(boot)
         latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
         if boot is not self.boots[-1] or (
@@ -62,7 +62,8 @@ class Sender(msgspec.Struct):
         ):  # one that is said last of all is new: the clock was wrong before
             return "old"
         self.latest_mono_ns[channel.name] = header.t_mono_ns
-        self.stopped_ns = None
+        if header.seq == boot.seen.lasts[-1]:  # a goodbye is an alert and overtakes what is not
+            self.stopped_ns = None
         return "new"
 
     def has(self, boot_id: int, seq: int) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.sender import BOOTS, Sender
-from shared.channels import POSITION, STATUS, Channel
+from shared.channels import EVENT, POSITION, STATUS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header
 
@@ -56,3 +56,28 @@ def test_runs_out_of_the_journal_are_known_and_never_the_one_that_runs(sender: S
         assert sender.has(boot_id, 1)
     assert len(sender.boots) == BOOTS
     assert sender.boots[-1].boot_id == 7
+
+
+def test_a_run_of_which_the_journal_told_first_is_shown_as_soon_as_it_is_heard(
+    sender: Sender,
+) -> None:
+    """It began while its unit was still taken for there, and was asked for what it has at once."""
+    sender.recall(8, 1)
+    assert sender.accept(STATUS, said(2, 3.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
+    assert sender.boots[-1].boot_id == 8
+    assert sender.accept(STATUS, said(6, 101.0), NOW_NS + 2 * NS_PER_S) == "old"
+
+
+def test_what_a_goodbye_overtook_does_not_take_it_back(sender: Sender) -> None:
+    """It is an alert, and goes ahead of what was said before it."""
+    for seq, channel, goodbye in ((9, EVENT, True), (8, POSITION, False), (7, STATUS, False)):
+        assert sender.accept(channel, said(seq, 100.0 + seq), NOW_NS) == "new"
+        if goodbye:
+            sender.stopped_ns = NOW_NS  # as ``noting`` does
+    assert sender.stopped_ns == NOW_NS
+    left = []
+    for later in (said(10, 110.0), said(1, 1.0, boot_id=8)):
+        sender.stopped_ns = NOW_NS
+        sender.accept(STATUS, later, NOW_NS)
+        left.append(sender.stopped_ns)
+    assert left == [None, None]
