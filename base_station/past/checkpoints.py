@@ -11,6 +11,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Lock
 
 import msgspec
 import zstandard
@@ -46,10 +47,11 @@ class _File(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Checkpoints:
-    """A folder of checkpoints, named by their times."""
+    """A folder of checkpoints, named by their times; from any thread."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._changing = Lock()
         self._program = _program()
         self._useless: set[Path] = set()  # torn, or of another version of the program
         folder.mkdir(parents=True, exist_ok=True)
@@ -62,20 +64,22 @@ class Checkpoints:
         content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"
         part = self._folder / _PART  # a kill leaves one at most
-        try:
-            part.write_bytes(content)
-            part.replace(path)
-        except OSError:
-            part.unlink(missing_ok=True)
-            raise
-        self._useless.discard(path)
-        self._thin_out()
+        with self._changing:
+            try:
+                part.write_bytes(content)
+                part.replace(path)
+            except OSError:
+                part.unlink(missing_ok=True)
+                raise
+            self._useless.discard(path)
+            self._thin_out()
 
     def clear(self) -> None:
         """Remove all of them: a restart steps the whole log."""
-        for path in self._folder.iterdir():
-            if path.suffix == SUFFIX or path.name == _PART:
-                path.unlink(missing_ok=True)
+        with self._changing:
+            for path in self._folder.iterdir():
+                if path.suffix == SUFFIX or path.name == _PART:
+                    path.unlink(missing_ok=True)
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
         """The newest usable one, at or before ``until_ns`` where that is given, and later than

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -77,3 +78,21 @@ def test_all_of_them_together_are_bounded(tmp_path: Path, monkeypatch: pytest.Mo
     old = sorted(tmp_path.iterdir())[:-KEPT_CLOSE]
     assert old
     assert sum(path.stat().st_size for path in old) <= 2000
+
+
+def test_one_that_is_being_saved_while_all_are_removed_is_saved_or_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is not taken for a disk that fails."""
+    checkpoints, replace = Checkpoints(tmp_path), Path.replace
+    removing = Thread(target=checkpoints.clear)
+
+    def removed_meanwhile(part: Path, path: Path) -> Path:
+        removing.start()
+        removing.join(0.2)  # as far as it gets
+        return replace(part, path)
+
+    monkeypatch.setattr(Path, "replace", removed_meanwhile)
+    checkpoints.save(100, 1, make_pipeline().checkpoint())
+    removing.join()
+    assert times(tmp_path) == []
