@@ -19,7 +19,7 @@ from shared.messages.station import ConfirmCommand, SendCommand
 
 MOST_OPEN = 50
 CLOSED_KEPT = 10  # at hand; the log has all of them
-_NOT_THERE: frozenset[DeliveryState] = frozenset({"queued", "sent"})  # as far as is known
+_NOT_THERE: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
@@ -96,18 +96,19 @@ def expire(state: StationState) -> Iterator[SentCommand]:
 
 def forget(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
     """Who of this unit's wearers acknowledged what, and texts to them.  Of a message nothing is
-    left then: for whom it has not reached its time is over.
+    left then: for whom it has not reached its time is over.  Texts to others may name them: the
+    words go of what has reached all whom it goes to.
     """
     for command in state.commands.values():
-        delivery = command.deliveries.get(unit.unit_id)
-        if delivery is None:
+        delivery, not_reached = command.deliveries.get(unit.unit_id), _not_reached(command)
+        if delivery is None and (not_reached or not command.text):
             continue
-        delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
+        if delivery is not None:
+            delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
         command.text = FORGOTTEN if command.text else ""
         if command.kind is CommandKind.TEXT:
-            for one in command.deliveries.values():
-                if command.state_of(one) in _NOT_THERE:
-                    one.expired_ns = state.t_ns
+            for one in not_reached:
+                one.expired_ns = state.t_ns
         yield command
 
 
@@ -124,8 +125,7 @@ def unanswered(state: StationState) -> tuple[Order, ...]:
             position_rate_hz=command.position_rate_hz,
         )
         for command in state.commands.values()
-        for delivery in command.deliveries.values()
-        if command.state_of(delivery) in _NOT_THERE
+        for delivery in _not_reached(command)
     )
 
 
@@ -167,6 +167,11 @@ def _delivery(
     command = state.commands.get(command_id)
     delivery = command.deliveries.get(unit_id) if command is not None else None
     return None if command is None or delivery is None else (command, delivery)
+
+
+def _not_reached(command: SentCommand) -> list[Delivery]:
+    """To whom it is still on its way, as far as is known."""
+    return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_THERE]
 
 
 def _forget_oldest(state: StationState) -> None:

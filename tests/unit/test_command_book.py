@@ -268,12 +268,28 @@ def test_what_a_unit_did_too_late_is_done_all_the_same():
 def test_what_was_said_to_a_wearer_and_who_answered_is_forgotten():
     script = crewed()
     for number in (1, 2):
-        script.act(order(f"c{number}", CommandKind.TEXT, f"FF-0{number}", text=f"come, {number}"))
+        script.act(order(f"c{number}", CommandKind.EVACUATE, f"FF-0{number}"))
         script.reply(f"FF-0{number}", f"c{number}", ACKNOWLEDGED)
     script.act(ForgetWearers("FF-01"))
     hers, his = script.pipeline.state.commands.values()
-    assert (hers.text, hers.deliveries["FF-01"].acknowledged_by) == (FORGOTTEN, FORGOTTEN)
-    assert (his.text, his.deliveries["FF-02"].acknowledged_by) == ("come, 2", "Person 2")
+    assert hers.deliveries["FF-01"].acknowledged_by == FORGOTTEN
+    assert his.deliveries["FF-02"].acknowledged_by == "Person 2"
+
+
+@pytest.mark.parametrize("answer", [RECEIVED, ACKNOWLEDGED, REFUSED])
+def test_what_others_were_told_may_name_who_is_forgotten(answer):
+    """Nothing is lost with the words: they are where they were to go."""
+    script = crewed()
+    for number, answers in ((1, True), (2, True), (3, False)):
+        script.act(order(f"c{number}", CommandKind.TEXT, f"FF-0{number}", text="to Person 1!"))
+        if answers:
+            script.reply(f"FF-0{number}", f"c{number}", answer)
+    outputs = script.act(ForgetWearers("FF-01"))
+    assert [CommandTouched(f"c{number}") in outputs for number in (1, 2, 3)] == [True, True, False]
+    texts = [command.text for command in script.pipeline.state.commands.values()]
+    assert texts == [FORGOTTEN, FORGOTTEN, "to Person 1!"]
+    (left,) = unanswered(script.pipeline.state)
+    assert (left.unit_id, left.text) == ("FF-03", "to Person 1!")
 
 
 def test_a_message_of_which_nothing_is_left_is_told_to_nobody_any_more():
