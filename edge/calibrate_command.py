@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from shared.channels import validate_unit_id
 from shared.errors import UserError
 from shared.out_file import writable
 
@@ -25,7 +26,11 @@ Connect = Annotated[
 ]
 Speed = Annotated[
     float | None,
-    typer.Option(help="Play a recorded or simulated unit at this multiple of real time."),
+    typer.Option(
+        help="Play a recorded or simulated unit at this multiple of real time.",
+        min=0.01,
+        max=1000.0,
+    ),
 ]
 WithWarmUp = Annotated[
     bool, typer.Option("--with-warm-up", help="Guided: also the temperature, 5 to 60 minutes.")
@@ -66,6 +71,8 @@ def calibrate(
             "give either --source to be guided, or recordings: --still, --poses, --turning, "
             "--warm-up"
         )
+    if unit:
+        validate_unit_id(unit)
     if source is None:
         calibrate_recorded(recordings, out, unit, sensor)
         return

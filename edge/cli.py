@@ -50,7 +50,7 @@ Calibrated = Annotated[
     Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
 ]
 ForSeconds = Annotated[
-    float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0)
+    float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0, max=1e9)
 ]
 Speed = Annotated[
     float | None, typer.Option(help="Play a recording at this multiple of real time.")

@@ -86,7 +86,7 @@ def _enrolled(config: EdgeConfig, followed: str | None) -> Membership:
 
 def _check_endpoint(endpoint: str, *, secured: bool) -> None:
     parts = _ENDPOINT.fullmatch(endpoint)
-    if parts is None or not 0 < int(parts[3]) < 65536:
+    if parts is None or not 0 < int(parts[3]) < 65536 or not _can_be_looked_up(parts[2]):
         raise ConfigError(
             f"{endpoint!r} is no place to connect to; write tcp/HOST:PORT, or tls/HOST:PORT with "
             "an enrolment"
@@ -97,3 +97,12 @@ def _check_endpoint(endpoint: str, *, secured: bool) -> None:
             if secured
             else f"{endpoint}: a secure link needs the unit's enrolment; give --enrolment FILE"
         )
+
+
+def _can_be_looked_up(host: str) -> bool:
+    """Whether it is a name at all; the name server may not know it yet."""
+    try:
+        host.encode("idna")
+    except UnicodeError:
+        return False
+    return True

@@ -142,7 +142,7 @@ def sensor_of(description: UnitDescription) -> SensorDescription:
 
 def gps_fix(header: Header, sample: GpsSample) -> GpsFix:
     """The wire's fix; without coordinates it is no fix, whatever the receiver calls it."""
-    located = math.isfinite(sample.lat_deg) and math.isfinite(sample.lon_deg)
+    located = abs(sample.lat_deg) <= 90.0 and abs(sample.lon_deg) <= 180.0  # and not NaN
     three_d = math.isfinite(sample.height_m)
     fix_type = {2: FixType.TWO_D, 3: FixType.THREE_D}.get(sample.fix_type, FixType.NONE)
     if not three_d:

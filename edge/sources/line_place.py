@@ -66,6 +66,7 @@ def server_of(where: str, port: int | None) -> tuple[str, int, str] | None:
     try:
         parts = urlsplit(where)
         host, written = parts.hostname, parts.port
+        (host or "").encode("idna")  # what cannot be looked up is no name of a machine
     except ValueError:
         return None
     port = port if written is None else written

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 from edge.samples import SightingSample
 from edge.sources.line import DeviceLine, Line, SocketLine
+from edge.sources.line_place import server_of
 from edge.sources.line_thread import LineThread
 from edge.sources.sighting_lines import LONGEST, sighting_of
 from shared.clock import Clock
@@ -27,10 +28,11 @@ def open_reader(text: str) -> Callable[[], Line]:
     """How to open what ``tcp:HOST:PORT`` or ``PATH`` names.  Raises ConfigError."""
     if not text.startswith("tcp:"):
         return lambda: DeviceLine(text)
-    host, _, port = text.removeprefix("tcp:").rpartition(":")
-    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+    server = text.removeprefix("tcp:").removeprefix("//")
+    host, port, path = server_of(f"tcp://{server}", None) or ("", 0, "")
+    if not host or path not in ("", "/"):
         raise ConfigError(f"a reader is tcp:HOST:PORT or a device's path, not {text!r}")
-    return lambda: SocketLine(host.strip("[]"), int(port))
+    return lambda: SocketLine(host, port)
 
 
 class SightingReader:

@@ -50,6 +50,8 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         ({"unit": "u1", "source": "simulatd:x"}, "did you mean simulated:"),
         ({"unit": "u1", "connect": ["tcp/host"]}, "tcp/HOST:PORT"),
         ({"unit": "u1", "connect": ["tcp/host:70000"]}, "tcp/HOST:PORT"),
+        ({"unit": "u1", "connect": ["tcp/no..name:7447"]}, "tcp/HOST:PORT"),
+        ({"unit": "u1", "source": "ximu3:tcp://no..name"}, "names no server"),
         ({"unit": "u1", "connect": ["tls/host:7447"]}, "needs the unit's enrolment"),
         ({"unit": "u1", "tracker": "esfk"}, "eskf"),
         ({"unit": "u1", "data": Path("/dev/null")}, "/dev/null"),
@@ -137,3 +139,22 @@ def test_calibrating_without_a_source_says_what_to_give(tmp_path):
     assert result.returncode == 2
     assert "--still, --poses, --turning, --warm-up" in result.stderr
     assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "0"), "--speed"),
+        (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "nan"), "--speed"),
+        (("calibrate", "--still", "bench:1", "--out", "c.toml", "--unit", "a/b"), "unit id 'a/b'"),
+        (("run", "--source", WALK, "--unit", "u1", "--for", "inf"), "--for"),
+    ],
+)
+def test_numbers_and_names_that_cannot_be_are_refused_before_anything_is_done(
+    arguments, said, tmp_path
+):
+    result = muster_edge(*arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []

@@ -106,7 +106,18 @@ def test_a_range_is_as_unsure_as_a_body_in_the_way_makes_it(
     assert math.log(behind_somebody_m / range_m) == pytest.approx(std_m / range_m)
 
 
-@pytest.mark.parametrize("text", ["tcp:", "tcp:host", "tcp:host:0", "tcp:host:70000", "tcp::80"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "tcp:",
+        "tcp:host",
+        "tcp:host:0",
+        "tcp:host:70000",
+        "tcp::80",
+        "tcp:no..name:80",
+        "tcp:host:80/door",
+    ],
+)
 def test_what_is_no_reader_is_refused(text: str) -> None:
     with pytest.raises(ConfigError, match="tcp:HOST:PORT"):
         open_reader(text)
@@ -168,7 +179,8 @@ def test_a_pipes_sightings_come_with_the_batches(tmp_path: Path) -> None:
     assert reader.bad_lines == 1
 
 
-def test_a_reader_that_is_gone_is_opened_again() -> None:
+@pytest.mark.parametrize("slashes", ["", "//"])
+def test_a_reader_that_is_gone_is_opened_again(slashes: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def talk() -> None:
@@ -179,7 +191,7 @@ def test_a_reader_that_is_gone_is_opened_again() -> None:
 
         threading.Thread(target=talk, daemon=True).start()
         port = server.getsockname()[1]
-        reader = SightingReader(f"tcp:127.0.0.1:{port}", SystemClock())
+        reader = SightingReader(f"tcp:{slashes}127.0.0.1:{port}", SystemClock())
         found = sightings(beside(reader, is_live=True), 2)
     assert [one.seen_id for _, one in found] == ["one", "two"]
     assert 0 < found[0][1].t_ns <= time.monotonic_ns()
