@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-PATIENCE_S = 60.0  # of a busy machine; nothing is measured by it
+PATIENCE_S = 120.0  # of a busy machine; nothing is measured by it
 _LOOK_EVERY_S = 0.02
 
 

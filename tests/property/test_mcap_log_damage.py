@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import struct
 from pathlib import Path
@@ -198,3 +199,33 @@ def test_a_window_and_keys_select_what_a_filter_selects(
     damage: list[str] = []
     assert list(read_log(folder, start_ns, end_ns, keys, damage.append)) == expected
     assert damage == []  # its indexes are taken for what they are
+
+
+PAGE = 512  # of a disk; as many as possible of the file
+
+
+@pytest.mark.parametrize("end", [False, True])
+def test_what_a_disk_does_not_give_costs_what_stands_there_and_is_told(
+    tmp_path: Path, whole: Path, unfinished: Path, monkeypatch: pytest.MonkeyPatch, end: bool
+) -> None:
+    content = (whole if end else unfinished).read_bytes()
+    pread = os.pread
+    bad = 0
+
+    def fail_at_one(descriptor: int, count: int, offset: int) -> bytes:
+        if offset < bad + PAGE and bad < offset + count:
+            raise OSError(5, "Input/output error")
+        return pread(descriptor, count, offset)
+
+    for bad in range(0, len(content), PAGE):
+        folder = log_of(tmp_path, content)
+        damage: list[str] = []
+        with monkeypatch.context() as failing:
+            failing.setattr(os, "pread", fail_at_one)
+            found = list(read_log(folder, on_damage=damage.append))
+            recover_log(folder)
+        assert_in_order_of(found, RECORDS)
+        assert len(found) > 0.7 * len(RECORDS)
+        assert found == RECORDS or damage
+        mended = [record for record in read_log(folder) if not record[1].startswith("unknown/")]
+        assert mended == (RECORDS if end and found != RECORDS else found)
