@@ -23,6 +23,8 @@ from shared.mcap_log.container import (
 )
 from shared.mcap_log.segment_file import SegmentFile
 
+_MADE_AGAIN = "its table of contents is damaged and was made again"
+
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
@@ -54,6 +56,7 @@ def _from_summary(file: SegmentFile) -> Contents | None:
     try:
         return _read_summary(file)
     except NONSENSE:
+        file.note(_MADE_AGAIN)
         return None
 
 
@@ -66,7 +69,7 @@ def _read_summary(file: SegmentFile) -> Contents | None:
         return None
     summary = file.read(start, file.size - FOOTER_BYTES - start)
     if zlib.crc32(footer[: 9 + 16], zlib.crc32(summary)) != expected_crc:
-        file.note("its table of contents is damaged and was made again")
+        file.note(_MADE_AGAIN)
         return None
     contents = Contents(is_complete=True, readable_bytes=file.size, counts={})
     for opcode, body in records_in(summary):
@@ -87,27 +90,38 @@ def _from_walk(file: SegmentFile) -> Contents:
     contents = Contents()
     offset = len(MCAP0_MAGIC)
     while offset + 9 <= file.size:
-        opcode, length = file.record_at(offset)
-        fits = offset + 9 + length <= file.size
-        is_chunk = opcode == Opcode.CHUNK and length >= CHUNK.size
-        if not fits or not (is_chunk or opcode in BETWEEN_CHUNKS):
+        try:
+            length, chunk = _record_at(file, offset)
+        except ValueError:
             found = _next_chunk(file, offset + 1)
             if found is None:
                 break
             file.note(f"bytes {offset} to {found} make no sense")
             offset = found
             continue
-        if is_chunk:
-            start_ns, end_ns, *_ = CHUNK.unpack(file.read(offset + 9, CHUNK.size))
-            contents.chunks.append(Chunk(offset, start_ns, end_ns))
+        if chunk is not None:
+            contents.chunks.append(chunk)
         offset += 9 + length
         contents.readable_bytes = offset
     return contents
 
 
+def _record_at(file: SegmentFile, offset: int) -> tuple[int, Chunk | None]:
+    """Its length, and the chunk where it is one; ValueError where neither can stand there."""
+    opcode, length = file.record_at(offset)
+    if offset + 9 + length > file.size:
+        raise ValueError("the file ends before it")
+    if opcode in BETWEEN_CHUNKS:
+        return length, None
+    if opcode != Opcode.CHUNK or length < CHUNK.size:
+        raise ValueError("no such record stands between chunks")
+    start_ns, end_ns, *_ = CHUNK.unpack(file.read(offset + 9, CHUNK.size))
+    return length, Chunk(offset, start_ns, end_ns)
+
+
 def _next_chunk(file: SegmentFile, offset: int) -> int | None:
     """The next intact chunk record at or behind ``offset``, by the name of its compression."""
-    rest = file.read(offset, file.size - offset)
+    rest = file.read_from(offset)
     at = -1
     while (at := rest.find(CHUNK_MARK, at + 1)) >= 0:
         begin = at - 9 - (CHUNK.size - 4)

@@ -151,12 +151,15 @@ class SegmentReader:
 
     def _index_behind(self, offset: int) -> bytes:
         end = offset
-        while end + 9 <= self._file.size:
-            opcode, length = self._file.record_at(end)
-            if opcode != Opcode.MESSAGE_INDEX:
-                break
-            end += 9 + length
-        return self._file.read(offset, end - offset) if end <= self._file.size else b""
+        try:
+            while end + 9 <= self._file.size:
+                opcode, length = self._file.record_at(end)
+                if opcode != Opcode.MESSAGE_INDEX:
+                    break
+                end += 9 + length
+            return self._file.read(offset, end - offset)
+        except ValueError:
+            return b""  # what is in the chunk can be read without
 
     def _records_at(self, data: bytes, offsets: list[int], wanted: _Wanted) -> Iterator[LogRecord]:
         topics = {

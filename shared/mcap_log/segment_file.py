@@ -9,6 +9,8 @@ from typing import BinaryIO
 from shared.errors import LogError
 from shared.mcap_log.container import RECORD
 
+_BLOCK_BYTES = 4096  # a disk gives so much or none of it
+
 
 class SegmentFile:
     """An open file; ``damage`` describes, once each, what could not be read."""
@@ -38,10 +40,25 @@ class SegmentFile:
         try:
             data = os.pread(self._file.fileno(), count, offset)
         except OSError as error:
+            self.note("the disk does not give all of it")
             raise ValueError(f"the disk does not give it: {error}") from error
         if len(data) < count:
             raise ValueError("the file was made shorter meanwhile")
         return data
+
+    def read_from(self, offset: int) -> bytes:
+        """All that follows; zeros where the disk does not give it."""
+        first = offset - offset % _BLOCK_BYTES
+        return b"".join(
+            self._read_or_zeros(max(block, offset), min(block + _BLOCK_BYTES, self.size))
+            for block in range(first, self.size, _BLOCK_BYTES)
+        )
+
+    def _read_or_zeros(self, begin: int, end: int) -> bytes:
+        try:
+            return self.read(begin, end - begin)
+        except ValueError:
+            return bytes(end - begin)
 
     def note(self, what: str) -> None:
         note = f"{self.path.name}: {what}"
