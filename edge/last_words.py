@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Iterator
+
 from edge.commands import REMEMBERED
 from edge.spool import Spool
-from shared.channels import EVENT, REPLY
+from shared.channels import EVENT, REPLY, Channel
 from shared.codec import decode
-from shared.messages import CommandReply, EventKind, UnitEvent
+from shared.errors import WireError
+from shared.messages import CommandReply, EventKind, Message, UnitEvent
+
+logger = logging.getLogger(__name__)
 
 
 def mayday_before(spool: Spool) -> bool:
@@ -15,8 +21,7 @@ def mayday_before(spool: Spool) -> bool:
     A unit that was stopped in order has said so, and starts afresh.
     """
     boots = [boot for boot in spool.boots() if boot.boot_id != spool.boot_id]
-    for payload in spool.newest_first(boots[-1].boot_id, EVENT) if boots else ():
-        event = decode(EVENT, payload)
+    for event in _newest_first(spool, boots[-1].boot_id, EVENT) if boots else ():
         assert isinstance(event, UnitEvent)
         if event.kind in (EventKind.STOPPED, EventKind.MAYDAY_CANCELLED):
             return False
@@ -29,10 +34,20 @@ def answers_before(spool: Spool) -> list[CommandReply]:
     """What this unit has answered to commands, oldest first, so that it does none of them again."""
     answers: list[CommandReply] = []
     for boot in reversed(spool.boots()):
-        for payload in spool.newest_first(boot.boot_id, REPLY):
-            answer = decode(REPLY, payload)
+        for answer in _newest_first(spool, boot.boot_id, REPLY):
             assert isinstance(answer, CommandReply)
             answers.append(answer)
             if len(answers) == 2 * REMEMBERED:  # a command has one or two, seldom more
                 return answers[::-1]
     return answers[::-1]
+
+
+def _newest_first(spool: Spool, boot_id: int, channel: Channel) -> Iterator[Message]:
+    """Without what cannot be understood, as after a step back to an older program: a unit that
+    would not start for it could say nothing at all.
+    """
+    for payload in spool.newest_first(boot_id, channel):
+        try:
+            yield decode(channel, payload)
+        except WireError as error:
+            logger.warning("in the journal: %s", error)

@@ -24,6 +24,7 @@ logger = logging.getLogger(__name__)
 
 _GROUP_S = 0.1
 _UNSAVED_KEPT = 10_000  # while the disk refuses
+_AGAIN_S = 1.0  # after a refusal: offering all of them at every message takes half a processor
 
 Publish = Callable[[str, bytes, Qos], None]
 
@@ -39,6 +40,7 @@ class Outbox:
         self._unsaved: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)
         self._unsaved_alerts: deque[Journaled] = deque(maxlen=_UNSAVED_KEPT)  # nothing ousts them
         self._storage_fault: str | None = None
+        self._refused_s = 0.0  # when the disk last did
         self._bus_fails = False
         self._urgent = Event()
         self._closed = False
@@ -112,6 +114,8 @@ class Outbox:
             unsaved = self._unsaved_alerts if is_alert else self._unsaved
             self.never_saved += len(unsaved) == _UNSAVED_KEPT
             unsaved.append(message)
+        if self._is_to_be_spared():
+            return
         waiting = [*self._unsaved_alerts, *self._unsaved]
         if not waiting:
             return
@@ -121,6 +125,7 @@ class Outbox:
             if self._storage_fault is None:
                 logger.error("%s; messages are sent but not kept", error)
             self._storage_fault = str(error)
+            self._refused_s = time.monotonic()
         else:
             if self._storage_fault is not None:
                 logger.warning(
@@ -131,6 +136,11 @@ class Outbox:
             self._storage_fault = None
             self._unsaved.clear()
             self._unsaved_alerts.clear()
+
+    def _is_to_be_spared(self) -> bool:
+        """Whether the disk has just refused; at the end it is asked all the same."""
+        refuses = self._storage_fault is not None and not self._closed
+        return refuses and time.monotonic() < self._refused_s + _AGAIN_S
 
 
 def _journaled(message: Message) -> list[Journaled]:

@@ -38,6 +38,8 @@ class AirHeight:
             cell = t_ns // _CELL_NS
             if cell != self._cell:
                 self._close()
+                if self._cell is not None and cell < self._cell - 1:
+                    self._cells.clear()  # a clock that went back
                 self._cell = cell
             self._pressures_pa.append(pressure_pa)
 

@@ -75,15 +75,15 @@ class StrideCutter:
         if lifted is None or down.t_ns <= lifted.t_ns:
             return []
         north_m, east_m, sink_m = (down.position_n_m - lifted.position_n_m).tolist()
+        up_b = up_in_body(track.quaternion_nb[row])
         swing_ns = down.t_ns - lifted.t_ns
-        if swing_ns < _SHORTEST_SWING_NS or not isfinite(north_m + east_m + sink_m):
+        if swing_ns < _SHORTEST_SWING_NS or not isfinite(north_m + east_m + sink_m + up_b.sum()):
             self._doubted_ns = down.t_ns
             return []
         period_ns = down.t_ns - self._footfall_ns if self._footfall_ns is not None else 0
         self._footfall_ns = down.t_ns
         if not swing_ns <= period_ns <= _LONGEST_PERIOD_NS:
             period_ns = round(swing_ns / _SWING_SHARE)
-        up_b = up_in_body(track.quaternion_nb[row])
         return [Stride(down.t_ns, period_ns / NS_PER_S, hypot(north_m, east_m), -sink_m, up_b)]
 
 

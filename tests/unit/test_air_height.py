@@ -99,3 +99,11 @@ def test_half_a_minute_is_remembered_and_no_more() -> None:
     air.push(samples(60.0, level))
     assert climbed_m(air, 31.0, 58.0) == pytest.approx(0.0, abs=1e-6)
     assert climbed_m(air, 27.0, 58.0) is None
+
+
+def test_what_was_before_the_clock_went_back_is_of_other_times() -> None:
+    air = AirHeight()
+    air.push(samples(130.0, lambda t_s: level(t_s) + 50.0, from_s=100.0))
+    air.push(samples(112.0, level, from_s=90.0))
+    assert climbed_m(air, 92.0, 110.0) == pytest.approx(0.0, abs=1e-6)
+    assert climbed_m(air, 92.0, 120.0) is None

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -57,6 +59,23 @@ def boot(path: Path, *kinds: EventKind) -> bool:
 def test_what_the_last_boot_said_last_counts(tmp_path, said, latched):
     assert not boot(tmp_path, *said)
     assert boot(tmp_path, STARTED) is latched
+
+
+def test_what_cannot_be_understood_keeps_no_unit_from_starting(tmp_path):
+    """Damage, or the words of a newer program that has been taken back."""
+    boot(tmp_path, STARTED, MAYDAY)
+    path = tmp_path / "journal.sqlite"
+    with closing(sqlite3.connect(path)) as journal, journal:
+        for number, suffix in enumerate((EVENT.suffix, REPLY.suffix)):
+            journal.execute(
+                "INSERT INTO message SELECT worth, boot, seq + 5 + ?, ?, 0, x'ff' FROM message "
+                "WHERE seq = 2",
+                (number, suffix),
+            )
+    spool = Spool(path, BOOTS.__next__, 0, 10**8)
+    assert mayday_before(spool)
+    assert answers_before(spool) == []
+    spool.close()
 
 
 def test_a_mayday_from_before_is_said_again_first_thing():

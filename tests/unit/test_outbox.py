@@ -95,6 +95,28 @@ def test_a_disk_that_refuses_stops_nothing_and_is_made_good(spool, stamper, full
     assert not outbox.storage_fault
 
 
+def test_a_disk_that_has_just_refused_is_not_asked_at_every_message(spool, stamper, monkeypatch):
+    """Thousands wait: to offer them ten times a second leaves the tracker no processor."""
+    offered: list[int] = []
+    sent: list[bytes] = []
+    append = spool.append
+
+    def refuse(messages):
+        offered.append(len(messages))
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr("edge.outbox._AGAIN_S", 600.0)
+    monkeypatch.setattr(spool, "append", refuse)
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    for number in range(1, 6):
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        until(partial(holds, sent, number))
+    assert offered == [1]
+    monkeypatch.setattr(spool, "append", append)
+    outbox.close()
+    assert [entry.seq for entry in spool.read(spool.boot_id, 1, 9)] == [1, 2, 3, 4, 5]
+
+
 def test_an_alert_is_not_ousted_by_what_came_after_it(spool, stamper, monkeypatch, full_disk):
     """Neither a disk nor a link for minutes: the mayday is what must not be missing."""
     monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)

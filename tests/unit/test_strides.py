@@ -222,3 +222,13 @@ def test_a_stride_says_how_the_foot_was_held_as_it_came_down() -> None:
     track.quaternion_nb[-1] = attitude(0.0, math.pi / 2, 0.0)
     (stride,) = StrideCutter().push(track)
     assert stride.up_b == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
+
+
+def test_a_footfall_of_which_the_attitude_is_no_number_ends_no_stride() -> None:
+    """How a foot stands is learnt from it: one such stride would never be forgotten."""
+    track = walk(strides=3)
+    whole = StrideCutter().push(track)
+    track.quaternion_nb[track.t_ns == whole[1].end_ns] = np.nan
+    found = StrideCutter().push(track)
+    assert [one.end_ns for one in found] == [whole[0].end_ns, whole[2].end_ns]
+    assert all(np.isfinite(one.up_b).all() for one in found)
