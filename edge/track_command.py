@@ -16,6 +16,7 @@ from edge.sources.recording import RecordingSource
 from edge.tracker import TRACKERS, make_tracker
 from edge.tracker.port import Quality, TrackBatch
 from edge.tracker.rows import join_rows
+from shared.errors import RecordingError
 from shared.mcap_log import segment_paths
 from shared.out_file import whole, writable
 
@@ -37,6 +38,8 @@ def track(
     """Track a recorded walk and write time, position and standard deviations."""
     source = BlackBoxSource(recording) if _is_black_box(recording) else RecordingSource(recording)
     rows = run_tracker(source, tracker, quiet=False)
+    if not len(rows):
+        raise RecordingError(f"{recording} holds no inertial samples: there is nothing to track")
     write_csv(rows, out)
     step_m = rows.position_n_m[-1] - rows.position_n_m[0]
     doubtful = float(np.mean(rows.quality != Quality.GOOD))

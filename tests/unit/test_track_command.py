@@ -10,10 +10,15 @@ import typer
 from typer.testing import CliRunner
 
 from edge.bench.track import WIDTH, bench_track, find_trials
+from edge.black_box import BlackBox
+from edge.raw_stream import RawStream
+from edge.samples import AmbientSample, SensorBatch, SensorDescription
 from edge.track_command import COLUMNS, track
-from shared.errors import UserError
+from shared.clock import ManualClock
+from shared.errors import RecordingError, UserError
 from tests.walking import walk
 
+AMBIENT = AmbientSample(0, 20.0)
 HEADER = "t_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,gyro_x_radps,gyro_y_radps,gyro_z_radps"
 
 
@@ -45,6 +50,20 @@ def invoke(command, *arguments):
     result = CliRunner().invoke(app, [str(argument) for argument in arguments])
     assert result.exit_code == 0, result.output
     return result.output
+
+
+def test_a_box_without_an_inertial_sample_is_said_to_have_none(tmp_path):
+    """The sensor was never there, and the thermometer was."""
+    raw = RawStream("u1", 7)
+    description = raw.description(0, SensorDescription("s", 100.0), source="", tracker="")
+    box = BlackBox(tmp_path / "box", description, 10**9, ManualClock())
+    box.write(raw.messages(SensorBatch(walk(strides=1).imu.part(slice(0)), (AMBIENT,))))
+    box.close()
+    (boot,) = (tmp_path / "box").iterdir()
+    out = tmp_path / "track.csv"
+    with pytest.raises(RecordingError, match="holds no inertial samples"):
+        track(boot, out)
+    assert not out.exists()
 
 
 def test_track_writes_a_line_a_sample(trial, tmp_path):
