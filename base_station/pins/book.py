@@ -6,7 +6,7 @@ Every check says in a sentence why a pin cannot be taken.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 
 import msgspec
 
@@ -91,13 +91,15 @@ def units_of(pin: Pin) -> set[str]:
 
 def put(state: StationState, pin: Pin) -> None:
     """Keep a pin that was checked, in the place of an earlier one with its id."""
-    if pin.pin_id not in state.pins and len(state.pins) >= MOST_PINS:
-        raise UserError(f"there are {MOST_PINS} pins already; remove some first")
     state.pins[pin.pin_id] = pin
     state.pin_verdicts[pin.pin_id] = WAITING
 
 
-def _set(state: StationState, pins: Iterable[Pin]) -> set[str]:
+def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
+    new = sum(pin.pin_id not in state.pins for pin in pins)
+    if new and len(state.pins) + new > MOST_PINS:
+        there = len(state.pins)
+        raise UserError(f"there is room for {MOST_PINS} pins, not {there + new}; remove some first")
     changed: set[str] = set()
     for pin in pins:
         earlier = state.pins.get(pin.pin_id)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.port import PlaceSeen, Tie, UnitEvidence
 from base_station.live_state import StationState
 from base_station.pins.book import BEFORE_NS
@@ -53,27 +54,36 @@ def floors_said(state: StationState) -> list[FloorSaid]:
     estimated without any pin.
     """
     said = []
+    unpacked: dict[str, PathArrays] = {}
     for pin in state.pins.values():
         history = state.paths.get(pin.unit_id)
-        floor = state.beacons.get(pin.other_id, pin).floor
+        floor = _floor_said(state, pin)
         if floor is None or history is None or history.begin_ns is None:
             continue
         t_ns = time_of(history, pin)
         if not isinstance(t_ns, str):
-            points = history.arrays()
+            if pin.unit_id not in unpacked:
+                unpacked[pin.unit_id] = history.arrays()
+            points = unpacked[pin.unit_id]
             row = int(np.searchsorted(points.t_ns, t_ns).clip(0, len(points) - 1))
             north_m, east_m = points.shown_m[row].tolist()
             said.append(FloorSaid(north_m, east_m, float(points.down_m[row]), floor))
     return said
 
 
+def _floor_said(state: StationState, pin: Pin) -> int | None:
+    at = pin if pin.kind == "meeting" else state.beacons.get(pin.other_id, pin)
+    return at.floor
+
+
 def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
-    """Of the unit that stays there, where somebody has said that it stands."""
+    """Of the unit that stays there, whatever runs, where somebody has said that it stands."""
     unit_id = state.barometers.reference_id or ""
     history = state.paths.get(unit_id)
     if history is None or history.begin_ns is None or history.start is None:
         return {}
-    return {unit_id: evidence_of_one(history, own_places(state, unit_id, history), None)}
+    places = own_places(state, unit_id, history)
+    return {unit_id: UnitEvidence(history.arrays(), history.start, history.start_ns, places)}
 
 
 def own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:
@@ -127,4 +137,4 @@ def time_of(history: PathHistory, pin: Pin) -> int | str:
 def evidence_of_one(
     history: PathHistory, places: Sequence[PlaceSeen], grid: FloorGrid | None
 ) -> UnitEvidence:
-    return UnitEvidence(history.arrays(), history.start, history.start_ns, places, grid)
+    return UnitEvidence(history.arrays(), history.start_in_path, history.start_ns, places, grid)

@@ -36,9 +36,11 @@ from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
 from base_station.trail import TRAIL_POINTS, TrailStep
+from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
 
+AHEAD_NS = NS_PER_S // 2  # nobody gets far meanwhile
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
 
 
@@ -100,7 +102,7 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
         solution: Solution | None = None
         if history is not None and history.begin_ns is not None:
             places, waiting = _places(state, past, unit_id, history, pins)
-            _await(history, pins, waiting)
+            _await(history, pins)
             if places:
                 solution = past.solve(state, unit_id, history, places)
         else:
@@ -212,10 +214,12 @@ def _met(
     )
 
 
-def _await(history: PathHistory, pins: Sequence[Pin], waiting: Mapping[str, str]) -> None:
-    """Note when the path will have come to the first pin that waits for it."""
+def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
+    """Note when the path will have come to the first pin ahead of it, whether that waits or counts
+    for where the path has come to.
+    """
     end_ns = history.end_ns or 0
-    times = [pin.t_ns for pin in pins if pin.pin_id in waiting and pin.t_ns > end_ns]
+    times = [pin.t_ns for pin in pins if pin.t_ns > end_ns + AHEAD_NS]
     history.awaited_ns = min(times, default=None)
 
 

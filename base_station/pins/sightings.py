@@ -39,7 +39,7 @@ def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> s
         return set()
     assert t_ns is not None
     beacon = state.beacons.get(sighting.seen_id)
-    if beacon is not None:
+    if beacon is not None and sighting.kind is not SightingKind.UNIT:
         beacon.seen_ns = max(t_ns, beacon.seen_ns or 0)
     pin = Pin(
         pin_id=f"{unit.unit_id}-{sighting.header.boot_id:x}-{sighting.header.seq}",
@@ -97,8 +97,10 @@ def _std_m(state: StationState, sighting: Sighting) -> float:
 
 
 def _same_visit(state: StationState, pin: Pin) -> Pin | None:
-    """The newest pin that tells of the same meeting of the same two."""
-    for earlier in reversed(state.pins.values()):
+    """The newest pin that a unit made of the same meeting of the same two: what a person says of
+    it stands beside.
+    """
+    for earlier in reversed(_seen(state)):
         same = {earlier.unit_id, earlier.other_id} == {pin.unit_id, pin.other_id}
         if same and earlier.kind == pin.kind and abs(earlier.t_ns - pin.t_ns) < AGAIN_NS:
             return earlier

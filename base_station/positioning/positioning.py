@@ -15,7 +15,7 @@ from base_station.fusion.plane.compass import bearing_of
 from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
-from base_station.pins.book import drop, has_pins
+from base_station.pins.book import drop, has_pins, units_of
 from base_station.pins.evidence import floors_said
 from base_station.pins.late import note_late
 from base_station.pins.pinned import PinnedUnits
@@ -93,8 +93,7 @@ class Positioning:
         state.learnt_building = fuser.recognise(state.learnt_building)
         for one in told[1:]:
             one.recognise(state.learnt_building)
-        begins = history.end_ns is None
-        history.note(position, t_ns, bool(reason))
+        begins = history.note(position, t_ns, bool(reason))
         if state.learnt_floors.follow(position, unit.unit_id):
             self._land(state, unit, t_ns, outside)
         return history.is_awaited or (begins and has_pins(state, unit.unit_id))
@@ -118,17 +117,18 @@ class Positioning:
         return solved
 
     def begin_incident(self, state: StationState, before_ns: int) -> set[str]:
-        """What was known of paths and pins before that time no longer matters; gives whose pins
-        went.
+        """What was known of paths and pins before that time no longer matters; gives whose past
+        that changes.
         """
         state.learnt_floors.trim(before_ns)
         state.learnt_building = LearntBuilding()
         for history in state.paths.values():
-            history.trim(before_ns)
+            history.begin_incident(state.t_ns, before_ns)
         for unit in state.units.values():
             if unit.plain_trail is not None:
                 unit.plain_trail.clear()
-        return drop(state, lambda pin: pin.set_ns <= before_ns)
+        kept = set().union(*map(units_of, state.pins.values()))
+        return kept | drop(state, lambda pin: pin.set_ns <= before_ns)
 
     def fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
         """Whether the fix is used, and why not."""

@@ -26,6 +26,7 @@ from shared.messages.station import (
     SetPlan,
     SetStart,
 )
+from shared.quality import Quality
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
 from tests.station_script import START_NS, Script
@@ -377,6 +378,19 @@ def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPa
     assert [type(one) for one in walk.script.outputs].count(Refused) == 1
 
 
+def test_of_those_who_start_together_none_is_placed_where_there_is_no_room_for_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("base_station.pins.book.MOST_PINS", 2)
+    walk = Walk("FF-01", "FF-02")
+    walk.go(20)
+    walk.pin("p1", "FF-01", 10.0)
+    both = StartTogether("s", walk.units, 0, 0.0, 0.0, 0.5, None, None, 0.3, "")
+    (refused,) = walk.script.act(both)
+    assert isinstance(refused, Refused)
+    assert list(walk.script.pipeline.state.pins) == ["p1"]
+
+
 def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     both = Walk("FF-01", "FF-02", "FF-03")
     both.go(20)
@@ -430,6 +444,119 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
     walk.go(5)
     assert len(walk.trail("FF-01")) <= 6
+
+
+@pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "switched on before"])
+@pytest.mark.parametrize("earlier", ["a morning's check", "an incident"])
+def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
+    earlier: str, is_on: bool
+) -> None:
+    """The run of before tells nothing of where the one in this incident began."""
+    script = Script()
+    script.register("FF-01")
+    if earlier == "an incident":
+        script.act(OpenIncident("i0", "Before"))
+        script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+        go_north(script, 60)
+        script.act(CloseIncident("i0"))
+    go_north(script, 60)
+    script.now_s += 4.0 * 3600.0
+    script.boot_ids["FF-01"] = 8
+    if is_on:
+        go_north(script, 10)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    go_north(script, 30, since_m=10.0 if is_on else 0.0)
+    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
+    fused = script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    assert (fused.north_m, fused.east_m) == pytest.approx((139.0 if is_on else 129.0, 200.0), abs=1)
+    assert fused.quality is Quality.GOOD
+    begin_ns = script.pipeline.state.paths["FF-01"].begin_ns
+    assert begin_ns == script.t_ns - (39 if is_on else 29) * NS_PER_S
+
+
+def go_north(script: Script, seconds: int, since_m: float = 0.0) -> None:
+    for second in range(seconds):
+        script.now_s += 1.0
+        way_m = since_m + second
+        script.position("FF-01", way_m, 0.0, distance_m=way_m)
+
+
+def test_all_start_here_may_be_said_before_the_run_that_it_is_about() -> None:
+    """The commander is quicker than those who switch on their units."""
+    script = Script()
+    script.register("FF-01")
+    go_north(script, 60)
+    script.now_s += 600.0
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
+    script.now_s += 600.0
+    script.boot_ids["FF-01"] = 8
+    go_north(script, 30)
+    fused = script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
+
+
+def test_a_pin_that_was_set_before_the_incident_was_opened_is_solved_in_its_path() -> None:
+    script = Script()
+    script.register("FF-01")
+    go_north(script, 60)
+    script.now_s += 600.0
+    script.boot_ids["FF-01"] = 8
+    go_north(script, 30)
+    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    fused = script.pipeline.state.units["FF-01"].fused
+    assert fused is not None
+    assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
+
+
+def test_a_start_of_a_run_that_is_over_contradicts_nothing_in_the_next_incident() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(OpenIncident("i0", "Before"))
+    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    go_north(script, 60)
+    script.now_s += 1.0
+    script.act(CloseIncident("i0"))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.boot_ids["FF-01"] = 8
+    go_north(script, 60)
+    script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
+    assert script.pipeline.state.pin_verdicts["p"].state == "used"
+
+
+def test_a_start_of_the_run_that_goes_on_holds_in_the_next_incident() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    script.act(OpenIncident("i0", "Before"))
+    go_north(script, 60)
+    script.act(CloseIncident("i0"))
+    script.now_s += 1.0
+    script.act(OpenIncident("i1", "Mill Lane"))
+    go_north(script, 10, since_m=60.0)
+    script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
+    assert script.pipeline.state.pin_verdicts["p"].state == "conflict"
+
+
+def test_a_pin_ahead_of_a_slow_link_counts_for_where_the_path_is_when_it_gets_there(
+    walk: Walk,
+) -> None:
+    """Positions come four seconds late: the pin is of now, the last position that is there not."""
+    ahead_ns = walk.script.t_ns + 4 * NS_PER_S
+    walk.script.now_s += 4.0
+    north_m, east_m = truth(304.0)
+    walk.script.act(SetPin("p", "FF-01", ahead_ns, north_m, east_m, 0.5, None, None, 0.0, ""))
+    assert walk.state("p") == "used"
+    walk.script.now_s -= 4.0
+    walk.go(4)
+    assert walk.now_off_m("FF-01") < 0.5
+    solved = len([one for one in walk.script.outputs if isinstance(one, PinsTouched)])
+    walk.go(6)
+    again = [one for one in walk.script.outputs if isinstance(one, PinsTouched)][solved:]
+    assert not again, "once"
 
 
 def test_who_is_between_two_floors_stays_on_the_one_he_was_on(walk: Walk) -> None:

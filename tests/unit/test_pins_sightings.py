@@ -7,8 +7,11 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
+from base_station.pins.evidence import floors_said
 from shared.channels import SIGHTING, backfilled_key
 from shared.clock import NS_PER_S
 from shared.codec import encode
@@ -16,6 +19,8 @@ from shared.messages import Sighting, SightingKind
 from shared.messages.pins import (
     PlaceBeacon,
     RemoveBeacon,
+    RemovePin,
+    SetMeeting,
 )
 from tests.round_walk import Walk, truth
 
@@ -117,6 +122,50 @@ def test_two_who_see_each_other_have_met_once() -> None:
     (pin,) = state.pins.values()
     assert pin.unit_id == "FF-02", "the nearer of the two"
     assert state.pin_verdicts.keys() == state.pins.keys()
+
+
+@pytest.mark.parametrize("range_m", [1.0, 30.0], ids=["surer", "vaguer"])
+def test_what_a_person_said_of_a_meeting_is_not_replaced_by_what_units_see(range_m: float) -> None:
+    """Nor is what they see lost with it, when it is taken back."""
+    both = Walk("FF-01", "FF-02")
+    both.go(10)
+    both.script.act(SetMeeting("m", "FF-01", "FF-02", both.script.t_ns, 5.0, "at the stairs"))
+    sighting(both, SightingKind.UNIT, "FF-02", range_m)
+    pins = both.script.pipeline.state.pins
+    assert [pin.by for pin in pins.values()] == ["chief", "FF-01"]
+    both.script.act(RemovePin("m"))
+    assert [pin.by for pin in pins.values()] == ["FF-01"]
+
+
+def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
+    walk = Walk("FF-01", "FF-02")
+    walk.script.act(PlaceBeacon("FF-02", "door", 0.0, 0.0, 3, 0.2, 8.0))
+    walk.go(20)
+    sighting(walk, SightingKind.UNIT, "FF-02")
+    state = walk.script.pipeline.state
+    assert state.beacons["FF-02"].seen_ns is None
+    assert floors_said(state) == []
+    sighting(walk, SightingKind.BEACON, "FF-02")
+    assert [said.floor for said in floors_said(state)] == [3]
+
+
+def test_a_path_is_unpacked_once_for_all_floors_that_are_said_along_it(
+    walk: Walk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With hundreds of sightings everybody would wait for each."""
+    walk.script.act(PlaceBeacon("b1", "door", 0.0, 0.0, 0, 0.2, 3.0))
+    for ago_s in (200.0, 150.0, 100.0, 50.0):
+        sighting(walk, SightingKind.BEACON, "b1", captured_s=walk.script.now_s - ago_s)
+    unpacked: list[PathHistory] = []
+    arrays = PathHistory.arrays
+
+    def counting(history: PathHistory) -> PathArrays:
+        unpacked.append(history)
+        return arrays(history)
+
+    monkeypatch.setattr(PathHistory, "arrays", counting)
+    assert len(floors_said(walk.script.pipeline.state)) == 4
+    assert len(unpacked) == 1
 
 
 @pytest.mark.parametrize(

@@ -56,9 +56,11 @@ class PathHistory(msgspec.Struct):
     moved: Moved = Moved()  # the frame, since anything was packed
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
+    is_start_over: bool = False  # nothing of that own frame is in the path
     straight: Straight = msgspec.field(default_factory=Straight)  # since the last settled point
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
     since_ns: int = 0  # what was before is not wanted
+    opened_ns: int = 0  # when the incident was opened
     is_refixed: bool = False  # fixes were moved: the unit is to be placed again
     filled_ns: int = 0  # where the path had come to when a position came late last
 
@@ -84,20 +86,21 @@ class PathHistory(msgspec.Struct):
         """The path has come to where a pin waits for it."""
         return self.awaited_ns is not None and (self.end_ns or 0) >= self.awaited_ns
 
-    def note(self, position: Position, t_ns: int, jumped: bool) -> None:
-        """The own path went on; ``jumped``: not from where it was."""
-        boot_id = position.header.boot_id
-        restarted = bool(self.points) and boot_id != self.boot_id
-        if boot_id != self.boot_id:
-            self.boot_id, self.boot_begin_ns = boot_id, t_ns
+    def note(self, position: Position, t_ns: int, jumped: bool) -> bool:
+        """The own path went on; ``jumped``: not from where it was.  Whether it begins here."""
+        if self.points:
+            t_ns = max(t_ns, self.points[-1].t_ns + NS_PER_MS)  # packed, they still are apart
+        begins_run = position.header.boot_id != self.boot_id
+        if begins_run:
+            self._begin_run(position.header.boot_id, t_ns)
+        restarted = bool(self.points) and begins_run
         flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
         flags |= RESTART * restarted | BREAK * (jumped and not restarted)
         if not self.points:
             self.points.append(_point_of(position, t_ns, flags))
-            return
+            return True
         tip = self.points[-1]
         before_ns, before_north_m, before_east_m = tip.t_ns, tip.north_m, tip.east_m
-        t_ns = max(t_ns, before_ns + NS_PER_MS)  # packed, they still are apart
         if self._is_settled(tip, flags) or self._bends(tip, position, t_ns):
             tip = self._begin_point(tip)
         tip.t_ns = t_ns
@@ -108,6 +111,7 @@ class PathHistory(msgspec.Struct):
             stepped_m = abs(tip.north_m - before_north_m) + abs(tip.east_m - before_east_m)
             if stepped_m > MOVING_M:
                 tip.moving_ms += (tip.t_ns - before_ns) // NS_PER_MS
+        return False
 
     def fill(self, position: Position, t_ns: int, estimate: Estimate, floor: int | None) -> None:
         """A position that came late, and where it was without any pin; it is wanted where none near
@@ -134,7 +138,12 @@ class PathHistory(msgspec.Struct):
 
     def begin_with(self, start: Start) -> None:
         """A person said where the own frame of the running boot begins."""
-        self.start, self.start_ns = start, self.boot_begin_ns
+        self.start, self.start_ns, self.is_start_over = start, self.boot_begin_ns, False
+
+    @property
+    def start_in_path(self) -> Start | None:
+        """What a person said of where an own frame begins that is in the path."""
+        return None if self.is_start_over else self.start
 
     def lead(self, led: Led) -> None:
         """It was not where it was shown since a run of the unit's program began."""
@@ -144,13 +153,13 @@ class PathHistory(msgspec.Struct):
             lambda rows: self.moved.undone().of(led.rows(self.moved.of(rows, *_SHOWN)), *_SHOWN),
         )
 
-    def trim(self, before_ns: int) -> None:
-        """What lies before that time is no longer wanted."""
-        self.since_ns = before_ns
-        before_ms = -(-before_ns // NS_PER_MS)
-        self.packed.cut(before_ms, POINT_ROW)
-        self.points = [point for point in self.points if point.t_ns >= before_ns]
-        self.fixes.trim(before_ms)
+    def begin_incident(self, opened_ns: int, since_ns: int) -> None:
+        """Of what was walked before it, only the run of the unit's program that goes on in it is
+        wanted, from that time on: where earlier ones led tells nothing of where it began.
+        """
+        self.opened_ns, self.since_ns = opened_ns, since_ns
+        self._cut(max(since_ns, self.boot_begin_ns))
+        self.is_start_over |= self.start_ns < self.boot_begin_ns
 
     def fix(self, fix: PlaceFix, t_ns: int) -> None:
         """A fix that was taken; others close by tell the same."""
@@ -194,6 +203,22 @@ class PathHistory(msgspec.Struct):
         shown = self.moved.of(self.packed.rows(POINT_ROW), *_SHOWN)
         rows = np.concatenate((shown, rows_of(self.points)))
         return arrays_of(rows, self.fixes.rows(self.moved))
+
+    def _begin_run(self, boot_id: int, t_ns: int) -> None:
+        """The unit's program was started; in an incident, runs that were over before go."""
+        if not self.boot_id:
+            self.start_ns = t_ns
+        elif self.points and self.points[-1].t_ns < self.opened_ns:
+            self._cut(self.opened_ns)
+        self.is_start_over |= bool(self.boot_id) and not self.points
+        self.boot_id, self.boot_begin_ns = boot_id, t_ns
+
+    def _cut(self, before_ns: int) -> None:
+        """To the millisecond, as what is packed: all of a run that began then stays."""
+        before_ms = before_ns // NS_PER_MS
+        self.packed.cut(before_ms, POINT_ROW)
+        self.points = [point for point in self.points if point.t_ns // NS_PER_MS >= before_ms]
+        self.fixes.trim(before_ms)
 
     def _fill_gap(self, late: Point, row: int) -> bool:
         after = self.points[row]
