@@ -18,6 +18,7 @@ from shared.errors import UserError
 
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
+WHOLE_NS = NS_PER_S  # live, consoles hear of the station and of trails that were filled as often
 PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
 
 _log = logging.getLogger(__name__)
@@ -49,6 +50,7 @@ class ReplaySession:
         self._clock = clock
         self._playback = Playback(archive)
         self._picture = Picture(self._playback.pipeline, sink, photo_urls)
+        self._whole_ns = clock.monotonic_ns()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = _checked_speed(speed)
@@ -176,7 +178,7 @@ class ReplaySession:
             else:
                 told = min(self._at_ns + round(elapsed_ns * self._speed), self._window.end_ns)
         if told is None:
-            self._picture.flush(replay=self.view())
+            self._tell()
             return
         began_ns = self._clock.monotonic_ns()
         while (outputs := self._playback.advance(told)) is not None:
@@ -188,7 +190,14 @@ class ReplaySession:
             if self._seek_ns is None:
                 self._at_ns = told
                 self._playing = self._playing and told < self._window.end_ns
-        self._picture.flush(replay=self.view())
+        self._tell()
+
+    def _tell(self) -> None:
+        now_ns = self._clock.monotonic_ns()
+        whole = now_ns - self._whole_ns >= WHOLE_NS
+        if whole:
+            self._whole_ns = now_ns
+        self._picture.flush(whole, self.view())
 
 
 def _checked_speed(speed: float) -> float:

@@ -7,10 +7,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import closing
 from pathlib import Path
 
+import msgspec
 import pytest
 
-from base_station.api.wire import Snapshot
+from base_station.api.wire import Snapshot, TrailPoint
 from base_station.app.parts import past_pipeline, project_whole_log
+from base_station.bench.rig import said
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.events import Output, Received, StationEvent
@@ -19,11 +21,13 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
 from base_station.pipeline import StationPipeline
+from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_S, ManualClock, SystemClock
+from shared.codec import encode
 from shared.errors import StoreError, UserError
 from shared.mcap_log import SegmentWriter
 from shared.messages import EventKind, UnitEvent
-from shared.messages.station import Assign, OpenIncident
+from shared.messages.station import Assign, OpenIncident, ReportProblem
 from tests.live_station import Screen, make_pipeline
 from tests.station_script import START_NS, Script
 from tests.waiting import until
@@ -136,6 +140,47 @@ def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Scr
     assert any(alarm.rule == "mayday" for delta in screen.deltas for alarm in delta.alarms)
     assert [delta.seq for delta in screen.deltas] == list(range(1, len(screen.deltas) + 1))
     assert all(delta.replay is not None for delta in screen.deltas)
+
+
+def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
+    tmp_path: Path, screen: Screen
+) -> None:
+    """A gap that the journal filled is drawn as it was live, and what was wrong with the station."""
+    script, missed = Script(), []
+    script.register("FF-01")
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(DURATION_S):
+        script.now_s += 1.0
+        own = said.position(script.header("FF-01"), north_m=float(second))
+        if 40 <= second < 60:
+            missed.append(own)
+        else:
+            script.say(own)
+        if second == 80:
+            script.act(ReportProblem("disk", "there is little room"))
+            for late in missed:
+                script.record(backfilled_key("FF-01", POSITION.suffix), encode(late))
+        script.tick()
+    clock = ManualClock()
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    source = archive(script.records, tmp_path)
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    until(lambda: len(screen.resets) == 1)
+    session.seek(START_NS + 70 * NS_PER_S)
+    until(lambda: len(screen.resets) == 2)
+    clock.advance(15.0)
+    until(lambda: at_s(session) == 85.0)
+    clock.advance(1.0)
+    until(lambda: at_s(session) == 86.0)
+    picture(session)
+    session.close()
+    told = [delta.trails["FF-01"] for delta in screen.deltas if delta.trails]
+    assert told
+    drawn = msgspec.json.decode(told[-1], type=list[TrailPoint])
+    filled = [point for point in drawn if 42.0 < point.t_ms / 1e3 - START_NS / NS_PER_S < 60.0]
+    assert len(filled) >= 8
+    problems = [delta.health.problems for delta in screen.deltas if delta.health]
+    assert problems[-1] == ("there is little room",)
 
 
 def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
