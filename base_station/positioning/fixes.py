@@ -36,7 +36,9 @@ def place_fix(
     boot = unit.boots[-1]
     if fix.header.boot_id != boot.boot_id:
         return FixVerdict(False, "from an earlier run of the unit")
-    if boot.is_placed and boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
+    if not boot.is_placed:
+        return FixVerdict(False, "of a time that nothing else has told yet")
+    if boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
         return FixVerdict(False, "from the future")
     if state.anchor is None and not state.start_set and state.plan is None and may_anchor(fix):
         _anchor_by(state, fix, estimate())

@@ -108,6 +108,17 @@ def test_a_fix_from_the_future_is_refused(script: Script) -> None:
     assert script.fused[-1].since_gps_s is None
 
 
+def test_a_fix_before_any_other_word_of_its_unit_may_be_of_the_future(script: Script) -> None:
+    """Its clock is not known yet: taken, all later ones would be old for an hour."""
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.gps(U, 52.0, 4.0, header=script.header(U, captured_s=script.now_s + 3600.0))
+    script.wait(5, lambda: script.position(U, 0.0, 0.0))
+    script.gps(U, 52.0, 4.0)
+    script.wait(20, lambda: script.position(U, 0.0, 0.0))
+    assert not_used(script) == {"of a time that nothing else has told yet": 1}
+    assert script.fused[-1].since_gps_s == 20.0
+
+
 def test_bad_fixes_are_counted_by_reason_and_nobody_jumps(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     for _ in range(30):

@@ -68,6 +68,32 @@ def test_a_receiver_not_heard_of_tells_nothing() -> None:
     assert after(100.0).corrected(fix_at(1.0, 2.0), 200 * NS_PER_S) == fix_at(1.0, 2.0)
 
 
+def test_a_receiver_that_had_just_been_switched_on_tells_as_much_once_it_is_warm() -> None:
+    """It claims twenty metres at first; that is not what it errs by for good."""
+    warm, cold = after(1200.0), Sky()
+    for second in range(1200):
+        std_m = 20.0 if second < 5 else STD_M
+        cold.note(second * NS_PER_S, (3.0, -2.0), std_m, 0.3)
+    fixes = [sky.corrected(fix_at(13.0, 8.0), 1200 * NS_PER_S) for sky in (warm, cold)]
+    assert fixes[1].north_m == pytest.approx(fixes[0].north_m, abs=0.2)
+    assert fixes[1].horizontal_std_m == pytest.approx(fixes[0].horizontal_std_m, abs=0.05)
+
+
+def test_what_a_fix_claims_that_is_not_taken_makes_the_receiver_no_better() -> None:
+    sky = Sky()
+    for second in range(300):
+        sky.note(second * NS_PER_S, (3.0, -2.0), 5.0, 0.3)
+    before = sky.std_m
+    sky.note(300 * NS_PER_S, (90.0, 90.0), STD_M, 0.3)
+    assert sky.std_m == before == 5.0
+
+
+def test_who_knows_less_than_a_receiver_claims_makes_no_fix_worse() -> None:
+    sky = Sky()
+    sky.note(0, (3.0, -2.0), 20.0, 0.3)
+    assert sky.corrected(fix_at(13.0, 8.0), 0) == fix_at(13.0, 8.0)
+
+
 def test_one_wild_fix_moves_nobody() -> None:
     sky = after(300.0)
     before = sky.corrected(fix_at(0.0, 0.0), 301 * NS_PER_S)

@@ -43,7 +43,7 @@ class Sky(msgspec.Struct):
     """
 
     t_ns: int | None = None  # station time of the last fix
-    std_m: float = 0.0  # of the receiver's fixes where nothing disturbs them
+    std_m: float = 0.0  # of the receiver's fixes where nothing disturbs them: the least it claimed
     mean_m: list[list[float]] = msgspec.field(default_factory=list)  # (3, 2) north and east
     covariance_m2: list[list[float]] = msgspec.field(default_factory=list)  # (3, 3)
 
@@ -63,6 +63,7 @@ class Sky(msgspec.Struct):
             gain = covariance @ _OBSERVE / spread
             mean = mean + np.outer(gain, apart)
             covariance = covariance - np.outer(gain, _OBSERVE @ covariance)
+            mean, covariance = self._better(std_m, mean, covariance)
         self.mean_m, self.covariance_m2 = mean.tolist(), covariance.tolist()
 
     def corrected(self, fix: PlaceFix, t_ns: int) -> PlaceFix:
@@ -71,6 +72,8 @@ class Sky(msgspec.Struct):
             return fix
         mean, covariance = self._at(max(t_ns, self.t_ns))
         was_m2, is_m2 = common_m2(fix.horizontal_std_m), float(covariance[_COMMON, _COMMON])
+        if is_m2 >= was_m2:  # known no better than by what the other receiver claims
+            return fix
         return msgspec.structs.replace(
             fix,
             north_m=fix.north_m - float(mean[_COMMON, 0]),
@@ -83,6 +86,15 @@ class Sky(msgspec.Struct):
         self.std_m = std_m
         self.mean_m = np.zeros((3, 2)).tolist()
         self.covariance_m2 = np.diag([*self._slow_m2(), place_std_m**2]).tolist()
+
+    def _better(self, std_m: float, mean: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+        """The receiver is as good as it claimed at its best: just switched on, one claims tens of
+        metres.  Nothing of it is then known worse than before anything was heard.
+        """
+        self.std_m = min(self.std_m, std_m)
+        most = np.array([*self._slow_m2(), math.inf])
+        part = np.sqrt(np.minimum(1.0, most / np.diagonal(covariance)))
+        return part[:, None] * mean, np.outer(part, part) * covariance
 
     def _at(self, t_ns: int) -> tuple[Floats, Floats]:
         """Mean (3, 2) and covariance (3, 3) at that time, the last fix's or later."""
