@@ -48,6 +48,7 @@ class Forgetting(msgspec.Struct):
     share: float = 0.0  # of the log that was looked through
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
+    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
     began: bool = False  # once before, perhaps by an earlier run of the program
     told: bool = False  # the other station has done it: this one does, too
 
@@ -137,7 +138,7 @@ class ForgettingDesk:
 
     def _work(self, wish: Forgetting) -> bool:
         """False where it is to be tried again later."""
-        tally = Tally(wish.records, wish.files, again=wish.began)
+        tally = Tally(wish.records, wish.files, wish.began, wish.damaged)
         self._note(wish, state=ForgettingState.WORKING, problem="", began=True)
         forget = self._forgetter.person if wish.kind == "person" else self._forgetter.incident
         problem = ""
@@ -154,17 +155,18 @@ class ForgettingDesk:
             if str(error) != self._told:
                 _log.warning("forgetting waits, and is tried again: %s", error)
                 self._told = str(error)
-            self._note(wish, problem=f"it is tried again: {error}", **_counts(tally))
+            self._note(wish, problem=f"it is tried again: {error}", **_so_far(tally))
             return False
         self._told = ""
         self._on_done(msgspec.structs.replace(wish))
-        self._note(wish, state=ForgettingState.DONE, share=1.0, problem=problem, **_counts(tally))
+        problem = problem or ". ".join(tally.damaged)
+        self._note(wish, state=ForgettingState.DONE, share=1.0, problem=problem, **_so_far(tally))
         return True
 
     def _go_on(self, wish: Forgetting, share: float, tally: Tally) -> None:
         """What was taken out is on the disk before more is: the audit is to say it in the end."""
-        more = tally.files != wish.files
-        self._wishes.note(wish, save=more, share=share, **_counts(tally))
+        more = (tally.files, tally.damaged) != (wish.files, wish.damaged)
+        self._wishes.note(wish, save=more, share=share, **_so_far(tally))
         if self._closed.is_set():
             raise _Ended
 
@@ -172,5 +174,5 @@ class ForgettingDesk:
         self._wishes.note(wish, save=True, **now)
 
 
-def _counts(tally: Tally) -> dict[str, int]:
-    return {"records": tally.records, "files": tally.files}
+def _so_far(tally: Tally) -> dict[str, object]:
+    return {"records": tally.records, "files": tally.files, "damaged": tally.damaged}

@@ -37,16 +37,46 @@ class Erasure(msgspec.Struct, frozen=True):
     until_ns: int = FOREVER_NS
     worn_before: tuple[str, ...] = ()  # the units that were worn when the incident was opened
     worn_after: tuple[Assign, ...] = ()  # what was worn when it was closed
+    opening_id: str = ""  # of the action that opened it
+    closing_id: str = ""
 
     @property
     def unit_ids(self) -> frozenset[str]:
         return frozenset(one.unit_id for one in self.wearings)
+
+    def is_put_in(self, action_id: str) -> bool:
+        """Whether this action is one that forgetting has put into the log (``id_put_in``)."""
+        return action_id.startswith((f"{self.opening_id}-", f"{self.closing_id}-"))
+
+    def without_put_in(self, records: Iterable[Record]) -> Erasure:
+        """What is still to be put into a part of the log with these operators' actions."""
+        if not (self.worn_before or self.worn_after):
+            return self
+        there = {action.action_id for _, action in _actions(records)}
+        return msgspec.structs.replace(
+            self,
+            worn_before=tuple(
+                unit_id
+                for unit_id in self.worn_before
+                if id_put_in(self.opening_id, unit_id) not in there
+            ),
+            worn_after=tuple(
+                assign
+                for assign in self.worn_after
+                if id_put_in(self.closing_id, assign.unit_id) not in there
+            ),
+        )
 
     def covers(self, unit_id: str, t_ns: int) -> bool:
         """Whether what this unit said at that time is to be forgotten."""
         return any(
             one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
         )
+
+
+def id_put_in(action_id: str, unit_id: str) -> str:
+    """Of an action at the time of another."""
+    return f"{action_id}-{unit_id}"
 
 
 def erasure_of_person(
@@ -87,14 +117,15 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     units: set[str] = set()
     names: set[str] = set()
     opened_ns = closed_ns = None
+    opening_id = closing_id = ""
     for t_ns, action in _actions(records):
         done = action.action
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
-            opened_ns = t_ns
+            opened_ns, opening_id = t_ns, action.action_id
             before = tuple(sorted(worn))
             units, names = set(worn), {one.person_name for one in worn.values()}
         elif isinstance(done, CloseIncident) and done.incident_id == incident_id:
-            closed_ns = t_ns
+            closed_ns, closing_id = t_ns, action.action_id
             break
         elif isinstance(done, Assign):
             for unit_id in [one for one in worn if worn[one].person_id == done.person_id]:
@@ -116,6 +147,8 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         until_ns=closed_ns,
         worn_before=before,
         worn_after=tuple(worn.values()),
+        opening_id=opening_id,
+        closing_id=closing_id,
     )
 
 

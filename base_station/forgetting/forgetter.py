@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,19 +24,34 @@ from base_station.db.forgetting import forget_in, known_names
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.events import Received, event_of
-from base_station.forgetting.erasure import Clocks, Erasure, erasure_of_incident, erasure_of_person
+from base_station.forgetting.begun import Begun
+from base_station.forgetting.erasure import (
+    Clocks,
+    Erasure,
+    Record,
+    erasure_of_incident,
+    erasure_of_person,
+)
 from base_station.forgetting.redaction import Redactor
 from base_station.past.checkpoints import Checkpoints
 from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
-from shared.mcap_log import read_log, remove_torn, rewrite_segment, segment_paths
+from shared.mcap_log import (
+    SegmentReader,
+    read_log,
+    remove_torn,
+    rewrite_segment,
+    segment_paths,
+)
 from shared.messages import STATION_ID
 from shared.messages.station import Action, ForgetWearers
 
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
+_ACTIONS = OPERATOR.key(STATION_ID)
 _REMOVED_WITHIN_S = 20.0
+_BEGUN = "forgetting-begun.json"  # beside the wishes; what it holds, no wish does
 Progress = Callable[[float], None]  # hears the fraction done
 
 
@@ -77,6 +92,14 @@ class Tally:
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
     again: bool = False  # it was tried before
+    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
+
+    def note_damage(self, part: str, written_anew: bool) -> None:
+        gone, stays = "what could not be read of it is gone", "it stays, whoever it tells of"
+        said = f"Damaged: {part}; {gone if written_anew else stays}"
+        if said not in self.damaged:
+            _log.warning("%s", said)
+            self.damaged = (*self.damaged, said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +109,11 @@ class Forgotten:
     what: str  # "person 1f.." or "incident 20..", for the audit
     records: int
     files: int
+    damaged: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{self.what}: {self.records} records of the log in {self.files} files"
+        done = f"{self.what}: {self.records} records of the log in {self.files} files"
+        return ". ".join((done, *self.damaged))
 
 
 class ClosedLog:
@@ -126,6 +151,7 @@ class Forgetter:
         self._clock = clock
         self._pulls = pulls
         self._act = act
+        self._begun = Begun(DataFolder(log.folder.parent).forgettings.with_name(_BEGUN))
 
     def person(
         self,
@@ -155,7 +181,10 @@ class Forgetter:
         tally: Tally | None = None,
     ) -> Forgotten:
         """UserError where there is no such incident, or it is open."""
-        erasure = erasure_of_incident(self._actions(), incident_id)
+        erasure = self._begun.of(incident_id)
+        if erasure is None:
+            erasure = erasure_of_incident(self._actions(), incident_id)
+            self._begun.keep(erasure)
         return self._forget(by, erasure, f"incident {incident_id}", on_progress, tally or Tally())
 
     def _forget(
@@ -169,7 +198,8 @@ class Forgetter:
             forget_in(session, erasure)
         self._store.compact()
         self._checkpoints.clear()  # one that was being written meanwhile
-        done = Forgotten(what, tally.records, tally.files)
+        self._begun.let_go(erasure.incident_id)
+        done = Forgotten(what, tally.records, tally.files, tally.damaged)
         kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
@@ -177,13 +207,17 @@ class Forgetter:
 
     def _rewrite_log(self, erasure: Erasure, on_progress: Progress, tally: Tally) -> None:
         segments = [*self._log.complete_segments(), *self._set_aside()]
-        redactor = Redactor(erasure, self._clocks(erasure))
+        clocks = self._clocks(erasure)
         self._remove_recordings(erasure, tally)
         tally.files += sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
+            redactor = Redactor(erasure.without_put_in(_actions_in(path)), clocks)
+            damage: list[str] = []
             with self._log.rewriting:
-                changed = rewrite_segment(path, redactor)
+                changed = rewrite_segment(path, redactor, on_damage=damage.append)
+            for part in damage:
+                tally.note_damage(part, written_anew=changed > 0)
             tally.records += changed
             if changed:
                 tally.files += 1
@@ -214,8 +248,8 @@ class Forgetter:
             _remove(folder)
             tally.files += files
 
-    def _actions(self) -> Collection[tuple[int, str, bytes]]:
-        return list(read_log(self._log.folder, keys={OPERATOR.key(STATION_ID)}))
+    def _actions(self) -> Collection[Record]:
+        return list(read_log(self._log.folder, keys={_ACTIONS}))
 
     def _clocks(self, erasure: Erasure) -> Clocks:
         """From signs of life, which come once a second while a unit is linked."""
@@ -227,6 +261,11 @@ class Forgetter:
             if isinstance(event, Received):
                 clocks.note(event.t_ns, event.message.header)
         return clocks
+
+
+def _actions_in(path: Path) -> Iterator[Record]:
+    with SegmentReader(path) as segment:
+        yield from segment.records(keys={_ACTIONS})
 
 
 def _remove(folder: Path) -> None:

@@ -14,7 +14,7 @@ import msgspec
 from google.protobuf.message import Message as WireMessage
 
 from base_station.events import Received, Rejected, event_of
-from base_station.forgetting.erasure import Clocks, Erasure, Record
+from base_station.forgetting.erasure import Clocks, Erasure, Record, id_put_in
 from base_station.live_state import FORGOTTEN
 from shared.channels import (
     DESCRIPTION,
@@ -219,7 +219,7 @@ def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[O
         case CloseIncident(incident_id=erasure.incident_id):
             return [message, *_instead(message, erasure.worn_after)]
         case Assign() | Unassign() if erasure.from_ns <= t_ns < erasure.until_ns:
-            return []
+            return [message] if erasure.is_put_in(message.action_id) else []
         case _:
             return [message]
 
@@ -228,7 +228,7 @@ def _instead(message: OperatorAction, actions: Any) -> list[OperatorAction]:
     """Actions at the time of another, each with an id of its own."""
     return [
         msgspec.structs.replace(
-            message, action_id=f"{message.action_id}-{action.unit_id}", action=action
+            message, action_id=id_put_in(message.action_id, action.unit_id), action=action
         )
         for action in actions
     ]

@@ -15,11 +15,15 @@ Replace = Callable[[LogRecord], Sequence[LogRecord]]
 
 
 def rewrite_segment(
-    path: Path, replace: Replace, rest: Callable[[], Sequence[LogRecord]] = tuple
+    path: Path,
+    replace: Replace,
+    rest: Callable[[], Sequence[LogRecord]] = tuple,
+    on_damage: Callable[[str], None] = lambda _: None,
 ) -> int:
     """Give the number of records that changed; where none did, the file is left as it is.
 
-    ``rest`` gives what is to stand behind the last record.
+    ``rest`` gives what is to stand behind the last record.  ``on_damage`` hears in words of each
+    part that could not be read, and so is not in a new file.
 
     The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
     Nobody may be writing to it.  Raises LogError when the disk refuses.
@@ -27,7 +31,7 @@ def rewrite_segment(
     making = path.with_name(path.name + MAKING)
     try:
         making.unlink(missing_ok=True)
-        changed = _rewritten(path, making, replace, rest)
+        changed = _rewritten(path, making, replace, rest, on_damage)
         if changed:
             making.rename(path)
             sync_folder(path.parent)
@@ -50,7 +54,11 @@ def remove_torn(folder: Path) -> int:
 
 
 def _rewritten(
-    path: Path, making: Path, replace: Replace, rest: Callable[[], Sequence[LogRecord]]
+    path: Path,
+    making: Path,
+    replace: Replace,
+    rest: Callable[[], Sequence[LogRecord]],
+    on_damage: Callable[[str], None],
 ) -> int:
     changed = 0
     segment = Segment(making, SegmentPolicy().chunk_bytes)
@@ -61,6 +69,8 @@ def _rewritten(
                 changed += len(instead) != 1 or instead[0] != record
                 for t_ns, key, payload in instead:
                     segment.add(t_ns, key, payload)
+            for note in reader.damage:
+                on_damage(note)
         for t_ns, key, payload in rest():
             changed += 1
             segment.add(t_ns, key, payload)

@@ -29,7 +29,14 @@ from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import FetchState, Wanted
 from shared.clock import ManualClock, SystemClock
 from shared.errors import StoreError, UserError
-from shared.mcap_log import SegmentWriter, read_log, rewrite_segment
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentReader,
+    SegmentWriter,
+    read_log,
+    rewrite_segment,
+    segment_paths,
+)
 from shared.messages import CommandKind
 from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
 from shared.messages.station import (
@@ -198,22 +205,22 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
     assert 0 < sum(1 for _ in read_log(data.log)) < whole
 
 
-def forgotten_in_tries(folder: Path, cut_at: Collection[str]) -> list[str]:
+def forgotten_in_tries(folder: Path, kind: str, subject_id: str, cut_at: Collection[str]) -> str:
     """What the audit says of it, where the store fails at these steps, each once."""
     data = DataFolder(folder)
     with Store(data.database) as store:
         records = Records(store, SystemClock())
         forgetter = forgetter_of(data, store, records)
         desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
-        desk.add("ada", "person", "p-77")
+        desk.add("ada", kind, subject_id)
         for step in cut_at:
             with pytest.MonkeyPatch.context() as patched:
                 patched.setattr(*BROKEN[step](store, records))
                 assert not desk._work_on_one(desk._wishes.under_way())
             desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
         assert desk._work_on_one(desk._wishes.under_way())
-        assert names_in(stored_in(folder), ANA) == []
-        return [one.detail for one in records.audit_entries(EVER) if one.action == "ForgotPerson"]
+        (said,) = [one for one in records.audit_entries(EVER) if one.action.startswith("Forgot")]
+        return said.detail
 
 
 def _fails(*_: object) -> None:
@@ -223,9 +230,9 @@ def _fails(*_: object) -> None:
 def _third_segment() -> Callable[..., int]:
     done: list[Path] = []
 
-    def rewrite(path: Path, redactor: Any) -> int:
+    def rewrite(path: Path, redactor: Any, **more: Any) -> int:
         done.append(path)
-        return rewrite_segment(path, redactor) if len(done) < 3 else cast("int", _fails())
+        return rewrite_segment(path, redactor, **more) if len(done) < 3 else cast("int", _fails())
 
     return rewrite
 
@@ -238,15 +245,75 @@ BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
 }
 
 
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = Story(tmp_path_factory.mktemp("told") / "station").folder
+    _split(DataFolder(folder).log, 4)
+    return folder
+
+
 @pytest.mark.parametrize("cut_at", [["log"], ["store"], ["compact"], ["audit"], [*BROKEN]])
-def test_the_audit_says_what_all_tries_took_out(tmp_path: Path, cut_at: list[str]) -> None:
-    told = Story(tmp_path / "told").folder
-    _split(DataFolder(told).log, 4)
+@pytest.mark.parametrize(("kind", "subject_id"), [("person", "p-77"), ("incident", "i1")])
+def test_in_many_tries_the_same_goes_and_the_audit_says_the_same(
+    tmp_path: Path, told: Path, kind: str, subject_id: str, cut_at: list[str]
+) -> None:
     at_once, in_tries = (shutil.copytree(told, tmp_path / name) for name in ("once", "tries"))
-    (whole,) = forgotten_in_tries(at_once, [])
-    (tried,) = forgotten_in_tries(in_tries, cut_at)
-    assert tried == whole
+    whole = forgotten_in_tries(at_once, kind, subject_id, [])
+    assert forgotten_in_tries(in_tries, kind, subject_id, cut_at) == whole
     assert int(whole.split()[2]) > 10
+    assert list(read_log(DataFolder(in_tries).log)) == list(read_log(DataFolder(at_once).log))
+    left = [stored_in(folder) for folder in (at_once, in_tries)]
+    for name in (ANA, BO):
+        assert names_in(left[1], name) == names_in(left[0], name)
+    assert (names_in(left[0], ANA) == []) == (kind == "person")  # who wears what beside it stays
+    assert not begun_in(in_tries).exists()
+
+
+def begun_in(folder: Path) -> Path:
+    """Who was in an incident that is being forgotten."""
+    return folder / "forgetting-begun.json"
+
+
+def test_who_was_there_is_kept_until_all_is_gone_and_nobody_is_forgotten_by_halves(
+    tmp_path: Path, told: Path
+) -> None:
+    folder = shutil.copytree(told, tmp_path / "station")
+    data = DataFolder(folder)
+    with Store(data.database) as store, pytest.MonkeyPatch.context() as patched:
+        forgetter = forgetter_of(data, store, Records(store, SystemClock()))
+        patched.setattr(forgetter_module, "forget_in", _fails)
+        with pytest.raises(StoreError, match="full"):
+            forgetter.incident("ada", "i1")
+        assert begun_in(folder).stat().st_mode & 0o077 == 0
+        assert ANA in begun_in(folder).read_text(encoding="utf-8")
+        begun_in(folder).write_text("[", encoding="utf-8")
+        with pytest.raises(StoreError, match="cannot be read"):
+            forgetter.incident("ada", "i1")
+
+
+@pytest.mark.parametrize("cut_at", [[], ["log"], ["audit"]])
+def test_what_cannot_be_read_of_the_log_is_told(
+    tmp_path: Path, told: Path, cut_at: list[str]
+) -> None:
+    """It goes with what is written anew: nobody takes that for whole as it was."""
+    folder = shutil.copytree(told, tmp_path / "station")
+    paths = segment_paths(DataFolder(folder).log)
+    for path, chunk in ((paths[1], 1), (paths[-1], 0)):
+        with SegmentReader(path) as reader:
+            place = reader._contents.chunks[chunk].offset + 100
+        content = bytearray(path.read_bytes())
+        content[place] ^= 1
+        path.write_bytes(content)
+    detail = forgotten_in_tries(folder, "person", "p-77", cut_at)
+    assert detail.count("Damaged") == 2, "each is told once"
+    first, last = (detail.partition(path.name)[2].split(". ")[0] for path in (paths[1], paths[-1]))
+    assert first.endswith("what could not be read of it is gone")
+    assert last.endswith("it stays, whoever it tells of")
+    wishes = msgspec.json.decode(DataFolder(folder).forgettings.read_bytes())
+    assert paths[1].name in wishes[-1]["problem"]
+    damage: list[str] = []
+    list(read_log(DataFolder(folder).log, on_damage=damage.append))
+    assert [paths[-1].name in one for one in damage] == [True]
 
 
 def test_who_wore_nothing_and_is_gone_already_is_in_the_audit(tmp_path: Path) -> None:
@@ -271,7 +338,7 @@ def _split(folder: Path, parts: int) -> None:
     records = list(read_log(folder))
     for path in folder.iterdir():
         path.unlink()
-    writer = SegmentWriter(folder)
+    writer = SegmentWriter(folder, SegmentPolicy(chunk_bytes=4096))
     for number, record in enumerate(records):
         writer.write(*record)
         if (number + 1) % (len(records) // parts) == 0:
