@@ -36,6 +36,7 @@ Tracks = Mapping[str, Sequence[TrackSample]]
 Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
 _AGAIN_NS = 300 * NS_PER_S  # after what it came to could not be kept: it may have taken long
+_EVER_NS = 2**63 - 1  # an open incident goes on: whatever was recorded is of it
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 
@@ -179,7 +180,7 @@ class Hindsight:
 
     def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> Known:
         with self._working:
-            until_ns = incident.closed_ns or self._clock.utc_ns()
+            until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
             state = self._state_at(until_ns, on_progress)
             evidence = evidence_of_all(state, FloorGrid.of(state.plan))
@@ -191,10 +192,10 @@ class Hindsight:
 
     def _state_at(self, until_ns: int, on_progress: Progress) -> StationState:
         playback = Playback(self._archive)
-        begin_ns = None
+        begin_ns, end_ns = None, min(until_ns, self._clock.utc_ns())
         for _ in playback.seek(until_ns):
             begin_ns = playback.at_ns if begin_ns is None else begin_ns
-            span_ns = max(until_ns - begin_ns, 1)
+            span_ns = max(end_ns - begin_ns, 1)
             on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
         return playback.pipeline.state
 
@@ -271,7 +272,7 @@ def _raw(incident: Incident, points: PathArrays, path: SmoothedPath) -> list[Tra
 
 
 def _rows_within(incident: Incident, path: SmoothedPath) -> list[int]:
-    until_ns = incident.closed_ns or 2**63 - 1
+    until_ns = incident.closed_ns or _EVER_NS
     rows: list[int] = np.flatnonzero(
         (path.t_ns >= incident.opened_ns) & (path.t_ns <= until_ns)
     ).tolist()

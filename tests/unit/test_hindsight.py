@@ -174,6 +174,21 @@ def test_on_a_full_disk_it_is_answered_told_once_and_kept_when_there_is_room(
     assert [one.message.partition(":")[0] for one in caplog.records][1:] == ["over"]
 
 
+def test_of_an_open_incident_all_is_known_that_was_recorded_whatever_the_clock_says(
+    past: Past, store: Store
+) -> None:
+    """`muster base smooth` on a machine whose clock was set back: times went on from the last."""
+    behind = ManualClock(utc_ns=past.incident.opened_ns + 10 * 10**9)
+    hindsight = Hindsight(past.archive, SMOOTHERS[0], SmoothedTracks(store), behind)
+    is_open = Incident(
+        incident_id="i1", name="Mill Lane", opened_ns=past.incident.opened_ns, closed_ns=None
+    )
+    fractions: list[float] = []
+    tracks = hindsight.smooth(is_open, fractions.append).tracks
+    assert tracks["FF-01"][-1].t_ns == past.incident.closed_ns
+    assert fractions == sorted(fractions)
+
+
 def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
     raw = past.hindsight.raw(past.incident)["FF-01"]
     smoothed = past.hindsight.smoothed(past.incident).tracks["FF-01"]

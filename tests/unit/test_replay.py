@@ -145,7 +145,7 @@ def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Scr
 def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
     tmp_path: Path, screen: Screen
 ) -> None:
-    """A gap that the journal filled is drawn as it was live, and what was wrong with the station."""
+    """Of a gap that the journal filled, and of what is wrong with the station."""
     script, missed = Script(), []
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
