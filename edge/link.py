@@ -69,6 +69,11 @@ class Link:
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
 
+    @property
+    def is_working(self) -> bool:
+        """Whether it holds the link or seeks it, as it does until it is closed."""
+        return self._thread.is_alive()
+
     def set_up(self, *, up: bool) -> None:
         """Bring the link up or down, soon."""
         with self._changed:

@@ -148,6 +148,8 @@ class Agent:
         parts = self._parts
         if not parts.outbox.is_working:
             raise RuntimeError("the outbox has stopped; see the log before this")
+        if not parts.link.is_working:
+            raise RuntimeError("the link has stopped; see the log before this")
         fault = parts.outbox.storage_fault or parts.black_box.fault
         if fault is not None and self._storage_fault is None:
             self._say(EventKind.STORAGE_FAULT, fault)

@@ -107,3 +107,11 @@ def test_what_was_before_the_clock_went_back_is_of_other_times() -> None:
     air.push(samples(112.0, level, from_s=90.0))
     assert climbed_m(air, 92.0, 110.0) == pytest.approx(0.0, abs=1e-6)
     assert climbed_m(air, 92.0, 120.0) is None
+
+
+def test_a_reading_that_was_overtaken_at_the_edge_of_a_quarter_takes_nothing_away() -> None:
+    air = AirHeight()
+    imu = samples(12.0, upstairs)
+    air.push(imu.part(slice(0, 8 * RATE_HZ + 1)))
+    air.push(imu.part(slice(8 * RATE_HZ - 1, None)))
+    assert climbed_m(air, 2.0, 10.0) == pytest.approx(3.0, abs=0.02)

@@ -123,7 +123,9 @@ def test_too_little_warmth_is_refused_with_the_figure():
 
 def test_a_guided_step_ends_when_it_has_enough():
     unit = HandledUnit(0)
-    batches = iter([SensorBatch(unit.rest(1.0)) for _ in range(60)])
+    since_ns = 10**13  # its clock has run for hours
+    rests = (unit.rest(1.0) for _ in range(60))
+    batches = iter([SensorBatch(replace(one, t_ns=one.t_ns + since_ns)) for one in rests])
     told: list[str] = []
     guide(StillStep(), batches, 600.0, told.append)
     assert 40 < len(list(batches)) < 50

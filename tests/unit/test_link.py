@@ -7,7 +7,11 @@ import threading
 
 import pytest
 
+from edge.app import compose_agent
+from edge.config import EdgeConfig
+from edge.data_folder import DataFolder
 from edge.link import Link
+from edge.sources import open_source
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
 from shared.errors import BusError
@@ -155,6 +159,19 @@ def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, mon
     other_end.reachable.set()
     until(lambda: station.alive == [True, False, True])
     link.close()
+
+
+def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(station, tmp_path):
+    """It would go on, look well to whoever watches it, and never be heard again."""
+    data = DataFolder(tmp_path / "u1")
+    config = EdgeConfig("simulated:straight", unit="u1", tracker="none", data=tmp_path)
+    source = open_source(config.source)
+    other_end = OtherEnd(station.router.attach_unit)
+    agent = compose_agent(config, "u1", data, source, other_end, speed=1.0)
+    agent._parts.link.close()
+    with pytest.raises(RuntimeError, match="the link has stopped"):
+        agent.run(threading.Event(), for_s=60.0)
+    data.close()
 
 
 def test_publishing_while_the_link_closes_is_no_error(station):
