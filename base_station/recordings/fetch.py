@@ -89,8 +89,9 @@ class Fetch:
         self._clock = clock
         self._pace = Pace()
         self._took_ns = 0  # by the last answer
-        self._hashes: dict[str, str] = {}
-        self._unproven = 0  # files whose hash the unit could not be asked for
+        self._told: set[str] = set()  # files that the unit has told of, since it was first asked
+        self._missing: set[str] = set()  # of these: not here as they were told of
+        self._unproven: set[str] = set()  # whose hash the unit could not be asked for
         self._lock = FolderLock(
             self.folder, "pull of this unit's recording", "let that one end, or stop it"
         )
@@ -122,22 +123,22 @@ class Fetch:
         index = yield from self._index()
         self._check(index)
         self.total_bytes = sum(one.size_bytes for one in index.files)
-        self._unproven = 0
-        gone = 0
+        paths = {one.path for one in index.files}
+        self._told |= paths
+        self._missing |= paths
         before_bytes = 0
         for file in index.files:
-            gone += not (yield from self._file(file, before_bytes))
+            yield from self._file(file, before_bytes)
             before_bytes += file.size_bytes
             self.done_bytes = before_bytes
-        self._write_hashes()
         self.state = FetchState.DONE
         self.problem = "; ".join(
-            f"{count} of {len(index.files)} files {what}"
-            for count, what in (
-                (gone, "are gone: the unit needed the room"),
+            f"{len(files)} of {len(self._told)} files {what}"
+            for files, what in (
+                (self._missing, "are gone: the unit needed the room"),
                 (self._unproven, "came whole, but the unit gave them up before telling their hash"),
             )
-            if count
+            if files
         )
 
     def _index(self) -> Steps[RecordingIndex]:
@@ -146,7 +147,7 @@ class Fetch:
 
     def _check(self, index: RecordingIndex) -> None:
         unit_id = self.wanted.unit_id
-        if not index.files:
+        if not (index.files or self._told):
             began = datetime.fromtimestamp(index.first_ns / NS_PER_S, UTC)
             kept = f"what it keeps begins at {began:%Y-%m-%dT%H:%M:%SZ}"
             raise _HopelessError(
@@ -169,8 +170,8 @@ class Fetch:
                 "when the disk is freed; or stop it and choose a shorter window"
             )
 
-    def _file(self, file: RecordedFile, before_bytes: int) -> Steps[bool]:
-        """Have all of one file; False where the unit does not have it any more."""
+    def _file(self, file: RecordedFile, before_bytes: int) -> Steps[None]:
+        """Have all of one file; it stays missing where the unit does not have it any more."""
         whole, part = self._paths(file)
         whole.parent.mkdir(exist_ok=True)
         if 0 < _size(whole) <= file.size_bytes and not part.exists():
@@ -179,17 +180,20 @@ class Fetch:
             if not (yield from self._bytes(file, part, before_bytes)):
                 if whole.exists():
                     part.unlink()
-                return False
+                return
             answer = yield from self._answer(
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
             )
             digest = _digest_of(part)
             is_gone = not answer.sha256  # and yet all of it is here, each piece of it intact
-            self._unproven += is_gone
             if is_gone or digest == answer.sha256:
                 part.replace(whole)
-                self._hashes[file.path] = digest.hex()
-                return True
+                self._write_hash(file.path, digest.hex())
+                self._missing.discard(file.path)
+                self._unproven.discard(file.path)
+                if is_gone:
+                    self._unproven.add(file.path)
+                return
             part.unlink()
         raise _HopelessError(
             f"{file.path} came out different from what {self.wanted.unit_id} has, {_CHANCES} "
@@ -244,19 +248,16 @@ class Fetch:
             self.state = FetchState.WAITING
             self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
 
-    def _write_hashes(self) -> None:
-        """Beside those of earlier pulls."""
-        path = self.folder / HASHES
-        said = path.read_bytes().decode("utf-8", "replace") if path.exists() else ""
-        known = {
-            name: digest for digest, _, name in (line.partition("  ") for line in said.splitlines())
-        }
-        text = "".join(
-            f"{digest}  {name}\n" for name, digest in sorted((known | self._hashes).items())
-        )
-        making = path.with_name(HASHES + _PART)
+    def _write_hash(self, path: str, digest: str) -> None:
+        """Among those of other files."""
+        hashes = self.folder / HASHES
+        said = hashes.read_bytes().decode("utf-8", "replace") if hashes.exists() else ""
+        lines = (line.partition("  ") for line in said.splitlines())
+        known = {name: known for known, _, name in lines} | {path: digest}
+        text = "".join(f"{one}  {name}\n" for name, one in sorted(known.items()))
+        making = hashes.with_name(HASHES + _PART)
         making.write_text(text, encoding="utf-8")
-        making.replace(path)
+        making.replace(hashes)
 
 
 def _size(path: Path) -> int:

@@ -371,3 +371,50 @@ def test_what_is_here_of_other_times_makes_no_room(
     fetch.close()
     assert fetch.state is FetchState.WAITING
     assert unit.pieces == []
+
+
+def listed(folder: Path) -> dict[str, str]:
+    """The hashes that stand beside the files, by name."""
+    lines = (folder / U / fetching.HASHES).read_text(encoding="utf-8").splitlines()
+    pairs = (line.split("  ") for line in lines)
+    return {name.removeprefix("boot/"): digest for digest, name in pairs}
+
+
+def test_what_is_given_up_while_a_pull_waits_is_gone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It asks anew what there is, and is not told of it any more."""
+    unit = TellingUnit(a=b"a" * 500, b=b"b" * 5000, c=b"c" * 500)
+    fetch = unit.pull(tmp_path)
+    while not (tmp_path / U / "boot" / "a.mcap").exists():
+        fetch.step()
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        for _ in range(3):
+            fetch.step()
+        assert fetch.state is FetchState.WAITING
+    del unit.files["boot/a.mcap"], unit.files["boot/b.mcap"]
+    fetch = finish(fetch)
+    assert fetch.state is FetchState.DONE
+    assert fetch.problem == "1 of 3 files are gone: the unit needed the room"
+    assert pulled(tmp_path)["a.mcap"] == b"a" * 500
+    assert listed(tmp_path).keys() == {"a.mcap", "c.mcap"}
+
+
+def test_what_has_come_is_listed_with_its_hash_though_the_rest_never_comes(
+    tmp_path: Path,
+) -> None:
+    unit = TellingUnit(a=b"half")
+    finish(unit.pull(tmp_path))
+    whole = unit.files["boot/a.mcap"] = b"half of it"
+    unit.files["boot/b.mcap"] = b"another"
+
+    def spoil(question: str) -> None:
+        if "digest?path=boot/b" in question:
+            unit.files["boot/b.mcap"] = os.urandom(7)
+
+    unit.before = spoil
+    fetch = finish(unit.pull(tmp_path))
+    assert (fetch.state, "different" in fetch.problem) == (FetchState.FAILED, True)
+    assert pulled(tmp_path) == {"a.mcap": whole}
+    assert listed(tmp_path) == {"a.mcap": hashlib.sha256(whole).hexdigest()}
