@@ -35,7 +35,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
 from shared.messages.station import Action
 
-_RECENT_NS = 3600 * NS_PER_S  # of trails, and of alarms where no incident is open
+_RECENT_NS = 3600 * NS_PER_S  # of trails; what was raised so long before an incident is of it
 _TRAIL_EVERY_S = 5
 _SAID_AGAIN_NS = 2 * NS_PER_S
 _OLD = TrustView("red", "as it was last stored; the station is reading its log")
@@ -94,16 +94,14 @@ class LastKnown:
     def _read(self) -> tuple[Snapshot, Trails]:
         now_ns = self._clock.utc_ns()
         incident = next((one for one in self._records.incidents() if one.closed_ns is None), None)
-        since_ns = now_ns - _RECENT_NS if incident is None else incident.opened_ns
+        since_ns = (now_ns if incident is None else incident.opened_ns) - _RECENT_NS
         open_alarms = [
             one
             for one in self._records.alarms(Window(since_ns, FOREVER_NS))
             if one.state != "resolved"
         ]
         trails = {
-            unit_id: self._records.track(
-                unit_id, Window(now_ns - _RECENT_NS, FOREVER_NS), _TRAIL_EVERY_S
-            )
+            unit_id: self._trail(unit_id, now_ns - _RECENT_NS) or self._trail(unit_id, since_ns)
             for unit_id in self._roster.registered_units()
         }
         plan, anchor = self._records.plan(), self._records.anchor()
@@ -125,6 +123,9 @@ class LastKnown:
             replay=None,
         )
         return shown, {unit_id: _points(trail) for unit_id, trail in trails.items()}
+
+    def _trail(self, unit_id: str, since_ns: int) -> list[TrackSample]:
+        return self._records.track(unit_id, Window(since_ns, FOREVER_NS), _TRAIL_EVERY_S)
 
     def _unit(
         self,

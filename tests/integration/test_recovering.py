@@ -21,12 +21,13 @@ from base_station.data_folder import DataFolder
 from base_station.db.principals import Role
 from base_station.live import last_known
 from base_station.live import recovering as module
+from base_station.live.last_known import LastKnown
 from base_station.live.recovering import recovering
 from base_station.live.sinks import Projection
 from base_station.live.surroundings import Record
 from base_station.recorder import Recorder
 from base_station.server import bind
-from shared.clock import ManualClock
+from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
@@ -68,7 +69,7 @@ def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
     assert said[-1] == "reading the log: 50%"
 
 
-def store_what_happened(disk: Disk) -> None:
+def store_what_happened(disk: Disk, raised_before_s: float = 0.0) -> None:
     disk.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     stamper = Stamper(STATION_ID, 1, disk.clock)
     t_ns = disk.clock.utc_ns()
@@ -86,12 +87,52 @@ def store_what_happened(disk: Disk) -> None:
             tracks=(said_by_bench.fused(header, "FF-01", north_m=3.0, east_m=4.0),),
             alarms=(
                 AlarmChange(
-                    header, "x1", "mayday", "FF-01", 1, AlarmState.RAISED, "", "MAYDAY", "", t_ns
+                    header,
+                    "x1",
+                    "mayday",
+                    "FF-01",
+                    1,
+                    AlarmState.RAISED,
+                    "",
+                    "MAYDAY",
+                    "",
+                    t_ns - round(raised_before_s * NS_PER_S),
                 ),
             ),
         )
     )
     disk.projection.flush()
+
+
+class Nobody:
+    """No console is open."""
+
+    def reset(self, *_: object) -> None:
+        pass
+
+    def delta(self, _: object) -> None:
+        pass
+
+
+def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was(
+    tmp_path: Path, clock: ManualClock
+) -> None:
+    """And an alarm that had been raised when somebody opened it."""
+    folder, recorder = DataFolder(tmp_path), Recorder(tmp_path, clock)
+    with ExitStack() as closing:
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        store_what_happened(disk, raised_before_s=600.0)
+        pictures = []
+        for waited_s in (1800.0, 3 * 3600.0):
+            clock.advance(waited_s)
+            pictures.append(LastKnown(disk.roster, disk.records, clock, Nobody()).whole())
+    for picture, trails in pictures:
+        (shown,) = picture.units
+        assert shown.position is not None
+        assert (shown.position.north_m, shown.position.east_m) == (3.0, 4.0)
+        assert [points[1:3] for points in json.loads(bytes(trails["FF-01"]))] == [[3.0, 4.0]]
+        assert [one.text for one in picture.alarms] == ["MAYDAY"]
 
 
 def look(address: str) -> None:
