@@ -26,8 +26,11 @@ class Recovery:
     damage: tuple[str, ...]  # in between, in words
 
     def __str__(self) -> str:
-        lost = f"{self.bytes_lost} bytes behind the tear are lost" if self.bytes_lost else "whole"
-        return "; ".join((f"{self.path.name}: {self.messages} records kept, {lost}", *self.damage))
+        if self.bytes_lost:
+            lost = f", {self.bytes_lost} bytes behind the tear are lost"
+        else:
+            lost = "" if self.damage else ", whole"
+        return "; ".join((f"{self.path.name}: {self.messages} records kept{lost}", *self.damage))
 
 
 def recover_log(folder: Path) -> list[Recovery]:

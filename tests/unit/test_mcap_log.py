@@ -229,6 +229,21 @@ def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) ->
     assert recover_log(tmp_path) == []
 
 
+def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for number in range(2):
+        writer.write(T0_NS + number, KEY, bytes([number]), urgent=True)
+    [path] = segment_paths(tmp_path)
+    with SegmentReader(path) as reader:
+        place = reader._contents.chunks[0].offset + 60
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1
+    path.write_bytes(content)
+    [recovery] = recover_log(tmp_path)
+    assert "is lost" in str(recovery)
+    assert "whole" not in str(recovery)
+
+
 def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
     (tmp_path / "log").write_text("a file")
     with pytest.raises(LogError, match="cannot be used"):
