@@ -42,6 +42,7 @@ from edge.simulation.surroundings import (
     MagneticField,
     Magnetometer,
 )
+from shared.errors import ConfigError
 from shared.messages.status import Activity
 
 _BLOCK_S = 2  # generated at once; the noise does not depend on how it is cut into batches
@@ -234,7 +235,7 @@ def _plan(scenario: Scenario, rng: np.random.Generator) -> BodyPlan:
         for leg in scenario.loop:
             planner.do(leg)
         if planner.plan.duration_s == before_s:
-            raise ValueError(f"the loop of scenario {scenario.name!r} takes no time")
+            raise ConfigError(f"the loop of scenario {scenario.name!r} takes no time")
     return planner.plan
 
 

@@ -116,3 +116,13 @@ def test_after_a_cut_time_goes_on_where_it_is_now() -> None:
     clock.reopened()
     assert clock.place(31 * S, 130 * S) == 130 * S
     assert not clock.told()
+
+
+def test_after_a_cut_messages_may_come_sooner_and_time_goes_forward_all_the_same() -> None:
+    clock = DeviceClock()
+    late = [clock.place(t, 102 * S + t) for t in range(0, S, STEP)]
+    clock.reopened()
+    soon = [clock.place(t, 100 * S + t) for t in range(S, 2 * S, STEP)]
+    times_ns = np.array([*late, *soon], dtype=np.int64)
+    assert (np.diff(times_ns) > 0).all()
+    assert np.diff(times_ns[len(late) :]) == pytest.approx(STEP, rel=0.002)

@@ -326,3 +326,12 @@ def test_the_example_of_the_how_to_page_plays(tmp_path: Path) -> None:
     assert simulation.activity(30.0) is Activity.LYING
     end = simulation.truth(np.array([simulation.duration_s]))
     assert end.position_n_m[0, :2] == pytest.approx([-8.0, 12.0], abs=0.2)
+
+
+def test_a_loop_that_takes_no_time_is_one_sentence(tmp_path: Path) -> None:
+    """It would be gone round for ever."""
+    path = tmp_path / "round.toml"
+    turn = 'type = "turn"\nheading_deg = 0.0\n'
+    path.write_text(f"duration_s = 60.0\n[[legs]]\n{turn}[[loop]]\n{turn}")
+    with pytest.raises(ConfigError, match="the loop of scenario 'round' takes no time"):
+        open_simulation(str(path))
