@@ -29,7 +29,7 @@ def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str,
     plan's walls.
     """
     return {
-        unit_id: evidence_of_one(history, own_places(state, unit_id, history), grid)
+        unit_id: evidence_of_one(state, unit_id, own_places(state, unit_id, history), grid)
         for unit_id, history in sorted(state.paths.items())
         if history.begin_ns is not None
     }
@@ -77,13 +77,12 @@ def _floor_said(state: StationState, pin: Pin) -> int | None:
 
 
 def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
-    """Of the unit that stays there, whatever runs, where somebody has said that it stands."""
+    """Of the unit that stays there, where somebody has said that it stands."""
     unit_id = state.barometers.reference_id or ""
     history = state.paths.get(unit_id)
     if history is None or history.begin_ns is None or history.start is None:
         return {}
-    places = own_places(state, unit_id, history)
-    return {unit_id: UnitEvidence(history.arrays(), history.start, history.start_ns, places)}
+    return {unit_id: evidence_of_one(state, unit_id, own_places(state, unit_id, history), None)}
 
 
 def own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PlaceSeen]:
@@ -135,6 +134,12 @@ def time_of(history: PathHistory, pin: Pin) -> int | str:
 
 
 def evidence_of_one(
-    history: PathHistory, places: Sequence[PlaceSeen], grid: FloorGrid | None
+    state: StationState, unit_id: str, places: Sequence[PlaceSeen], grid: FloorGrid | None
 ) -> UnitEvidence:
-    return UnitEvidence(history.arrays(), history.start_in_path, history.start_ns, places, grid)
+    """A unit that has a path.  The one that stays at the station is where its start says, whichever
+    run of its program that was said of.
+    """
+    history = state.paths[unit_id]
+    stays = unit_id == state.barometers.reference_id
+    start = history.start if stays else history.start_in_path
+    return UnitEvidence(history.arrays(), start, history.start_ns, places, grid)

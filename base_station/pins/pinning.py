@@ -52,16 +52,10 @@ class Past:
     grid: FloorGrid | None  # the plan's walls
     _alone: dict[str, SmoothedPath] = field(default_factory=dict)
 
-    def solve(
-        self,
-        state: StationState,
-        unit_id: str,
-        history: PathHistory,
-        places: Sequence[PlaceSeen],
-    ) -> Solution:
+    def solve(self, state: StationState, unit_id: str, places: Sequence[PlaceSeen]) -> Solution:
         """One unit's past; the station's receiver tells what all receivers err by."""
         evidence = receiver_of_station(state)
-        evidence[unit_id] = evidence_of_one(history, places, self.grid)
+        evidence[unit_id] = evidence_of_one(state, unit_id, places, self.grid)
         solution = self.smoother.solve(evidence)
         verdicts = {place.name: solution.verdicts[place.name] for place in places}
         return Solution({unit_id: solution.paths[unit_id]}, verdicts)
@@ -70,7 +64,7 @@ class Past:
         """A unit's path by all that is known of it but its meetings; the same at each of them."""
         if unit_id not in self._alone:
             places = own_places(state, unit_id, history)
-            self._alone[unit_id] = self.solve(state, unit_id, history, places).paths[unit_id]
+            self._alone[unit_id] = self.solve(state, unit_id, places).paths[unit_id]
         return self._alone[unit_id]
 
 
@@ -104,7 +98,7 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
             places, waiting = _places(state, past, unit_id, history, pins)
             _await(history, pins)
             if places:
-                solution = past.solve(state, unit_id, history, places)
+                solution = past.solve(state, unit_id, places)
         else:
             waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
         for pin_id, why in waiting.items():

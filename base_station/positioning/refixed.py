@@ -25,7 +25,7 @@ def place_again(state: StationState, unit: UnitState, fuser: Fuser, past: Past) 
         return False
     history.is_refixed = False
     unlearn(state, unit.unit_id)
-    path = past.solve(state, unit.unit_id, history, ()).paths[unit.unit_id]
+    path = past.solve(state, unit.unit_id, ()).paths[unit.unit_id]
     fuser.settle(path.present)
     unit.change_plain_trail(0, trail_of(state, history.arrays(), path.places_m))
     return True

@@ -9,9 +9,10 @@ import pytest
 
 from base_station.fusion.fixes.sky import OWN_PART, Sky, common_m2
 from base_station.fusion.port import PlaceFix
+from base_station.pins.evidence import evidence_of_all, receiver_of_station
 from shared.clock import NS_PER_S
 from shared.messages.pins import SetPin
-from shared.messages.station import SetAnchor, SetReference, SetStart
+from shared.messages.station import OpenIncident, SetAnchor, SetReference, SetStart
 from tests.station_script import Script
 
 STD_M = 1.27
@@ -162,6 +163,24 @@ def test_where_the_reference_was_said_to_stand_wrongly_what_it_told_is_forgotten
     assert site.pipeline.state.sky != Sky()
     site.act(action)
     assert site.pipeline.state.sky == Sky()
+
+
+def test_the_reference_stands_where_it_was_said_to_whichever_run_that_was_said_of() -> None:
+    """It is switched off and on between incidents, and stays where it is."""
+    site = a_site(station_has_a_receiver=True)
+    site.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
+    site.boot_ids = {"FF-01": 8, "FF-09": 8}
+    for unit_id in site.boot_ids:
+        site.position(unit_id, 0.0, 0.0)
+    site.now_s += 60.0
+    site.act(OpenIncident("i1", "Mill Lane"))
+    for unit_id in site.boot_ids:
+        site.position(unit_id, 0.0, 0.0)
+    state = site.pipeline.state
+    starts = {unit_id: one.start for unit_id, one in evidence_of_all(state, None).items()}
+    assert starts["FF-01"] is None
+    assert starts["FF-09"] is not None
+    assert receiver_of_station(state)["FF-09"].start == starts["FF-09"]
 
 
 def test_a_past_that_is_solved_again_hears_the_reference_too_and_each_fix_once() -> None:
