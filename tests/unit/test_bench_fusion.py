@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from base_station.bench.fusion import smoothing
+from base_station.bench.fusion import hours
 from base_station.bench.fusion.command import WITH_PLAN, bench_fusion
 from base_station.bench.incident.people import LASTS_S
 from base_station.bench.incident.run import Timing, draw_incident, fuse
+from base_station.bench.incident.scores import ASTRAY, ERROR_STAGES, HELD_STAGES, Scores
 from base_station.fusion import FUSERS
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
@@ -25,7 +26,7 @@ from shared.errors import UserError
 def figures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     file = tmp_path_factory.mktemp("bench") / "figures.json"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(smoothing, "UNITS", 1)  # an hour of each is timed
+        patch.setattr(hours, "UNITS", 1)  # an hour of each is timed
         bench_fusion(incidents=1, seed=3, json_file=file)
     found: dict[str, Any] = json.loads(file.read_text())
     return found
@@ -49,6 +50,24 @@ def test_the_same_seed_gives_the_same_errors() -> None:
         person = draw_incident(np.random.default_rng(3))[1]
         runs.append(fuse(FUSERS[0], person, Timing(), with_plan=True).places_m)
     assert np.array_equal(runs[0], runs[1])
+
+
+def test_scores_added_are_those_of_all_people_together() -> None:
+    people = draw_incident(np.random.default_rng(3))[:2]
+    all_of_them, added = Scores(), Scores()
+    for number, person in enumerate(people):
+        truth, one = person.truth, Scores()
+        off_m = np.linspace(0.0, 6.0 + number, len(truth.t_s))
+        for scores in (all_of_them, one):
+            scores.note(truth, truth.place_m[:, :2] + off_m[:, None], off_m**2)
+        added.add(one)
+    assert added.seams_m == all_of_them.seams_m
+    for stage in ERROR_STAGES:
+        assert added.ce_m(stage, 50.0) == all_of_them.ce_m(stage, 50.0)
+    for stage in HELD_STAGES:
+        assert added.held_95(stage) == all_of_them.held_95(stage)
+    for how in ASTRAY:
+        assert added.part_astray(how) == all_of_them.part_astray(how)
 
 
 def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None:

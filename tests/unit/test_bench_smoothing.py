@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from base_station.bench.fusion import hours
 from base_station.bench.fusion.command import WITHOUT
 from base_station.bench.fusion.kept_paths import PathKeeping, engine_evidence
 from base_station.bench.fusion.smoothing import SmoothingScores, tables_of
 from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.fusion.smoother import SMOOTHERS
+
+
+@pytest.fixture(autouse=True)
+def few_hours(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hours, "UNITS", 1)  # an hour of each is timed
 
 
 @pytest.fixture(scope="module")
@@ -41,3 +49,10 @@ def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScore
     assert 0.5 < report.held_95[WITHOUT]["inside"] <= 1.0
     assert min(report.times_s.values()) > 0.0
     assert len(tables_of(report)) == 2
+
+
+def test_scores_added_to_none_are_the_same(scores: SmoothingScores) -> None:
+    added = SmoothingScores(SMOOTHERS[0])
+    added.add(scores)
+    plain, copied = scores.report(seed=1), added.report(seed=1)
+    assert copied == replace(plain, times_s=copied.times_s)

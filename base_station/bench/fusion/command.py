@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,6 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 from rich.console import Console
-from rich.progress import track as progress_bar
 from rich.table import Table
 
 from base_station.bench.fusion import smoothing
@@ -39,6 +39,7 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
+from shared.side_by_side import side_by_side
 
 Floats = NDArray[np.float64]
 
@@ -97,15 +98,20 @@ def bench_fusion(
 
 def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
     tally = _Tally(kind)
-    for number in progress_bar(
-        range(incidents), description="Incidents", console=Console(stderr=True), transient=True
-    ):
-        tally.take(np.random.default_rng(seed + number))
+    seeds = range(seed, seed + incidents)
+    for taken in side_by_side(partial(_taken, kind), seeds, "Incidents"):
+        tally.add(taken)
     return tally.report(incidents, seed)
 
 
+def _taken(kind: FuserKind, seed: int) -> _Tally:
+    tally = _Tally(kind)
+    tally.take(np.random.default_rng(seed))
+    return tally
+
+
 class _Tally:
-    """Takes one incident after the other through every way of knowing."""
+    """Takes incidents through every way of knowing."""
 
     def __init__(self, kind: FuserKind) -> None:
         self._kind = kind
@@ -127,6 +133,15 @@ class _Tally:
             self._afterwards.note_bound(person.truth, live_m, then_m)
             for name, places_m in _peers(person, rng).items():
                 self._ways[name].note(person.truth, places_m, None)
+
+    def add(self, other: _Tally) -> None:
+        """The incidents that another one has taken, behind one's own."""
+        for name, scores in other._ways.items():
+            self._ways[name].add(scores)
+        self._timing.add(other._timing)
+        self._right.add(other._right)
+        self._afterwards.add(other._afterwards)
+        self._walked_m += other._walked_m
 
     def _fuse(self, name: str, people: list[Person], rng: np.random.Generator) -> None:
         known, keeping = KNOWN[name], PathKeeping(self._kind)

@@ -52,6 +52,11 @@ class _Errors:
     smoothed: list[Floats] = field(default_factory=list)
     held: list[NDArray[np.bool_]] = field(default_factory=list)
 
+    def add(self, other: _Errors) -> None:
+        self.live += other.live
+        self.smoothed += other.smoothed
+        self.held += other.held
+
 
 class SmoothingScores:
     """Collects incidents: what was shown of each person, and the paths behind it."""
@@ -91,6 +96,17 @@ class SmoothingScores:
                 one.smoothed.append(errors[rows])
                 one.held.append(held[rows])
             self._pins.setdefault(way, []).append(self._pinned_m(truth, evidence, str(number), rng))
+
+    def add(self, other: SmoothingScores) -> None:
+        """Other incidents, behind one's own."""
+        for way, stages in other._errors.items():
+            for stage, errors in stages.items():
+                self._errors.setdefault(way, {}).setdefault(stage, _Errors()).add(errors)
+        for way, pins in other._pins.items():
+            self._pins.setdefault(way, []).extend(pins)
+        for stage, pairs in other._bound.items():
+            self._bound.setdefault(stage, []).extend(pairs)
+        self._walled = other._walled or self._walled
 
     def report(self, seed: int) -> SmoothingReport:
         pins = {way: np.array(gains) for way, gains in self._pins.items()}

@@ -93,6 +93,10 @@ class Timing:
     steps_ns: list[int] = field(default_factory=list)
     fixes_ns: list[int] = field(default_factory=list)
 
+    def add(self, other: Timing) -> None:
+        self.steps_ns += other.steps_ns
+        self.fixes_ns += other.fixes_ns
+
 
 @dataclass
 class Run:

@@ -77,6 +77,17 @@ class Scores:
                 self.astray[how].append((errors_m > FAR_M) & sure)
         self.seams_m.append(_seam_m(truth, off_m))
 
+    def add(self, other: Scores) -> None:
+        """Those of other people."""
+        for mine, theirs in (
+            (self.errors_m, other.errors_m),
+            (self.held, other.held),
+            (self.astray, other.astray),
+        ):
+            for stage, rows in theirs.items():
+                mine[stage] += rows
+        self.seams_m += other.seams_m
+
     def ce_m(self, stage: str, percent: float) -> float:
         return float(np.percentile(np.concatenate(self.errors_m[stage]), percent))
 
@@ -105,6 +116,11 @@ class FloorScores:
         rows = on_storey & inside
         self.right.append(said[rows] == np.rint(storeys[rows]))
         self.stated.append(stated[rows])
+
+    def add(self, other: FloorScores) -> None:
+        """Those of other people."""
+        self.right += other.right
+        self.stated += other.stated
 
     def part_right(self) -> float:
         return float(np.concatenate(self.right).mean())
