@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.sender import BOOTS, Sender
+from base_station.sender import BOOTS, STARTS, WILD_NS, Sender
 from shared.channels import EVENT, POSITION, STATUS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header
@@ -81,3 +81,42 @@ def test_what_a_goodbye_overtook_does_not_take_it_back(sender: Sender) -> None:
         sender.accept(STATUS, later, NOW_NS)
         left.append(sender.stopped_ns)
     assert left == [None, None]
+
+
+def test_more_starts_in_a_minute_than_there_can_be_are_nobodys_program(sender: Sender) -> None:
+    for number in range(1, STARTS):
+        assert not sender.starts_wildly(100 + number, NOW_NS + number)
+        sender.accept(STATUS, said(1, boot_id=100 + number), NOW_NS + number)
+    soon_ns, later_ns = NOW_NS + WILD_NS - 1, NOW_NS + WILD_NS
+    assert sender.starts_wildly(200, soon_ns)
+    assert not sender.starts_wildly(101, soon_ns), "it has begun before"
+    assert not sender.starts_wildly(200, later_ns)
+    sender.accept(STATUS, said(1, boot_id=200), later_ns)
+    assert sender.starts_wildly(201, later_ns), "the newest ones count"
+
+
+@pytest.mark.parametrize(
+    ("silent_s", "link"), [(9.9, "live"), (10.0, "stale"), (29.9, "stale"), (30.0, "lost")]
+)
+def test_who_is_silent_is_stale_and_then_lost(sender: Sender, silent_s: float, link: str) -> None:
+    assert sender.link_at(NOW_NS + round(silent_s * NS_PER_S)) == link
+    assert Sender("FF-02").link_at(NOW_NS) == "never"
+
+
+def test_a_second_machine_is_shown_when_the_first_has_been_silent(sender: Sender) -> None:
+    """Until then its messages are kept, and change nothing that is shown."""
+    sender.accept(STATUS, said(1, 5.0, boot_id=8), NOW_NS)
+    for second, worth in ((9.9, "old"), (10.0, "new"), (10.1, "new")):
+        header = said(5 + round(10 * second), 100.0 + second)
+        assert sender.accept(STATUS, header, NOW_NS + round(second * NS_PER_S)) == worth
+    assert sender.boots[-1].boot_id == 7
+
+
+def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
+    sender: Sender,
+) -> None:
+    for second, is_twin in ((0.0, False), (4.9, False), (5.0, True)):
+        for boot_id in (7, 8):
+            header = said(6 + round(10 * second), 100.0 + second, boot_id=boot_id)
+            sender.accept(STATUS, header, NOW_NS + round(second * NS_PER_S))
+        assert (sender.twin is not None) == is_twin
