@@ -24,6 +24,7 @@ from shared.mcap_log import (
     location_topic,
     read_log,
     recover_log,
+    rewrite_segment,
     segment_paths,
 )
 from shared.mcap_log.durable_file import DurableFile
@@ -271,6 +272,52 @@ def test_a_window_opens_only_the_segments_that_it_needs(tmp_path: Path) -> None:
         T0_NS + tenth * NS_PER_S // 10 for tenth in range(110, 290)
     ]
     assert damage == []
+
+
+def test_records_of_one_time_on_both_sides_of_a_border_are_found(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    t_ns = T0_NS + NS_PER_S - 1  # the last nanosecond of the second in which the next one begins
+    for number in range(4):
+        writer.write(t_ns, KEY, bytes([number]))
+        if number % 2:
+            writer.end_segment()
+    writer.close()
+    assert len(segment_paths(tmp_path)) == 2
+    for end_ns in (None, t_ns + 1):
+        found = read_log(tmp_path, t_ns, end_ns)
+        assert [payload for _, _, payload in found] == [b"\0", b"\1", b"\2", b"\3"]
+    assert list(read_log(tmp_path, t_ns + 1)) == list(read_log(tmp_path, None, t_ns)) == []
+
+
+def test_of_a_segment_from_which_all_is_taken_an_empty_one_is_left(tmp_path: Path) -> None:
+    """Its name stays, and with it what stands before and behind it."""
+    writer = SegmentWriter(tmp_path)
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, bytes([number]), urgent=True)
+        writer.end_segment()
+    middle = segment_paths(tmp_path)[1]
+    assert rewrite_segment(middle, lambda _: []) == 1
+    assert on_disk(tmp_path) == [b"\0", b"\2"]
+    with SegmentReader(middle) as reader:
+        info = reader.info()
+        assert reader.is_whole()
+    assert (info.state, info.messages, info.start_ns) == (SegmentState.CLOSED, 0, 0)
+    assert recover_log(tmp_path) == []
+    assert as_others_read(middle) == []
+
+
+def test_who_reads_a_segment_while_it_is_written_anew_has_it_as_it_was(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path, SegmentPolicy(chunk_bytes=10))
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, bytes([number]))
+    writer.close()
+    [path] = segment_paths(tmp_path)
+    with SegmentReader(path) as reader:
+        records = reader.records()
+        first = next(records)
+        rewrite_segment(path, lambda record: [(record[0], record[1], b"anew")])
+        assert [one[2] for one in (first, *records)] == [b"\0", b"\1", b"\2"]
+    assert on_disk(tmp_path) == [b"anew"] * 3
 
 
 def test_files_that_are_no_segments_are_left_alone(tmp_path: Path) -> None:
