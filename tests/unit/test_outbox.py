@@ -188,5 +188,29 @@ def test_an_alert_does_not_wait_for_the_group(spool, stamper, monkeypatch):
     outbox.close()
 
 
+def test_what_is_not_urgent_is_written_with_what_comes_next(spool, stamper, monkeypatch):
+    """Each commit waits for the disk, and wears it."""
+    monkeypatch.setattr("edge.outbox._GROUP_S", 600.0)
+    written: list[int] = []
+    sent: list[bytes] = []
+    append = spool.append
+
+    def count(messages):
+        written.append(len(messages))
+        append(messages)
+
+    monkeypatch.setattr(spool, "append", count)
+    outbox = Outbox("FF-01", spool, lambda key, payload, qos: sent.append(payload))
+    outbox.put((Temperature(stamper.header(), 20.0),))
+    until(partial(holds, sent, 1))
+    for number in range(1, 11):
+        outbox.put((Temperature(stamper.header(), 20.0),))
+        until(outbox._waiting.empty, "the outbox has it at hand")
+        outbox.put((UnitEvent(stamper.header(), EventKind.MAYDAY),))
+        until(partial(holds, sent, 1 + 2 * number))
+    outbox.close()
+    assert written == [1, *[2] * 10]
+
+
 def holds(sent: Sized, count: int) -> bool:
     return len(sent) == count
