@@ -109,3 +109,15 @@ def test_a_clock_that_was_set_is_believed_after_twenty_messages_in_a_row() -> No
     assert unit.placed_s(150.0) == pytest.approx(150.0, abs=0.1)
     assert unit.heard(240.0, slower_s=90.0)
     assert unit.placed_s(150.0) == pytest.approx(240.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("slower_s", "is_taken"), [(59.9, False), (60.1, True)])
+def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
+    slower_s: float, is_taken: bool
+) -> None:
+    unit = Unit()
+    unit.heard(0.0)
+    for second in range(25):
+        unit.heard(100.0 + second / 10, slower_s=slower_s)
+    assert (unit.placed_s(0.0) > 50.0) is is_taken
+    assert unit.placed_s(0.0) == pytest.approx(slower_s if is_taken else 0.0, abs=0.1)
