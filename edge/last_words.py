@@ -14,16 +14,20 @@ from shared.messages import CommandReply, EventKind, Message, UnitEvent
 
 logger = logging.getLogger(__name__)
 
+FAILED = "failed"  # the detail of a stop that nobody wanted
+
 
 def mayday_before(spool: Spool) -> bool:
     """Whether a mayday was latched when the boot before this one came to a sudden end.
 
-    A unit that was stopped in order has said so, and starts afresh.
+    A unit that was stopped in order has said so, and starts afresh; one that has failed had the
+    time to say so, and is started again.
     """
     boots = [boot for boot in spool.boots() if boot.boot_id != spool.boot_id]
     for event in _newest_first(spool, boots[-1].boot_id, EVENT) if boots else ():
         assert isinstance(event, UnitEvent)
-        if event.kind in (EventKind.STOPPED, EventKind.MAYDAY_CANCELLED):
+        stopped = event.kind is EventKind.STOPPED and event.detail != FAILED
+        if stopped or event.kind is EventKind.MAYDAY_CANCELLED:
             return False
         if event.kind is EventKind.MAYDAY:
             return True

@@ -17,6 +17,7 @@ import msgspec
 
 from edge.black_box import BlackBox
 from edge.commands import CommandDesk
+from edge.last_words import FAILED
 from edge.link import Link
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline
@@ -83,7 +84,7 @@ class Agent:
         parts = self._parts
         started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
         end_ns = None if for_s is None else started_ns + round(for_s * NS_PER_S)
-        reason = "failed"
+        reason = FAILED
         try:
             parts.outbox.put(parts.pipeline.start())
             parts.reader.start()
@@ -93,7 +94,10 @@ class Agent:
                     reason = "the time that was set is over"
                     return
                 self._turn()
-            reason = "told to stop" if stop.is_set() else "the source ended"
+            if stop.is_set():
+                reason = "told to stop"
+            elif parts.reader.failure is None:
+                reason = "the source ended"
         finally:
             self._end(reason)
         if parts.reader.failure is not None:

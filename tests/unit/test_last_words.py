@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
-from edge.last_words import answers_before, mayday_before
+from edge.last_words import FAILED, answers_before, mayday_before
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import SensorDescription
 from edge.spool import Journaled, Spool
@@ -59,6 +59,16 @@ def boot(path: Path, *kinds: EventKind) -> bool:
 def test_what_the_last_boot_said_last_counts(tmp_path, said, latched):
     assert not boot(tmp_path, *said)
     assert boot(tmp_path, STARTED) is latched
+
+
+def test_a_unit_that_failed_and_said_so_has_not_been_stopped(tmp_path):
+    """Its service starts it again within a second, and its wearer still waits for help."""
+    spool = Spool(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
+    stamper = Stamper("u1", spool.boot_id, ManualClock())
+    events = [UnitEvent(stamper.header(), MAYDAY), UnitEvent(stamper.header(), STOPPED, FAILED)]
+    spool.append([Journaled(e.header.seq, EVENT, 0, encode(e)) for e in events])
+    spool.close()
+    assert boot(tmp_path, STARTED)
 
 
 def test_what_cannot_be_understood_keeps_no_unit_from_starting(tmp_path):

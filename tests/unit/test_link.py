@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import logging
 import threading
+from collections.abc import Iterator
+from contextlib import nullcontext
 
 import pytest
 
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
+from edge.last_words import FAILED
 from edge.link import Link
+from edge.samples import SensorBatch
 from edge.sources import open_source
+from edge.sources.bench import BenchSource
+from edge.spool import Spool
 from shared.bus_memory import MemoryRouter
-from shared.channels import COMMAND, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
-from shared.errors import BusError
+from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
+from shared.codec import decode
+from shared.errors import BusError, RecordingError
+from shared.messages import EventKind, UnitEvent
 from tests.waiting import until
 
 
@@ -171,7 +179,38 @@ def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(statio
     agent._parts.link.close()
     with pytest.raises(RuntimeError, match="the link has stopped"):
         agent.run(threading.Event(), for_s=60.0)
+    assert how_it_stopped(data) == FAILED
     data.close()
+
+
+@pytest.mark.parametrize(("fails", "said"), [(True, FAILED), (False, "the source ended")])
+def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fails, said):
+    """What it must not forget is known again when it is started again."""
+
+    class Broken(BenchSource):
+        def batches(self) -> Iterator[SensorBatch]:
+            if fails:
+                raise RecordingError("the cable is broken")
+            return iter(())
+
+    data = DataFolder(tmp_path / "u1")
+    config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
+    other_end = OtherEnd(station.router.attach_unit)
+    agent = compose_agent(config, "u1", data, Broken("1"), other_end, speed=1.0)
+    with pytest.raises(RecordingError) if fails else nullcontext():
+        agent.run(threading.Event(), for_s=60.0)
+    assert how_it_stopped(data) == said
+    data.close()
+
+
+def how_it_stopped(data: DataFolder) -> str:
+    """By the last word in its journal."""
+    spool = Spool(data.journal, lambda: 1, 0, 10**9)
+    event = decode(EVENT, next(spool.newest_first(spool.boots()[0].boot_id, EVENT)))
+    spool.close()
+    assert isinstance(event, UnitEvent)
+    assert event.kind is EventKind.STOPPED
+    return event.detail
 
 
 def test_publishing_while_the_link_closes_is_no_error(station):
