@@ -1,0 +1,92 @@
+"""The live state is saved beside the drive, and never knows more than the log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from base_station.live.saving import PART, Saving
+from base_station.live.self_watch import SelfWatch
+from base_station.past.checkpoints import Checkpoints
+from tests.live_station import make_pipeline
+from tests.waiting import until
+
+STATE = make_pipeline().checkpoint()
+
+
+class Log:
+    """Its disk takes what it is told to."""
+
+    problem = little_room = ""
+    is_behind = False
+
+    def __init__(self) -> None:
+        self.takes = True
+        self.may_flush = Event()
+        self.may_flush.set()
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        raise NotImplementedError
+
+    def flush(self) -> bool:
+        self.may_flush.wait()
+        return self.takes
+
+
+def told(watch: SelfWatch) -> list[tuple[str, str]]:
+    return [(report.part, report.text) for report in watch.check({}, {})]
+
+
+def test_what_a_crash_would_take_from_the_log_is_not_saved(tmp_path: Path) -> None:
+    log, checkpoints, watch = Log(), Checkpoints(tmp_path), SelfWatch()
+    saving = Saving(log, checkpoints, watch)
+    for takes, t_ns in ((True, 100), (False, 200)):
+        log.takes = takes
+        saving.begin((t_ns, 3), STATE)
+        saving.finish()
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert (saved.t_ns, saved.events_at_t) == (100, 3)
+    assert told(watch) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(OSError(28, "No space left on device"), "free the disk"), (KeyError("x"), "please report")],
+)
+def test_a_state_that_cannot_be_saved_is_told_when_that_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
+) -> None:
+    log, checkpoints, watch = Log(), Checkpoints(tmp_path), SelfWatch()
+
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(checkpoints, "save", fail)
+    saving = Saving(log, checkpoints, watch)
+    log.may_flush.clear()
+    saving.begin((100, 1), STATE)
+    saving.look()
+    assert (saving.is_under_way, told(watch)) == (True, [])
+    log.may_flush.set()
+    until(lambda: not saving.is_under_way)
+    saving.look()
+    ((part, text),) = told(watch)
+    assert part == PART
+    assert said in text
+    saving.look()
+    assert told(watch) == []
+
+
+def test_one_is_saved_after_the_other(tmp_path: Path) -> None:
+    log, checkpoints = Log(), Checkpoints(tmp_path)
+    saving = Saving(log, checkpoints, SelfWatch())
+    saving.begin((100, 1), STATE)
+    saving.begin((200, 1), STATE)
+    assert checkpoints.latest(until_ns=199) is not None, "the first is there by then"
+    saving.finish()
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert saved.t_ns == 200
