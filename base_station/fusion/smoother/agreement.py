@@ -30,23 +30,44 @@ class Expected:
     def __len__(self) -> int:
         return len(self.noise_m2)
 
-    def given(self, used: Sequence[int], of: int) -> tuple[Floats, Floats]:
-        """Innovation (2,) of one place, and its covariance (2, 2), when others are taken."""
-        pair = slice(2 * of, 2 * of + 2)
-        innovation = self.seen_m[pair] - self.mean_m[pair]
-        covariance = self.covariance_m2[pair, pair] + self.noise_m2[of] * np.eye(2)
-        rows = [row for one in used if one != of for row in (2 * one, 2 * one + 1)]
-        if not rows:
-            return innovation, covariance
-        noise = np.diag(np.repeat(self.noise_m2[[one for one in used if one != of]], 2))
-        crossed = self.covariance_m2[pair, rows]
-        gain = np.linalg.solve(self.covariance_m2[np.ix_(rows, rows)] + noise, crossed.T).T
-        innovation = innovation - gain @ (self.seen_m[rows] - self.mean_m[rows])
-        return innovation, covariance - gain @ crossed.T
 
-    def distance2(self, used: Sequence[int], of: int) -> float:
-        innovation, covariance = self.given(used, of)
+class Given:
+    """What is expected of each place once others are taken, one after another.
+
+    The inverse of the taken ones' Cholesky root grows with each of them and is never made again:
+    somebody near a beacon for hours has hundreds of places, and the live station waits for this.
+    """
+
+    def __init__(self, expected: Expected, used: Sequence[int] = ()) -> None:
+        self._expected = expected
+        size = 2 * len(expected)
+        self._known = np.empty((size, size))  # by row what was taken, against all; whitened
+        self._told = np.empty(size)  # its innovations, whitened
+        self._rows = 0
+        for one in used:
+            self.take(one)
+
+    def of(self, one: int) -> tuple[Floats, Floats]:
+        """Innovation (2,) of a place that is not taken, and its covariance (2, 2)."""
+        expected, pair = self._expected, _pair(one)
+        crossed = self._known[: self._rows, pair]
+        noise = expected.noise_m2[one] * np.eye(2)
+        innovation = expected.seen_m[pair] - expected.mean_m[pair]
+        innovation = innovation - crossed.T @ self._told[: self._rows]
+        return innovation, expected.covariance_m2[pair, pair] + noise - crossed.T @ crossed
+
+    def distance2(self, one: int) -> float:
+        innovation, covariance = self.of(one)
         return float(innovation @ np.linalg.solve(covariance, innovation))
+
+    def take(self, one: int) -> None:
+        innovation, covariance = self.of(one)
+        known, rows = self._known[: self._rows], slice(self._rows, self._rows + 2)
+        left = self._expected.covariance_m2[_pair(one)] - known[:, _pair(one)].T @ known
+        root = np.linalg.cholesky(covariance)
+        self._known[rows] = np.linalg.solve(root, left)
+        self._told[rows] = np.linalg.solve(root, innovation)
+        self._rows += 2
 
 
 def agreeing(expected: Expected) -> list[int]:
@@ -65,15 +86,30 @@ def most_against(expected: Expected, used: Sequence[int], of: int) -> int | None
     """The taken place that a left-out one contradicts most by itself; None: what was expected
     without any place contradicts it already.
     """
-    if expected.distance2([], of) > GATE2 or not used:
+    alone = Given(expected)
+    if alone.distance2(of) > GATE2 or not used:
         return None
-    return max(used, key=lambda one: expected.distance2([one], of))
+    innovation, covariance = alone.of(of)
+    rows = 2 * np.asarray(used)[:, None] + [0, 1]  # (k, 2)
+    spreads = expected.covariance_m2[rows[:, :, None], rows[:, None, :]]
+    spreads = spreads + expected.noise_m2[used][:, None, None] * np.eye(2)
+    crossed = expected.covariance_m2[rows, _pair(of)]  # (k, 2, 2)
+    gain = np.linalg.solve(spreads, crossed).transpose(0, 2, 1)
+    off_m = (expected.seen_m - expected.mean_m)[rows]
+    left_m = innovation - np.einsum("kij,kj->ki", gain, off_m)
+    whitened = np.linalg.solve(covariance - gain @ crossed, left_m[..., None])[..., 0]
+    return used[int(np.argmax((left_m * whitened).sum(axis=1)))]
 
 
 def _taken(expected: Expected, order: Sequence[int]) -> list[int]:
     """One by one, each where it agrees with what was taken before it."""
-    taken: list[int] = []
+    given, taken = Given(expected), []
     for one in order:
-        if expected.distance2(taken, one) <= GATE2:
+        if given.distance2(one) <= GATE2:
+            given.take(one)
             taken.append(one)
     return taken
+
+
+def _pair(one: int) -> slice:
+    return slice(2 * one, 2 * one + 2)

@@ -12,7 +12,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.smoother.agreement import GATE2, Expected, agreeing, most_against
+from base_station.fusion.smoother.agreement import (
+    GATE2,
+    Expected,
+    Given,
+    agreeing,
+    most_against,
+)
 from base_station.fusion.smoother.chain import WALKED, Chain, WalkNoise
 from base_station.fusion.smoother.graph import Graph
 from base_station.fusion.smoother.landmarks import Landmark
@@ -89,10 +95,13 @@ class _Solving:
                 continue
             expected = self._graph.expected(unit_id, evidence.places)
             used = agreeing(expected)
+            given = Given(expected, used)
             self._graph.places[unit_id] = [evidence.places[one] for one in used]
             for one, place in enumerate(evidence.places):
                 if one not in used:
-                    self._verdicts[place.name] = _refused(expected, evidence.places, used, one)
+                    self._verdicts[place.name] = _refused(
+                        expected, given, evidence.places, used, one
+                    )
 
     def _drop_misfits(self) -> None:
         """Scale and drift come in with the later steps only: what then does not fit goes too."""
@@ -182,13 +191,13 @@ class _Solving:
 
 
 def _refused(
-    expected: Expected, places: Sequence[PlaceSeen], used: Sequence[int], one: int
+    expected: Expected, given: Given, places: Sequence[PlaceSeen], used: Sequence[int], one: int
 ) -> Verdict:
-    innovation, _ = expected.given(used, one)
+    innovation, _ = given.of(one)
     against = most_against(expected, used, one)
     return Verdict(
         used=False,
         residual_m=float(np.linalg.norm(innovation)),
-        sigmas=float(np.sqrt(expected.distance2(used, one))),
+        sigmas=float(np.sqrt(given.distance2(one))),
         against="" if against is None else places[against].name,
     )
