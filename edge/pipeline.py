@@ -38,6 +38,7 @@ from shared.messages import EventKind, Message, Status, Temperature, UnitDescrip
 
 LIVE = Timeline()
 _MOST_SIGHTED = 1000  # things told from each other
+_ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
 _DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
 
 
@@ -90,6 +91,7 @@ class TrackerPipeline:
         self._temperature_times = Decimator(_rate_hz(TEMPERATURE))
         self._battery: float | None = None
         self._mayday = mayday
+        self._mayday_ns: int | None = None  # when it was pressed and said
         self._has_gps = False
         self._journal_pending = 0
         self._sighted_ns: dict[tuple[str, str], int] = {}
@@ -181,13 +183,19 @@ class TrackerPipeline:
         return [sighting(self._stamper.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
-        """A mayday stays until the wearer takes it back."""
-        pressed = press.button == MAYDAY
-        if pressed == self._mayday:
+        """A mayday stays until the wearer takes it back.  Pressed again it is said again: somebody
+        at the station may have resolved the first one.
+        """
+        if press.button == CANCEL:
+            if not self._mayday:
+                return []
+            self._mayday = False
+            return [self._event(EventKind.MAYDAY_CANCELLED, mono_ns, "button")]
+        before_ns, now_ns = self._mayday_ns, press.t_ns
+        if self._mayday and before_ns is not None and 0 <= now_ns - before_ns < _ONE_PRESS_NS:
             return []
-        self._mayday = pressed
-        kind = EventKind.MAYDAY if pressed else EventKind.MAYDAY_CANCELLED
-        return [self._event(kind, mono_ns, "button")]
+        self._mayday, self._mayday_ns = True, now_ns
+        return [self._event(EventKind.MAYDAY, mono_ns, "button")]
 
     def _periodic(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
         t_ns = _last_source_ns(batch)

@@ -6,6 +6,8 @@ import math
 from dataclasses import replace
 from datetime import UTC, datetime
 
+import pytest
+
 from edge.calibration import Calibration, identity
 from edge.calibration.model import Gyroscope
 from edge.pipeline import TrackerPipeline, UnitIdentity
@@ -73,6 +75,38 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
     cancelled = of(pipe.step(others_only(ButtonPress(4 * NS_PER_S, "cancel"))), UnitEvent)
     assert [event.kind for event in cancelled] == [EventKind.MAYDAY_CANCELLED]
     assert not of(steps(pipe, walk(300, 5.0), []), Status)[-1].mayday
+
+
+@pytest.mark.parametrize(("again_s", "says"), [(0.5, 0), (2.9, 0), (3.1, 1), (600.0, 1), (-5.0, 1)])
+def test_a_mayday_that_is_pressed_again_is_said_again(again_s: float, says: int):
+    """The first one has been resolved, and now its wearer is in need again."""
+    pipe = pipeline()
+    pipe.step(others_only(ButtonPress(10 * NS_PER_S, "mayday")))
+    again_ns = round((10.0 + again_s) * NS_PER_S)
+    events = of(pipe.step(others_only(ButtonPress(again_ns, "mayday"))), UnitEvent)
+    assert [event.kind for event in events] == [EventKind.MAYDAY] * says
+
+
+def test_a_mayday_that_was_taken_back_is_said_anew_at_once():
+    pipe = pipeline()
+    kinds = [
+        event.kind
+        for tenth, button in enumerate(("mayday", "cancel", "cancel", "mayday"))
+        for event in of(pipe.step(others_only(ButtonPress(tenth * 10**8, button))), UnitEvent)
+    ]
+    assert kinds == [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
+
+
+def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_are_remembered(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    """Telephones change what they call themselves every few minutes, all day."""
+    monkeypatch.setattr("edge.pipeline._MOST_SIGHTED", 3)
+    pipe = pipeline()
+    for number in range(20):
+        seen = SightingSample(number, "beacon", f"b{number}", 2.0, 1.0)
+        assert len(of(pipe.step(others_only(seen)), Sighting)) == 1
+    assert len(pipe._sighted_ns) <= 3
 
 
 def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
