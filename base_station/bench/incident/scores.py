@@ -79,13 +79,12 @@ class Scores:
 
     def add(self, other: Scores) -> None:
         """Those of other people."""
-        for mine, theirs in (
-            (self.errors_m, other.errors_m),
-            (self.held, other.held),
-            (self.astray, other.astray),
-        ):
-            for stage, rows in theirs.items():
-                mine[stage] += rows
+        for stage, errors_m in other.errors_m.items():
+            self.errors_m[stage] += errors_m
+        for stage, held in other.held.items():
+            self.held[stage] += held
+        for how, astray in other.astray.items():
+            self.astray[how] += astray
         self.seams_m += other.seams_m
 
     def ce_m(self, stage: str, percent: float) -> float:
