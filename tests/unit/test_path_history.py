@@ -97,7 +97,9 @@ def test_breaks_and_doubts_stand_where_they_were(at: Callable[..., Position]) ->
     ):
         history.note(at(t_s, north_m, boot_id), round(t_s * NS_PER_S), jumped)
     history.note(at(4.0, 0.1, 2, quality=Quality.DEGRADED), 4 * NS_PER_S, jumped=False)
-    flags = history.arrays().flags.tolist()
+    arrays = history.arrays()
+    flags = arrays.flags.tolist()
+    assert arrays.moving_s.sum() == 2.0, "how long a jump took nobody knows"
     assert flags.count(BREAK) == 1
     assert flags.count(RESTART) == 1
     assert flags[-1] == DOUBTFUL
@@ -150,11 +152,14 @@ def test_what_comes_late_fills_a_gap(at: Callable[..., Position]) -> None:
     before = history.arrays()
     fill(history, at(12.0, 12.0))
     fill(history, at(12.5, 12.5))
+    fill(history, at(17.0, 17.0, quality=Quality.DEGRADED))
     fill(history, at(15.0, 15.0, boot_id=9))
     after = history.arrays()
-    assert len(after) == len(before) + 1
+    assert len(after) == len(before) + 2
     row = after.own_m[:, 0].tolist().index(12.0)
+    assert after.flags[row : row + 2].tolist() == [0, DOUBTFUL]
     assert after.down_m[row] == -12.0, "as it was estimated for that time"
+    assert after.moving_s[row] == pytest.approx(10.0), "half of the way"
     assert after.moving_s.sum() == pytest.approx(before.moving_s.sum())
 
 
