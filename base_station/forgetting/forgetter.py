@@ -11,6 +11,7 @@ import logging
 import shutil
 import time
 from collections.abc import Callable, Collection, Iterator
+from concurrent.futures import Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,6 +51,7 @@ from shared.messages.station import Action, ForgetWearers
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
 _ACTIONS = OPERATOR.key(STATION_ID)
+_ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
 _BEGUN = "forgetting-begun.json"  # beside the wishes; what it holds, no wish does
 Progress = Callable[[float], None]  # hears the fraction done
@@ -143,7 +145,7 @@ class Forgetter:
         pulls: Pulls,
         act: Callable[[str, Action], object] = lambda _by, _action: None,
     ) -> None:
-        """``act`` has the running station forget what it holds in memory."""
+        """``act`` has the running station forget what it holds in memory, and may give a Future."""
         self._log = log
         self._store = store
         self._checkpoints = checkpoints
@@ -190,8 +192,7 @@ class Forgetter:
     def _forget(
         self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: Tally
     ) -> Forgotten:
-        for unit_id in sorted(erasure.unit_ids):
-            self._act(by, ForgetWearers(unit_id))
+        self._forget_in_memory(by, erasure)
         self._checkpoints.clear()
         self._rewrite_log(erasure, on_progress, tally)
         with self._store.write() as session:
@@ -204,6 +205,16 @@ class Forgetter:
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
         return done
+
+    def _forget_in_memory(self, by: str, erasure: Erasure) -> None:
+        """Done when this returns: what the station saved before that would bring them back."""
+        acted = [self._act(by, ForgetWearers(unit_id)) for unit_id in sorted(erasure.unit_ids)]
+        try:
+            for one in acted:
+                if isinstance(one, Future):
+                    one.result(_ACTED_WITHIN_S)
+        except TimeoutError as error:
+            raise StoreError("the station did not get to what it holds in memory") from error
 
     def _rewrite_log(self, erasure: Erasure, on_progress: Progress, tally: Tally) -> None:
         segments = [*self._log.complete_segments(), *self._set_aside()]

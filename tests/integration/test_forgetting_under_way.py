@@ -6,6 +6,7 @@ import asyncio
 import hashlib
 import shutil
 from collections.abc import Callable, Collection, Iterator
+from concurrent.futures import Future
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, cast
@@ -314,6 +315,33 @@ def test_what_cannot_be_read_of_the_log_is_told(
     damage: list[str] = []
     list(read_log(DataFolder(folder).log, on_damage=damage.append))
     assert [paths[-1].name in one for one in damage] == [True]
+
+
+def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
+    tmp_path: Path, told: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What it saves before that has everything in it."""
+    data, happened = DataFolder(shutil.copytree(told, tmp_path / "station")), list[str]()
+
+    class Acted(Future[None]):
+        def result(self, timeout: float | None = None) -> None:
+            assert timeout is not None
+            happened.append("acted")
+
+    checkpoints = Checkpoints(data.checkpoints)
+    monkeypatch.setattr(checkpoints, "clear", lambda: happened.append("cleared"))
+    with Store(data.database) as store:
+        Forgetter(
+            ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()), SystemClock(),
+            NoPulls(), lambda _by, _action: Acted(),
+        ).incident("ada", "i1")  # fmt: skip
+        assert happened == ["acted", "acted", "cleared", "cleared"]
+        monkeypatch.setattr(forgetter_module, "_ACTED_WITHIN_S", 0.0)
+        with pytest.raises(StoreError, match="did not get to"):
+            Forgetter(
+                ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()),
+                SystemClock(), NoPulls(), lambda _by, _action: Future(),
+            ).person("ada", "p-77")  # fmt: skip
 
 
 def test_who_wore_nothing_and_is_gone_already_is_in_the_audit(tmp_path: Path) -> None:
