@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from base_station.fusion.fixes.sky import OWN_PART, Sky, common_m2
+from base_station.fusion.fixes.sky import COMMON_MOST_M, OWN_PART, Sky, common_m2
 from base_station.fusion.port import PlaceFix
 from base_station.pins.evidence import evidence_of_all, receiver_of_station
 from shared.clock import NS_PER_S
@@ -36,6 +36,11 @@ def test_what_the_station_s_receiver_errs_by_is_mostly_everybody_s() -> None:
     assert 10.0 < fix.north_m < 11.6
     assert 9.0 < fix.east_m < 10.0
     assert 0.74 * STD_M < fix.horizontal_std_m < 0.95 * STD_M
+
+
+def test_what_is_everybody_s_is_part_of_a_good_receiver_s_error_and_little_of_a_bad_one_s() -> None:
+    assert common_m2(STD_M) < 0.5 * STD_M**2
+    assert common_m2(20.0) == common_m2(50.0) == COMMON_MOST_M**2
 
 
 def test_it_does_what_it_says() -> None:
