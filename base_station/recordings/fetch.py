@@ -215,7 +215,9 @@ class Fetch:
                 self._require_room(file.size_bytes - offset)
                 length = min(self._pace.answer_bytes, file.size_bytes - offset)
                 question = f"piece?path={file.path};offset={offset};length={length}"
-                piece = yield from self._answer(question, RecordingPiece.from_bytes)
+                piece = yield from self._try(question, RecordingPiece.from_bytes)
+                if piece is None:
+                    continue  # for less: perhaps the link cannot carry so much
                 self._pace.note(self._took_ns)
                 if piece.gone:
                     return False
@@ -233,20 +235,27 @@ class Fetch:
     def _answer(self, question: str, read: Callable[[bytes], T]) -> Steps[T]:
         """Ask until there is an answer, once a step."""
         while True:
-            yield  # others have their turn, which is no time that the link took
-            asked_ns = self._clock.monotonic_ns()
-            try:
-                answer = self._ask(self.wanted.unit_id, question)
-                self._took_ns = self._clock.monotonic_ns() - asked_ns
-                if answer is not None:
-                    understood = read(answer)
-                    self.state, self.problem = FetchState.FETCHING, ""
-                    return understood
-            except Exception as error:  # noqa: BLE001  # whatever it is, it is no answer
-                logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
-            self._pace.note_nothing()
-            self.state = FetchState.WAITING
-            self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
+            answer = yield from self._try(question, read)
+            if answer is not None:
+                return answer
+
+    def _try(self, question: str, read: Callable[[bytes], T]) -> Steps[T | None]:
+        """Ask once; None where there is no answer."""
+        yield  # others have their turn, which is no time that the link took
+        asked_ns = self._clock.monotonic_ns()
+        try:
+            answer = self._ask(self.wanted.unit_id, question)
+            self._took_ns = self._clock.monotonic_ns() - asked_ns
+            if answer is not None:
+                understood = read(answer)
+                self.state, self.problem = FetchState.FETCHING, ""
+                return understood
+        except Exception as error:  # noqa: BLE001  # whatever it is, it is no answer
+            logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
+        self._pace.note_nothing()
+        self.state = FetchState.WAITING
+        self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
+        return None
 
     def _write_hash(self, path: str, digest: str) -> None:
         """Among those of other files."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import random
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -229,6 +230,29 @@ def test_what_other_units_take_is_no_time_of_this_ones_link(
         clock.advance(others_s)
     fetch.close()
     assert (unit.pieces[-1] > 10 * unit.pieces[0]) == grows
+
+
+def test_a_link_that_gets_thin_is_asked_for_as_little_as_it_carries(tmp_path: Path) -> None:
+    """What it cannot carry in time is not asked for again and again."""
+    content = random.Random(1).randbytes(300_000)
+    unit, carried_bytes = TellingUnit(a=content), len(content)
+
+    def ask(unit_id: str, question: str) -> bytes | None:
+        answer = unit.ask(unit_id, question)
+        return answer if len(answer) <= carried_bytes else None
+
+    fetch = Fetch(ask, tmp_path, Wanted(U, 1, 2), ManualClock())
+    for _ in range(8):
+        fetch.step()
+    assert unit.pieces[-1] > 10 * unit.pieces[0]
+    carried_bytes = 2000
+    came = fetch.done_bytes
+    for _ in range(10):
+        fetch.step()
+    assert fetch.done_bytes > came
+    carried_bytes = len(content)
+    finish(fetch)
+    assert pulled(tmp_path) == {"a.mcap": content}
 
 
 def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path: Path) -> None:
