@@ -35,6 +35,7 @@ from base_station.fusion.port import (
 from base_station.fusion.remembered import Memory
 from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
 from base_station.site.floor_grid import FloorGrid
+from base_station.site.roaming import RADII_95, roamed_m
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
@@ -104,11 +105,11 @@ class GpsInertialFuser:
     def consider(self, grid: FloorGrid | None) -> None:
         self._horizontal.consider(grid)
 
-    def advance(self, position: Position) -> str:
+    def advance(self, position: Position, away_s: float = 0.0) -> str:
         memory, last = self._memory, self._memory.last
         t_ns = position.header.t_mono_ns
         if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart(max(0, last.header.t_mono_ns - t_ns))
+            self._restart(max(0, last.header.t_mono_ns - t_ns), away_s)
             last = None
         duration_s = 0.0
         if last is not None:
@@ -251,12 +252,13 @@ class GpsInertialFuser:
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
-    def _restart(self, back_ns: int) -> None:
-        """The unit began anew: its frame starts where the wearer got to since, heading unknown.
+    def _restart(self, back_ns: int, away_s: float) -> None:
+        """The unit began anew: its frame starts where the wearer got to since, heading unknown,
+        and no better known than while it was silent.
         Where its clock went back with it, fixes are as old as they were.
         """
         memory = self._memory
-        self._horizontal.spread(self._kind.restart_m**2)
+        self._horizontal.spread(self._kind.restart_m**2 + (roamed_m(away_s) / RADII_95) ** 2)
         self._horizontal.forget_heading()
         memory.path = PathMemory()
         memory.trust.lose_path()

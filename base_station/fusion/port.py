@@ -110,10 +110,11 @@ class Fuser(Protocol):
         """What stands in the way, from now on; None: nothing is known of it.  Is not saved."""
         ...
 
-    def advance(self, position: Position) -> str:
+    def advance(self, position: Position, away_s: float = 0.0) -> str:
         """Follow the unit's own path; says why where a position could not be followed.
 
-        A position of another boot than the last begins a new frame where the unit now is.
+        A position of another boot than the last begins a new frame where the unit has got to in
+        ``away_s``, for which nothing was known of its path.
         """
         ...
 

@@ -6,6 +6,7 @@ the live state.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 
 from base_station.fusion.fixes.sky import Sky
@@ -76,12 +77,13 @@ class Positioning:
         """Whether pins had waited for it: the past is to be solved again."""
         told = self._told(unit)
         fuser, history = told[0], _history(state, unit)
-        reason = fuser.advance(position)
+        t_ns = station_ns(state, unit, position.header.t_mono_ns)
+        away_s = math.inf if history.end_ns is None else (t_ns - history.end_ns) / NS_PER_S
+        reason = fuser.advance(position, away_s)
         if reason:
             _count(unit, reason)
         for one in told[1:]:
-            one.advance(position)
-        t_ns = station_ns(state, unit, position.header.t_mono_ns)
+            one.advance(position, away_s)
         outside = is_outside(state.plan, unit.fused, history.shown_m)
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=outside)
         bearing = _bearing(state, position)

@@ -128,6 +128,20 @@ def test_who_is_not_heard_is_within_walls(script: Script) -> None:
     assert state.units[U].reach == ()
 
 
+@pytest.mark.parametrize(("away_s", "most_m"), [(5, 8.0), (20, 11.0), (60, 27.0), (3600, 110.0)])
+def test_who_starts_again_is_known_no_better_than_while_not_heard(
+    script: Script, away_s: int, most_m: float
+) -> None:
+    """A battery is changed: whoever goes on walking meanwhile is not where he was."""
+    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    script.position("FF-01", 0.0, 0.0)
+    script.boot_ids["FF-01"] = 8
+    script.now_s += away_s
+    script.position("FF-01", 0.0, 0.0)
+    std_m = script.fused[-1].std_north_m
+    assert max(5.0, 0.4 * min(away_s, 250)) < std_m < most_m
+
+
 def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) -> None:
     """The unit begins 6 m from where people think; its fixes of the silent minute come late."""
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
