@@ -10,7 +10,11 @@ import pytest
 from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
 from base_station.events import PinsTouched, Refused, TrailFilled
-from base_station.pins.pinning import floors_along
+from base_station.fusion.path.points import FIX_ROW, Point, arrays_of, rows_of
+from base_station.live_state import StationState
+from base_station.pins.evidence import floors_said, ties_of
+from base_station.pins.pinning import floors_along, trail_of
+from base_station.trail import TRAIL_POINTS
 from shared.clock import NS_PER_S
 from shared.messages.pins import (
     RemoveBeacon,
@@ -246,6 +250,43 @@ def test_a_pin_of_now_counts_though_the_unit_s_last_word_is_some_seconds_old(wal
     walk.go(2, silent=("FF-01",))
     walk.pin("p2", "FF-01", 306.0)
     assert walk.state("p2") == "waiting"
+
+
+def test_a_floor_that_is_said_of_a_time_to_come_numbers_no_storeys_yet(walk: Walk) -> None:
+    walk.go(60, silent=("FF-01",))
+    north_m, east_m = truth(360.0)
+    t_ns = walk.script.t_ns
+    walk.script.act(SetPin("p", "FF-01", t_ns, north_m, east_m, 0.5, 2, None, 0.0, ""))
+    assert walk.state("p") == "waiting"
+    assert floors_said(walk.script.pipeline.state) == []
+    walk.go(1)
+    assert [one.floor for one in floors_said(walk.script.pipeline.state)] == [2]
+
+
+def test_a_meeting_ties_two_whose_paths_have_both_come_to_it() -> None:
+    walk = Walk("FF-01", "FF-02", "FF-03")
+    state = walk.script.pipeline.state
+    walk.go(60, silent=("FF-03",))
+    walk.go(60, silent=("FF-02", "FF-03"))
+    for pin_id, other_id, ago_s in (("m1", "FF-02", 0), ("m2", "FF-02", 70), ("m3", "FF-03", 0)):
+        t_ns = walk.script.t_ns - ago_s * NS_PER_S
+        walk.script.act(SetMeeting(pin_id, "FF-01", other_id, t_ns, 1.0, ""))
+    assert [(tie.name, tie.unit_id, tie.other_id) for tie in ties_of(state)] == [
+        ("m2", "FF-01", "FF-02")
+    ]
+    walk.go(1)
+    assert [tie.name for tie in ties_of(state)] == ["m1", "m2", "m3"]
+
+
+def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() -> None:
+    count = TRAIL_POINTS + 300
+    rows = rows_of([Point((1 + second) * NS_PER_S) for second in range(count)])
+    places_m = np.zeros((count, 3))
+    places_m[:, 0] = np.arange(count)
+    trail = trail_of(StationState(), arrays_of(rows, np.empty(0, FIX_ROW)), places_m)
+    assert len(trail) == TRAIL_POINTS
+    assert (trail[0].north_m, trail[-1].north_m) == (0.0, count - 1.0)
+    assert np.diff([step.north_m for step in trail]).max() == 2.0
 
 
 def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: Walk) -> None:
