@@ -1,0 +1,126 @@
+"""Who wore what when, as the log tells: of one person, and of everybody in one incident."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.forgetting.erasure import (
+    Record,
+    Wearing,
+    erasure_of_incident,
+    erasure_of_person,
+    id_put_in,
+)
+from shared.channels import OPERATOR
+from shared.codec import encode
+from shared.errors import UserError
+from shared.messages import STATION_ID, Header, OperatorAction
+from shared.messages.station import Action, Assign, CloseIncident, OpenIncident, Unassign
+
+NOW_NS = 1000
+OPEN, CLOSE = OpenIncident("i1", "Mill Lane"), CloseIncident("i1")
+
+
+def done(*actions: tuple[int, Action]) -> list[Record]:
+    """At these times; each has its time as its id."""
+    return [
+        (
+            t_ns,
+            OPERATOR.key(STATION_ID),
+            encode(OperatorAction(Header(STATION_ID, 1, t_ns, 0), f"a{t_ns}", "chief", action)),
+        )
+        for t_ns, action in actions
+    ]
+
+
+def ana(unit_id: str, name: str = "Ana") -> Assign:
+    return Assign(unit_id, "p1", name, "", "")
+
+
+def bo(unit_id: str) -> Assign:
+    return Assign(unit_id, "p2", "Bo Lind", "", "")
+
+
+@pytest.mark.parametrize(
+    ("actions", "wearings"),
+    [
+        ([(10, ana("A")), (20, Unassign("A"))], [("A", 10, 20)]),
+        ([(10, ana("A")), (20, Unassign("B"))], [("A", 10, NOW_NS)]),
+        ([(10, ana("A")), (20, bo("A"))], [("A", 10, 20)]),
+        ([(10, ana("A")), (20, bo("B"))], [("A", 10, NOW_NS)]),
+        ([(10, ana("A")), (20, ana("B"))], [("A", 10, 20), ("B", 20, NOW_NS)]),
+        ([(10, ana("A")), (20, ana("A")), (30, Unassign("A"))], [("A", 10, 30)]),
+        ([(10, bo("A")), (20, ana("A")), (30, bo("A")), (40, ana("A"))],
+         [("A", 20, 30), ("A", 40, NOW_NS)]),
+        ([(10, bo("A")), (20, Unassign("A"))], []),
+    ],
+)  # fmt: skip
+def test_a_person_wears_a_unit_until_it_is_handed_back_or_on(
+    actions: list[tuple[int, Action]], wearings: list[tuple[str, int, int]]
+) -> None:
+    erasure = erasure_of_person(done(*actions), "p1", "", NOW_NS)
+    assert erasure.wearings == tuple(Wearing(*one) for one in wearings)
+
+
+def test_every_name_that_a_person_had_is_known_the_longest_first() -> None:
+    actions = done((10, ana("A")), (20, ana("A", " ")), (30, ana("A", "Ana Kovač")), (40, bo("A")))
+    assert erasure_of_person(actions, "p1", "Anka", NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
+
+
+def test_the_moment_of_handing_back_is_the_next_ones() -> None:
+    erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", "", NOW_NS)
+    assert [erasure.covers("A", t_ns) for t_ns in (9, 10, 19, 20)] == [False, True, True, False]
+    assert not erasure.covers("B", 15)
+
+
+def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
+    records = done(
+        (5, bo("C")), (6, Unassign("C")),  # before
+        (10, ana("A")),
+        (20, OPEN), (30, bo("B")), (35, ana("D")), (36, Unassign("B")), (40, CLOSE),
+        (50, bo("E")),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    assert erasure.wearings == tuple(Wearing(one, 20, 40) for one in "ABD")
+    assert erasure.names == ("Bo Lind", "Ana")
+    assert (erasure.from_ns, erasure.until_ns) == (20, 40)
+    assert erasure.worn_before == ("A",)
+    assert erasure.worn_after == (ana("D"),), "who changes for another unit wears one"
+    assert not erasure.covers("A", 40)
+
+
+def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
+    records = done(
+        (1, OpenIncident("i0", "")), (2, bo("B")), (3, CloseIncident("i0")), (4, Unassign("B")),
+        (10, ana("A")), (20, OPEN), (40, CLOSE),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    assert (sorted(erasure.unit_ids), erasure.names) == (["A"], ("Ana",))
+
+
+@pytest.mark.parametrize(("actions", "said"), [([(20, OPEN)], "open"), ([], "knows no incident")])
+def test_what_is_open_or_unknown_is_not_forgotten(
+    actions: list[tuple[int, Action]], said: str
+) -> None:
+    with pytest.raises(UserError, match=said):
+        erasure_of_incident(done(*actions), "i1")
+
+
+def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
+    records = done((10, ana("A")), (11, bo("B")), (20, OPEN), (40, CLOSE))
+    erasure = erasure_of_incident(records, "i1")
+    assert erasure.without_put_in(records) == erasure
+    header = Header(STATION_ID, 1, 1, 0)
+    there = [
+        (t_ns, OPERATOR.key(STATION_ID), encode(OperatorAction(header, name, "chief", action)))
+        for t_ns, name, action in (
+            (20, id_put_in("a20", "A"), Unassign("A")),
+            (40, id_put_in("a40", "B"), bo("B")),
+        )
+    ]
+    left = erasure.without_put_in(there)
+    assert (left.worn_before, left.worn_after) == (("B",), (ana("A"),))
+    assert erasure.is_put_in("a20-A")
+    assert erasure.is_put_in("a40-B")
+    assert not erasure.is_put_in("a20")
+    assert not erasure.is_put_in("a201-A")
