@@ -64,6 +64,7 @@ def test_a_person_wears_a_unit_until_it_is_handed_back_or_on(
 
 def test_every_name_that_a_person_had_is_known_the_longest_first() -> None:
     actions = done((10, ana("A")), (20, ana("A", " ")), (30, ana("A", "Ana Kovač")), (40, bo("A")))
+    actions.insert(1, (15, OPERATOR.key(STATION_ID), b"\xffa newer program's"))
     assert erasure_of_person(actions, "p1", "Anka", NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
 
 
