@@ -205,6 +205,17 @@ def test_the_cadence_is_of_the_last_strides_also_where_the_clock_was_set_back():
     assert monitor.cadence_hz(3 * NS_PER_S) == pytest.approx(2.0, rel=0.2)
 
 
+@pytest.mark.parametrize(("after_s", "runs"), [(2.4, True), (2.6, False)])
+def test_who_has_come_down_for_the_last_time_goes_on_for_two_and_a_half_seconds(after_s, runs):
+    """The foot still stirs: what it does now is known from footfalls that have not come yet."""
+    monitor = ActivityMonitor()
+    strides = footsteps([(float(t), 3.0 * t, 0.0, t % 2 == 0) for t in range(13)])
+    monitor.push(samples(20.0, force=(0.0, 0.0, -9.81), shake=1.0), strides)
+    t_ns = round((12.0 + after_s) * NS_PER_S)
+    assert monitor.activity(t_ns) is (Activity.RUNNING if runs else Activity.WALKING)
+    assert (monitor.cadence_hz(t_ns) > 0.0) is runs
+
+
 def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity]:
     """What the unit says from ``after_s`` into each time in which the wearer does ``kind``."""
     score = ActivityScore()
