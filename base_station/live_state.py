@@ -124,9 +124,15 @@ class UnitState(Sender):
 
     @property
     def path_boot(self) -> BootState:
-        """In whose clock, and since whose start, its positions are."""
-        agent = self.tracker
-        return self.boots[-1] if agent is None or not self.is_tracked_remotely else agent.boots[-1]
+        """In whose clock, and since whose start, its positions are: of a run that has only just
+        begun there are none yet.
+        """
+        agent, position = self.tracker, self.position
+        boots = self.boots if agent is None or not self.is_tracked_remotely else agent.boots
+        if position is None or boots[-1].boot_id == position.header.boot_id:  # nearly always
+            return boots[-1]
+        of_path = (one for one in boots if one.boot_id == position.header.boot_id)
+        return next(of_path, boots[-1])
 
     @property
     def shown_status(self) -> Status | None:

@@ -109,7 +109,7 @@ class GpsInertialFuser:
         memory, last = self._memory, self._memory.last
         t_ns = position.header.t_mono_ns
         if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart(max(0, last.header.t_mono_ns - t_ns), away_s)
+            self._restart(last.header.t_mono_ns, t_ns, away_s)
             last = None
         duration_s = 0.0
         if last is not None:
@@ -252,12 +252,15 @@ class GpsInertialFuser:
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
-    def _restart(self, back_ns: int, away_s: float) -> None:
+    def _restart(self, last_ns: int, t_ns: int, away_s: float) -> None:
         """The unit began anew: its frame starts where the wearer got to since, heading unknown,
         and no better known than while it was silent.
-        Where its clock went back with it, fixes are as old as they were.
+        Fixes are as old as they were, whatever its clock has done; where nobody knows how long it
+        was away, it went on or went back.
         """
         memory = self._memory
+        known = 0.0 < away_s < math.inf
+        back_ns = last_ns + round(away_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
         self._horizontal.spread(self._kind.restart_m**2 + (roamed_m(away_s) / RADII_95) ** 2)
         self._horizontal.forget_heading()
         memory.path = PathMemory()

@@ -9,11 +9,13 @@ import msgspec
 import pytest
 
 from base_station.api.wire import ClockView
+from base_station.bench.rig import said
 from base_station.events import Refused, UnitTouched
 from base_station.live_state import UnitState
 from base_station.trail import TRAIL_POINTS
 from base_station.unit_views import unit_views
 from base_station.views import StationFacts, health_view, snapshot
+from shared.clock import NS_PER_S
 from shared.messages import EventKind, Heartbeat
 from shared.messages.pins import SetMeeting, SetPin
 from shared.messages.station import (
@@ -81,6 +83,42 @@ def test_messages_of_an_earlier_run_are_old_news(script: Script) -> None:
     assert unit(script).status is not None
     script.status(U, steps=99, header=before)
     assert unit(script).status.steps == 1  # type: ignore[union-attr]
+
+
+def rebooted(script: Script, seconds: int) -> None:
+    """The unit's clock begins anew, and its tracker does not run yet."""
+    script.boot_ids[U] = 8
+    for second in range(seconds):
+        script.now_s += 1.0
+        header = script.header(U, captured_s=second - 900.0)
+        script.say(said.status(header))
+        if script.pipeline.state.anchor is not None:
+            script.say(said.gps_fix(script.header(U, captured_s=second - 900.0), 52.0, 4.0))
+
+
+def test_an_old_place_stays_old_when_the_unit_begins_anew(script: Script) -> None:
+    script.position(U, 1.0, 2.0)
+    script.wait(30)
+    rebooted(script, 5)
+    script.act(SetAnchor(52.0, 4.0, 50.0, 0.0))
+    assert script.fused[-1].t_meas_ns == script.t_ns - 35 * NS_PER_S
+
+
+def test_fixes_of_a_run_that_has_said_no_position_yet_are_of_now(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 50.0, 0.0))
+    script.position(U, 0.0, 0.0)
+    script.wait(30)
+    rebooted(script, 20)
+    assert unit(script).not_used == {}
+    shown = script.fused[-1]
+    assert (shown.t_meas_ns, shown.since_gps_s) == (script.t_ns, 0.0)
+    assert shown.std_north_m < 20.0
+    script.now_s += 10.0
+    script.say(said.position(script.header(U, captured_s=-871.0)))
+    assert script.fused[-1].since_gps_s == 10.0
+    script.now_s += 1.0
+    script.say(said.gps_fix(script.header(U, captured_s=-870.0), 52.0, 4.0))
+    assert script.fused[-1].since_gps_s == 0.0
 
 
 @pytest.mark.parametrize(
