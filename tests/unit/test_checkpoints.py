@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 from threading import Thread
+from types import SimpleNamespace
 
 import pytest
 
-from base_station.past.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints
+from base_station.past.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints, _program
 from shared.clock import NS_PER_S
 from tests.live_station import make_pipeline
 
@@ -68,6 +69,29 @@ def test_those_of_another_program_are_left(tmp_path: Path, monkeypatch: pytest.M
     assert Checkpoints(tmp_path).latest() is not None
     monkeypatch.setattr("base_station.past.checkpoints._program", lambda: 7)
     assert Checkpoints(tmp_path).latest() is None
+
+
+def test_any_module_that_is_another_makes_another_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What lies beside the modules, and others may be changing just now, does not."""
+    package = SimpleNamespace(__path__=[str(tmp_path)])
+    monkeypatch.setattr("base_station.past.checkpoints.base_station", package)
+    monkeypatch.setattr("base_station.past.checkpoints.shared", package)
+    programs = set()
+    for name in ("a.py", "inside/deeper/b.py"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("x = 1\n", encoding="utf-8")
+        programs.add(_program())
+        path.write_text("x = 2\n", encoding="utf-8")
+        programs.add(_program())
+    assert len(programs) == 4
+    for name in ("a.txt", "node_modules/c.py", "__pycache__/a.py"):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("x = 3\n", encoding="utf-8")
+        assert _program() in programs
 
 
 def test_all_of_them_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
