@@ -17,6 +17,7 @@ from base_station.pins.pinning import floors_along, trail_of
 from base_station.trail import TRAIL_POINTS
 from shared.clock import NS_PER_S
 from shared.messages.pins import (
+    PlaceBeacon,
     RemoveBeacon,
     RemovePin,
     SetMeeting,
@@ -401,6 +402,29 @@ def test_bad_meetings_are_refused_with_a_sentence(
     (refused,) = [output for output in outputs if isinstance(output, Refused)]
     assert sentence in refused.reason
     assert walk.script.pipeline.state.pins == {}
+
+
+@pytest.mark.parametrize(
+    ("action", "sentence"),
+    [
+        (StartTogether("s", (), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""), "nobody to place"),
+        (
+            StartTogether("s", ("FF-01", "nobody"), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""),
+            "no registered unit",
+        ),
+        (PlaceBeacon("b", "", 1.0, 1.0, None, 1.0, math.nan), "number of metres"),
+        (PlaceBeacon("b", "", 1.0, 1.0, None, 1.0, -1.0), "number of metres"),
+        (PlaceBeacon("b", "", math.inf, 1.0, None, 1.0, 1.0), "no pair of numbers"),
+    ],
+)
+def test_bad_starts_and_beacons_are_refused_with_a_sentence(
+    walk: Walk, action: StartTogether | PlaceBeacon, sentence: str
+) -> None:
+    (refused,) = walk.script.act(action)
+    assert isinstance(refused, Refused)
+    assert sentence in refused.reason
+    state = walk.script.pipeline.state
+    assert (state.pins, state.beacons) == ({}, {})
 
 
 def test_what_is_not_there_cannot_be_removed() -> None:

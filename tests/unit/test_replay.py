@@ -314,6 +314,7 @@ def test_a_checkpoint_of_another_log_is_left_out(records: list[Record], tmp_path
     state = saving.pipeline.checkpoint()
     source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, state)
     mine = source.latest()
+    assert mine is not None
     source.checkpoints.save(START_NS + 50 * NS_PER_S, 3, state)  # of a log with an event more there
     source.checkpoints.save(START_NS + 60 * NS_PER_S + 1, 1, state)
     source.checkpoints.save(START_NS + 900 * NS_PER_S, 1, state)  # the log was put back
