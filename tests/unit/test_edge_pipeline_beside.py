@@ -111,13 +111,14 @@ def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_ar
 
 def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
     pipe = pipeline()
-    near = SightingSample(0, "beacon", "door-3", 2.5, math.nan)
+    hour_ns = 3600 * NS_PER_S
+    near = SightingSample(hour_ns, "beacon", "door-3", 2.5, math.nan)
     said = [
         message
         for sample in (
             near,
-            replace(near, t_ns=NS_PER_S // 2),
-            replace(near, t_ns=NS_PER_S),
+            replace(near, t_ns=hour_ns + NS_PER_S // 2),
+            replace(near, t_ns=hour_ns + NS_PER_S),
             replace(near, seen_id="door-4"),
             replace(near, kind="ghost"),
             replace(near, seen_id=""),
