@@ -109,6 +109,18 @@ def test_segments_end_by_time_and_are_told_of(tmp_path: Path) -> None:
     assert on_disk(tmp_path) == [bytes([second]) for second in range(25)]
 
 
+def test_what_comes_at_once_is_cut_into_chunks(tmp_path: Path) -> None:
+    """A flipped bit costs a chunk."""
+    writer = SegmentWriter(tmp_path, SegmentPolicy(chunk_bytes=4096))
+    for number in range(100):
+        writer.write(T0_NS, KEY, bytes([number]) * 1000)
+    writer.close()
+    with SegmentReader(segment_paths(tmp_path)[0]) as reader:
+        sizes = [len(chunk.data) for chunk in reader.intact_chunks()]
+    assert len(sizes) > 20
+    assert max(sizes) < 4096 + 1100
+
+
 def test_a_segment_ends_before_its_index_fills_the_memory(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path, SegmentPolicy(index_entries_max=50))
     for number in range(300):
