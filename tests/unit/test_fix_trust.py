@@ -170,6 +170,25 @@ def test_the_best_that_a_taken_fix_claimed_is_what_the_receiver_can() -> None:
         assert trust.doubt_m2(fix_at(60.0, 60.0, 0.0, 3.0), 0.0) > 3.0**2
 
 
+def test_a_fix_that_comes_late_corrects_where_the_wearer_is_now() -> None:
+    """It counts for less than one of now: its slow error is that of its neighbours."""
+    moved_m, known_m = {}, {}
+    for late_s in (0.0, 20.0):
+        fuser = GpsInertial().new()
+        walk_with_fixes(fuser, range(60), std_m=3.0)
+        walk(fuser, range(60, 120))
+        assert fuser.correct(fix_at(119.0, 119.0, 0.0, 8.0)).accepted
+        before = fuser.estimate()
+        assert fuser.correct(fix_at(119.9 - late_s, 119.9 - late_s, 3.0, 3.0)).accepted
+        after = fuser.estimate()
+        assert before is not None
+        assert after is not None
+        moved_m[late_s] = after.east_m - before.east_m
+        known_m[late_s] = after.std_east_m / before.std_east_m
+    assert 0.0 < moved_m[20.0] < moved_m[0.0]
+    assert known_m[0.0] < known_m[20.0] < 1.0
+
+
 def test_a_path_that_jumps_tells_nothing_of_how_a_receiver_jumps() -> None:
     fuser = GpsInertial().new()
     walk_with_fixes(fuser, range(60))
