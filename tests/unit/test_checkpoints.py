@@ -49,8 +49,22 @@ def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
     saved = checkpoints.latest(until_ns=250)
     assert saved is not None
     assert (saved.t_ns, saved.events_at_t) == (200, 2)
+    exactly = checkpoints.latest(until_ns=200)
+    assert exactly is not None
+    assert exactly.t_ns == 200
     assert checkpoints.latest(until_ns=99) is None
     assert checkpoints.latest(until_ns=250, after_ns=200) is None
+
+
+def test_where_the_latest_is_torn_the_one_before_it_is_used(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path)
+    for t_ns in (100, 200, 300):
+        checkpoints.save(t_ns, 1, make_pipeline().checkpoint())
+    newest = max(tmp_path.iterdir())
+    newest.write_bytes(newest.read_bytes()[:-10])
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert saved.t_ns == 200
 
 
 def test_a_file_that_is_none_of_them_is_left(tmp_path: Path) -> None:
