@@ -169,6 +169,14 @@ def compose_agent(
         calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
         description = _description(config, raw, source, calibration, clock)
         pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
+        black_box = BlackBox(
+            folder.black_box,
+            description,
+            round(config.storage.black_box_mb * 1e6),
+            clock,
+            clock.utc_std_s,
+        )
+        in_trouble.callback(black_box.close)
         commands: SimpleQueue[bytes] = SimpleQueue()
         link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
         outbox = Outbox(unit_id, spool, link.publish)
@@ -183,13 +191,7 @@ def compose_agent(
                 desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
                 stamper=stamper,
                 clock=clock,
-                black_box=BlackBox(
-                    folder.black_box,
-                    description,
-                    round(config.storage.black_box_mb * 1e6),
-                    clock,
-                    clock.utc_std_s,
-                ),
+                black_box=black_box,
                 spool=spool,
                 outbox=outbox,
                 link=link,

@@ -6,6 +6,7 @@ most a second is lost to a ``kill -9``.
 
 from __future__ import annotations
 
+import errno
 import logging
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,7 +19,7 @@ from edge.box_time import ahead_of, note_ahead, remove_if_empty
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
-from shared.errors import ConfigError
+from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_began_ns, segment_paths
 from shared.messages import Message, UnitDescription
 
@@ -26,6 +27,7 @@ logger = logging.getLogger(__name__)
 
 _DESCRIBE_EVERY_NS = 60 * NS_PER_S  # so that any segment can be replayed by itself
 _LOOK_EVERY_S = 0.2
+_REFUSAL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO)  # of a disk, for now
 _POLICY = SegmentPolicy(segment_s=120.0)  # a station fetches whole segments of a window
 
 Raw = tuple[Message, ...]
@@ -44,7 +46,8 @@ class BlackBox:
     ) -> None:
         """``utc_std_s``: how well the clock knows station time, 0 where it does not.
 
-        Raises ConfigError where nothing can be written at all.
+        Where the disk is full, or has failed and can only be read, the recording begins as soon as
+        it has room.  Raises LogError where the folder is no use at all.
         """
         self._folder = folder
         self._description = description
@@ -58,13 +61,9 @@ class BlackBox:
         self._described_ns = -_DESCRIBE_EVERY_NS
         self._waiting: SimpleQueue[Raw | None] = SimpleQueue()
         self._problem: str | None = None
-        try:
-            self._make_room()
-            self._writer = SegmentWriter(
-                folder / self._boot_name, _POLICY, lambda _: self._try_to_make_room()
-            )
-        except OSError as error:
-            raise ConfigError(f"the black box cannot be written: {error}") from error
+        self._writer: SegmentWriter | None = None
+        self._try_again_ns = 0
+        self._begin()
         self._thread = Thread(target=self._run, name="black-box", daemon=True)
         self._thread.start()
 
@@ -86,15 +85,34 @@ class BlackBox:
             try:
                 raw = self._waiting.get(timeout=_LOOK_EVERY_S)
             except Empty:
-                self._writer.advance(self._now_ns())
+                if self._writer is not None:
+                    self._writer.advance(self._now_ns())
                 continue
+            if self._writer is None and self._now_ns() >= self._try_again_ns:
+                self._begin()
             if raw is None:
-                self._writer.close()
+                if self._writer is not None:
+                    self._writer.close()
                 return
-            self._write(raw)
-            self._note_problem(self._writer.problem)
+            if self._writer is not None:
+                self._write(self._writer, raw)
+                self._note_problem(self._writer.problem)
 
-    def _write(self, raw: Raw) -> None:
+    def _begin(self) -> None:
+        """Make this boot's folder, where the disk lets it be made."""
+        self._try_to_make_room()
+        try:
+            self._writer = SegmentWriter(
+                self._folder / self._boot_name, _POLICY, lambda _: self._try_to_make_room()
+            )
+        except LogError as error:
+            cause = error.__cause__
+            if not isinstance(cause, OSError) or cause.errno not in _REFUSAL:
+                raise
+            self._try_again_ns = self._now_ns() + NS_PER_S
+            self._note_problem(str(error))
+
+    def _write(self, writer: SegmentWriter, raw: Raw) -> None:
         """Log time is UTC as it was at the start, and never jumps."""
         now_ns = self._now_ns()
         if now_ns - self._described_ns >= _DESCRIBE_EVERY_NS:
@@ -103,7 +121,7 @@ class BlackBox:
         self._note_ahead(now_ns)
         for message in raw:
             key = channel_of(message).key(self._description.header.unit_id)
-            self._writer.write(now_ns, key, encode(message))
+            writer.write(now_ns, key, encode(message))
 
     def _note_ahead(self, now_ns: int) -> None:
         """Where it cannot be written, the next time may do."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from edge.calibration import Calibration, identity, read_calibration, write_calibration
 from edge.config import EdgeConfig
 from edge.samples import SensorDescription
-from shared.errors import ConfigError
+from shared.errors import ConfigError, UserError
 
 _log = logging.getLogger(__name__)
 
@@ -36,6 +36,16 @@ def calibration_in_use(
         _log.warning("the calibration is old (%s); make a new one", calibration.made.date())
     for fault in calibration.faults():
         _log.warning("the calibration is poor: %s; make a new one", fault)
-    used.mkdir(exist_ok=True)
-    write_calibration(calibration, used / f"{identity(calibration)}.toml")
+    _keep(calibration, used)
     return calibration
+
+
+def _keep(calibration: Calibration, used: Path) -> None:
+    copy = used / f"{identity(calibration)}.toml"
+    if copy.exists():
+        return
+    try:
+        used.mkdir(exist_ok=True)
+        write_calibration(calibration, copy)
+    except (OSError, UserError) as error:  # a full disk stops no unit
+        _log.warning("no copy of the calibration is kept: %s", error)

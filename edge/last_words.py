@@ -9,8 +9,8 @@ from edge.commands import REMEMBERED
 from edge.spool import Spool
 from shared.channels import EVENT, REPLY, Channel
 from shared.codec import decode
-from shared.errors import WireError
-from shared.messages import CommandReply, EventKind, Message, UnitEvent
+from shared.errors import StoreError, WireError
+from shared.messages import CommandReply, EventKind, JournalBoot, Message, UnitEvent
 
 logger = logging.getLogger(__name__)
 
@@ -23,7 +23,7 @@ def mayday_before(spool: Spool) -> bool:
     A unit that was stopped in order has said so, and starts afresh; one that has failed had the
     time to say so, and is started again.
     """
-    boots = [boot for boot in spool.boots() if boot.boot_id != spool.boot_id]
+    boots = [boot for boot in _boots(spool) if boot.boot_id != spool.boot_id]
     for event in _newest_first(spool, boots[-1].boot_id, EVENT) if boots else ():
         assert isinstance(event, UnitEvent)
         stopped = event.kind is EventKind.STOPPED and event.detail != FAILED
@@ -37,13 +37,22 @@ def mayday_before(spool: Spool) -> bool:
 def answers_before(spool: Spool) -> list[CommandReply]:
     """What this unit has answered to commands, oldest first, so that it does none of them again."""
     answers: list[CommandReply] = []
-    for boot in reversed(spool.boots()):
+    for boot in reversed(_boots(spool)):
         for answer in _newest_first(spool, boot.boot_id, REPLY):
             assert isinstance(answer, CommandReply)
             answers.append(answer)
             if len(answers) == 2 * REMEMBERED:  # a command has one or two, seldom more
                 return answers[::-1]
     return answers[::-1]
+
+
+def _boots(spool: Spool) -> tuple[JournalBoot, ...]:
+    """None where the disk does not let them be read: the unit starts all the same."""
+    try:
+        return spool.boots()
+    except StoreError as error:
+        logger.warning("what was said before this start is not known: %s", error)
+        return ()
 
 
 def _newest_first(spool: Spool, boot_id: int, channel: Channel) -> Iterator[Message]:

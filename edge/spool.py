@@ -11,7 +11,7 @@ from __future__ import annotations
 import heapq
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from operator import itemgetter
 from pathlib import Path
 from threading import Lock
@@ -41,6 +41,13 @@ CREATE TABLE IF NOT EXISTS message (
 _RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = tuple(range(4))
 EVERYTHING, URGENT, RAW = _WORTHS, (_ALERT,), (_RAW,)
 _ROWS_FREED_AT_ONCE = 50
+# What SQLite says of a disk that is full, or has failed and can only be read.
+_REFUSAL = (
+    sqlite3.SQLITE_FULL,
+    sqlite3.SQLITE_IOERR,
+    sqlite3.SQLITE_READONLY,
+    sqlite3.SQLITE_CANTOPEN,
+)
 # What SQLite says of a file that is no journal, in whole or in part.
 _DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 _FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append
@@ -64,23 +71,29 @@ class Spool:
     def __init__(
         self, path: Path, new_boot_id: Callable[[], int], started_utc_ns: int, limit_bytes: int
     ) -> None:
-        """Open or make the journal and begin a boot with an id that no earlier boot had."""
+        """Open or make the journal and begin a boot with an id that no earlier boot had.
+
+        Where the disk refuses, the first ``append`` for which it has room begins the boot.
+        """
         self._path = path
+        self._started_utc_ns = started_utc_ns
         self._limit_bytes = limit_bytes
         self._lock = Lock()
         self._acknowledged_seq = 0
         self.first_seq = 1  # the oldest of this boot that is kept
         self.last_seq = 0  # the newest of this boot that is on disk
         self.rows_freed = 0  # unacknowledged messages given up for room
+        self._connection: sqlite3.Connection | None = None
+        self._boot = 0
+        self.boot_id = new_boot_id()
         with _in_words(path):
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._writer = _connect(path)
             try:
-                self._writer.executescript(_SCHEMA)
-                self._boot, self.boot_id = self._begin_boot(new_boot_id, started_utc_ns)
-            except sqlite3.Error:
-                self._writer.close()
-                raise
+                while not self._begin_boot():
+                    self.boot_id = new_boot_id()
+            except sqlite3.Error as error:
+                if _code(error) not in _REFUSAL:
+                    raise
 
     @property
     def pending(self) -> int:
@@ -92,14 +105,14 @@ class Spool:
 
         Room is made before: what is safe must not be said to have failed, or it is given again.
         """
-        rows = [
-            (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
-             each.payload)
-            for each in messages
-        ]  # fmt: skip
         with _in_words(self._path), self._lock:
             if self._bytes_used() > self._limit_bytes:
                 self._make_room()
+            rows = [
+                (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
+                 each.payload)
+                for each in messages
+            ]  # fmt: skip
             with self._writer:
                 self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
             self.last_seq = max(self.last_seq, *(each.seq for each in messages))
@@ -167,21 +180,36 @@ class Spool:
 
     def close(self) -> None:
         with self._lock:
-            self._writer.close()
+            if self._connection is not None:
+                self._connection.close()
 
-    def _begin_boot(self, new_boot_id: Callable[[], int], started_utc_ns: int) -> tuple[int, int]:
-        while True:
-            boot_id = new_boot_id()
+    @property
+    def _writer(self) -> sqlite3.Connection:
+        """Of a boot that has begun; for one thread at a time."""
+        if self._connection is None and not self._begin_boot():
+            raise StoreError(f"the journal {self._path} has another boot {self.boot_id:x}")
+        assert self._connection is not None
+        return self._connection
+
+    def _begin_boot(self) -> bool:
+        """Whether no earlier boot had this one's id."""
+        connection = _connect(self._path)
+        with ExitStack() as in_trouble:
+            in_trouble.callback(connection.close)
+            connection.executescript(_SCHEMA)
             try:
-                with self._writer:
-                    cursor = self._writer.execute(
+                with connection:
+                    cursor = connection.execute(
                         "INSERT INTO boot (boot_id, started_utc_ns) VALUES (?, ?)",
-                        (boot_id, started_utc_ns),
+                        (self.boot_id, self._started_utc_ns),
                     )
             except sqlite3.IntegrityError:
-                continue
+                return False
             assert cursor.lastrowid is not None
-            return cursor.lastrowid, boot_id
+            self._boot = cursor.lastrowid
+            self._connection = connection
+            in_trouble.pop_all()
+        return True
 
     def _bytes_used(self) -> int:
         (pages,) = self._writer.execute("PRAGMA page_count").fetchone()
@@ -231,7 +259,7 @@ def open_spool(
         return Spool(path, new_boot_id, started_utc_ns, limit_bytes), None
     except StoreError as error:
         cause = error.__cause__
-        if not isinstance(cause, sqlite3.Error) or cause.sqlite_errorcode & 0xFF not in _DAMAGE:
+        if not isinstance(cause, sqlite3.Error) or _code(cause) not in _DAMAGE:
             raise
     aside = path.with_name(f"{path.name}.damaged-{started_utc_ns}")
     with _in_words(path):
@@ -262,6 +290,11 @@ def _worth(channel: Channel) -> int:
     if channel in (POSITION, GPS):
         return _TRACK
     return _ALERT if channel.qos is Qos.ALERT else _ROUTINE
+
+
+def _code(error: sqlite3.Error) -> int:
+    """The kind of an error, without what SQLite adds to it."""
+    return error.sqlite_errorcode & 0xFF
 
 
 def _connect(path: Path) -> sqlite3.Connection:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
 from contextlib import suppress
@@ -29,7 +30,7 @@ class FolderLock:
         """
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(folder / _NAME, os.O_RDWR | os.O_CREAT, 0o640)
+            self._descriptor = _opened(folder / _NAME)
         except OSError as error:
             raise LogError(f"the data folder {folder} cannot be used: {error.strerror}") from error
         try:
@@ -61,3 +62,12 @@ class FolderLock:
 
     def close(self) -> None:
         os.close(self._descriptor)
+
+
+def _opened(lock: Path) -> int:
+    try:
+        return os.open(lock, os.O_RDWR | os.O_CREAT, 0o640)
+    except OSError as error:
+        if error.errno != errno.EROFS:
+            raise
+        return os.open(lock, os.O_RDONLY)  # a disk that has failed: it can be held all the same

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import errno
+import subprocess
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -127,3 +130,70 @@ def test_a_full_disk_under_the_black_box(running, monkeypatch):
         until(lambda: running.station.count(Heartbeat) > before + 2)
     until(lambda: running.parts.black_box.fault is None)
     assert len(running.station.faults()) == 1
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Iterator[Path]:
+    """A small disk of its own."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=32m", "muster-test", str(place)]
+    try:
+        subprocess.run(mount, check=True, capture_output=True, text=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        pytest.skip(f"no disk can be mounted here: {error}")
+    yield place
+    subprocess.run(["umount", "--lazy", str(place)], check=True)  # a test that failed holds it
+
+
+def remount(disk: Path, how: str) -> None:
+    subprocess.run(["mount", "-o", f"remount,{how}", str(disk)], check=True)
+
+
+def fill(disk: Path) -> None:
+    with (disk / "filler").open("wb", buffering=0) as filler, suppress(OSError):
+        while filler.write(bytes(4096)):
+            pass
+
+
+def started_before(disk: Path) -> None:
+    running = Running(disk)
+    until(lambda: running.parts.spool.last_seq > 20)
+    running.end()
+
+
+@pytest.mark.parametrize("knows_the_disk", [True, False])
+def test_a_unit_that_is_started_with_a_full_disk_is_heard(disk: Path, knows_the_disk: bool) -> None:
+    if knows_the_disk:
+        started_before(disk)
+    else:
+        (disk / "u1").mkdir()
+    fill(disk)
+    running = Running(disk)
+    try:
+        assert_told_and_made_good(running, (disk / "filler").unlink)
+    finally:
+        running.end()
+
+
+def test_a_unit_whose_disk_can_only_be_read_is_heard(disk: Path) -> None:
+    started_before(disk)
+    remount(disk, "ro")
+    running = Running(disk)
+    try:
+        assert_told_and_made_good(running, lambda: remount(disk, "rw"))
+    finally:
+        running.end()
+
+
+def assert_told_and_made_good(running: Running, mend: Callable[[], object]) -> None:
+    until(running.station.faults)
+    before = running.station.count(Position)
+    until(lambda: running.station.count(Position) > before + 20)
+    mend()
+    until(lambda: running.parts.outbox.storage_fault is None)
+    until(lambda: running.parts.black_box.fault is None)
+    spool = running.parts.spool
+    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    assert kept == list(range(1, len(kept) + 1))
+    assert running.parts.outbox.never_saved == 0

@@ -203,27 +203,52 @@ def test_a_damaged_journal_is_set_aside_not_deleted(tmp_path, spoil_at):
     spool.close()
 
 
-def test_a_journal_that_the_disk_does_not_let_be_opened_is_left_where_it_is(tmp_path, monkeypatch):
-    """It is whole, and holds what the station may not have yet."""
+@pytest.mark.parametrize(
+    "code",
+    [
+        sqlite3.SQLITE_FULL,
+        sqlite3.SQLITE_IOERR_WRITE,
+        sqlite3.SQLITE_READONLY,
+        sqlite3.SQLITE_CANTOPEN,
+    ],
+)
+def test_a_journal_that_the_disk_refuses_begins_when_there_is_room(tmp_path, monkeypatch, code):
+    """It is left where it is: whole, with what the station may not have yet."""
     spool = spool_at(tmp_path)
     spool.append([entry(1)])
     spool.close()
 
-    def full(*_: object) -> int:
+    def refused(*_: object) -> bool:
         error = sqlite3.OperationalError("database or disk is full")
-        error.sqlite_errorcode = sqlite3.SQLITE_FULL
+        error.sqlite_errorcode = code
         raise error
 
     path = tmp_path / "journal.sqlite"
     with monkeypatch.context() as disk:
-        disk.setattr(Spool, "_begin_boot", full)
+        disk.setattr(Spool, "_begin_boot", refused)
+        spool, aside = open_spool(path, itertools.count(5).__next__, 77, MB)
+        assert aside is None
+        for _ in range(2):
+            with pytest.raises(StoreError, match="full"):
+                spool.append([entry(1)])
         with pytest.raises(StoreError, match="full"):
-            open_spool(path, itertools.count(5).__next__, 77, MB)
-    assert [one.name for one in tmp_path.iterdir() if "damaged" in one.name] == []
-    spool, aside = open_spool(path, itertools.count(5).__next__, 77, MB)
-    assert aside is None
+            spool.acknowledge(1, 1)
+        assert not spool.has_boot(spool.boot_id)
+    spool.append([entry(1), entry(2)])
     assert seqs(spool, 1) == [1]
+    assert seqs(spool, spool.boot_id) == [1, 2]
+    assert [boot.started_utc_ns for boot in spool.boots()][-1] == 77
     spool.close()
+
+
+def test_a_journal_that_never_began_is_closed_in_order(tmp_path, monkeypatch):
+    def refused(*_: object) -> bool:
+        error = sqlite3.OperationalError("disk I/O error")
+        error.sqlite_errorcode = sqlite3.SQLITE_IOERR
+        raise error
+
+    monkeypatch.setattr(Spool, "_begin_boot", refused)
+    spool_at(tmp_path).close()
 
 
 def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path):
