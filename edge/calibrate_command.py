@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from shared.channels import validate_unit_id
 from shared.errors import UserError
 from shared.out_file import writable
 
@@ -63,6 +62,7 @@ def calibrate(
     from edge.app import opened_source  # noqa: PLC0415
     from edge.calibration.session import calibrate_guided, calibrate_recorded  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
+    from shared.channels import validate_unit_id  # noqa: PLC0415
 
     given = {"still": still, "poses": poses, "turning": turning, "warm-up": warm_up}
     recordings = {step: text for step, text in given.items() if text is not None}

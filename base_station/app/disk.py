@@ -16,7 +16,7 @@ from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
 from base_station.feed import LogFeed
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
-from base_station.forgetting.forgetter import Forgetter, Pulls
+from base_station.forgetting.forgetter import Act, Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.log_check import LogCheck
 from base_station.past.checkpoints import Checkpoints
@@ -26,7 +26,6 @@ from base_station.recorder import Recorder
 from base_station.steady_clock import SteadyClock
 from shared.clock import Clock, SystemClock
 from shared.errors import StoreError
-from shared.messages.station import Action
 
 _RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
 _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
@@ -57,9 +56,7 @@ class Disk:
     def hindsight(self) -> Hindsight:
         return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
 
-    def forgetter(
-        self, pulls: Pulls, act: Callable[[str, Action], object] = lambda _by, _action: None
-    ) -> Forgetter:
+    def forgetter(self, pulls: Pulls, act: Act = lambda _by, _action: None) -> Forgetter:
         """``act`` has the running station forget what it holds in memory."""
         return Forgetter(
             self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act
@@ -68,7 +65,7 @@ class Disk:
     def forgetting_desk(
         self,
         pulls: Pulls,
-        act: Callable[[str, Action], object],
+        act: Act,
         save_soon: Callable[[], None],
         leads: Callable[[], bool],
     ) -> ForgettingDesk:

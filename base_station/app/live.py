@@ -6,6 +6,7 @@ import asyncio
 import os
 import secrets
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
 from typing import NamedTuple
 
@@ -34,6 +35,7 @@ from base_station.fair_share import FairShare
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.recovering import Watch, recovering
+from base_station.live.sinks import ActionDone
 from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
 from base_station.past.checkpoints import Checkpoints
@@ -277,7 +279,7 @@ class _LiveStation:
     def _may_forget(self) -> bool:
         return self._side.may_forget() and not self._opened.feed.late_waits
 
-    def _act(self, by: str, action: Action) -> object:
+    def _act(self, by: str, action: Action) -> Future[ActionDone] | None:
         """A standby does what stands in the other's log."""
         return self._drive.submit(by, action) if self._side.leads else None
 

@@ -34,6 +34,7 @@ from base_station.forgetting.erasure import (
     erasure_of_person,
 )
 from base_station.forgetting.redaction import Redactor
+from base_station.live.sinks import ActionDone
 from base_station.past.checkpoints import Checkpoints
 from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
 from shared.clock import Clock
@@ -55,6 +56,7 @@ _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
 _BEGUN = "forgetting-begun.json"  # beside the wishes; what it holds, no wish does
 Progress = Callable[[float], None]  # hears the fraction done
+Act = Callable[[str, Action], Future[ActionDone] | None]  # None: no station that leads does it
 
 
 class LogFiles(Protocol):
@@ -143,9 +145,9 @@ class Forgetter:
         records: Records,
         clock: Clock,
         pulls: Pulls,
-        act: Callable[[str, Action], object] = lambda _by, _action: None,
+        act: Act = lambda _by, _action: None,
     ) -> None:
-        """``act`` has the running station forget what it holds in memory, and may give a Future."""
+        """``act`` has the running station forget what it holds in memory."""
         self._log = log
         self._store = store
         self._checkpoints = checkpoints
@@ -211,7 +213,7 @@ class Forgetter:
         acted = [self._act(by, ForgetWearers(unit_id)) for unit_id in sorted(erasure.unit_ids)]
         try:
             for one in acted:
-                if isinstance(one, Future):
+                if one is not None:
                     one.result(_ACTED_WITHIN_S)
         except TimeoutError as error:
             raise StoreError("the station did not get to what it holds in memory") from error

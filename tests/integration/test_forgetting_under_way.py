@@ -24,6 +24,7 @@ from base_station.db.store import Store
 from base_station.forgetting import forgetter as forgetter_module
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import ClosedLog, Forgetter, Tally
+from base_station.live.sinks import ActionDone
 from base_station.past.checkpoints import Checkpoints
 from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
@@ -68,7 +69,7 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         records = Records(store, SystemClock())
         forgetter = Forgetter(
             station.recorder, store, station.checkpoints, records, SystemClock(), NoPulls(),
-            lambda by, action: station.act(action, by),
+            station.drive.submit,
         )  # fmt: skip
         station.act(RegisterUnit("FF-01", "FF-01"))
         station.act(Assign("FF-01", "p-77", ANA, "", ""))
@@ -323,10 +324,11 @@ def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
     """What it saves before that has everything in it."""
     data, happened = DataFolder(shutil.copytree(told, tmp_path / "station")), list[str]()
 
-    class Acted(Future[None]):
-        def result(self, timeout: float | None = None) -> None:
+    class Acted(Future[ActionDone]):
+        def result(self, timeout: float | None = None) -> ActionDone:
             assert timeout is not None
             happened.append("acted")
+            return ActionDone("", 0, None)
 
     checkpoints = Checkpoints(data.checkpoints)
     monkeypatch.setattr(checkpoints, "clear", lambda: happened.append("cleared"))

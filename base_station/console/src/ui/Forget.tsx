@@ -84,7 +84,7 @@ function isOver(one: api.Forgetting): boolean {
 }
 
 function outcome(one: api.Forgetting): string {
-  return one.state === "done"
-    ? `${one.records} records were taken out of the log.`
-    : `Nothing was forgotten: ${one.problem}.`;
+  if (one.state !== "done") return `Nothing was forgotten: ${one.problem}.`;
+  const done = `${one.records} records were taken out of the log.`;
+  return one.problem === "" ? done : `${done} ${one.problem}.`;
 }
