@@ -10,9 +10,12 @@ from shared.messages.station import OpenIncident, SetStart
 from tests.station_script import Script
 
 DRIFT_RADPS = 1e-3
-
-
 ROUND_M = 160.0
+PLAN = (
+    b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
+    b'{"floor":1,"down_m":-3.2}]},"features":[{"type":"Feature","properties":{"kind":"outline"},'
+    b'"geometry":{"type":"Polygon","coordinates":[[[0,0],[40,0],[40,30],[0,30],[0,0]]]}}]}'
+)
 
 
 def truth(second: float) -> tuple[float, float]:
@@ -81,3 +84,11 @@ class Walk:
         fused = self.script.pipeline.state.units[unit_id].fused
         assert fused is not None
         return math.dist((fused.north_m, fused.east_m), truth(self.walked_s))
+
+
+def walk_from_the_engine() -> Walk:
+    """Of one unit, whose start was said, and which has gone on for five minutes."""
+    walk = Walk("FF-01")
+    walk.start("FF-01")
+    walk.go(300)
+    return walk

@@ -1,54 +1,29 @@
-"""Pins in the pipeline: what they correct, what removing them undoes, what is refused."""
+"""Pins in the pipeline: what they correct, and what removing them undoes."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
 
 from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
-from base_station.events import PinsTouched, Refused, TrailFilled
+from base_station.events import PinsTouched, TrailFilled
 from base_station.fusion.path.points import FIX_ROW, Point, arrays_of, rows_of
 from base_station.live_state import StationState
 from base_station.pins.evidence import floors_said, ties_of
 from base_station.pins.pinning import floors_along, trail_of
 from base_station.trail import TRAIL_POINTS
 from shared.clock import NS_PER_S
-from shared.messages.pins import (
-    PlaceBeacon,
-    RemoveBeacon,
-    RemovePin,
-    SetMeeting,
-    SetPin,
-    StartTogether,
-)
-from shared.messages.station import (
-    CloseIncident,
-    ForgetWearers,
-    OpenIncident,
-    SetPlan,
-    SetStart,
-)
-from shared.quality import Quality
+from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
+from shared.messages.station import CloseIncident, ForgetWearers, SetPlan, SetStart
 from tests.live_station import make_pipeline
-from tests.round_walk import Walk, truth
+from tests.round_walk import PLAN, Walk, truth, walk_from_the_engine
 from tests.station_script import START_NS, Script
-
-PLAN = (
-    b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
-    b'{"floor":1,"down_m":-3.2}]},"features":[{"type":"Feature","properties":{"kind":"outline"},'
-    b'"geometry":{"type":"Polygon","coordinates":[[[0,0],[40,0],[40,30],[0,30],[0,0]]]}}]}'
-)
 
 
 @pytest.fixture
 def walk() -> Walk:
-    walk = Walk("FF-01")
-    walk.start("FF-01")
-    walk.go(300)
-    return walk
+    return walk_from_the_engine()
 
 
 def test_a_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
@@ -351,111 +326,6 @@ def test_a_meeting_that_one_of_both_contradicts_is_shown_so_whoever_is_solved_la
     assert walk.state("contradicted") == "used"
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"unit_id": "nobody"}, "no registered unit"),
-        ({"north_m": math.nan}, "no pair of numbers"),
-        ({"std_m": 0.0}, "more than 0"),
-        ({"std_m": -1.0}, "more than 0"),
-        ({"std_m": math.nan}, "cannot be weighed"),
-        ({"t_ns": 10**10}, "before the path"),
-        ({"t_ns": 4 * 10**18}, "in the future"),
-        ({"floor": 7}, "no floor 7"),
-        ({"north_m": 9000.0}, "from the plan's building"),
-        ({"heading_rad": math.inf}, "heading needs"),
-        ({"heading_rad": 1.0, "heading_std_rad": 0.0}, "more than 0"),
-    ],
-)
-def test_bad_pins_are_refused_with_a_sentence(
-    walk: Walk, changes: dict[str, object], sentence: str
-) -> None:
-    walk.script.act(SetPlan(PLAN))
-    before = walk.trail("FF-01")
-    good = SetPin("p", "FF-01", walk.script.t_ns, 1.0, 1.0, 1.0, None, None, 0.3, "")
-    fields = {name: getattr(good, name) for name in good.__struct_fields__} | changes
-    outputs = walk.script.act(SetPin(**fields))
-    (refused,) = [output for output in outputs if isinstance(output, Refused)]
-    assert sentence in refused.reason
-    assert walk.script.pipeline.state.pins == {}
-    assert walk.trail("FF-01") == before
-
-
-@pytest.mark.parametrize(
-    ("other_id", "t_s", "std_m", "sentence"),
-    [
-        ("FF-01", 0.0, 1.0, "cannot meet itself"),
-        ("nobody", 0.0, 1.0, "no registered unit"),
-        ("FF-02", 9.0, 1.0, "is 9 s in the future"),
-        ("FF-02", -31.0, 1.0, "is 12 s before the path of FF-01"),
-        ("FF-02", 0.0, 0.0, "more than 0"),
-    ],
-)
-def test_bad_meetings_are_refused_with_a_sentence(
-    other_id: str, t_s: float, std_m: float, sentence: str
-) -> None:
-    walk = Walk("FF-01")
-    walk.go(20)
-    walk.script.register("FF-02")
-    t_ns = walk.script.t_ns + round(t_s * 1e9)
-    outputs = walk.script.act(SetMeeting("m", "FF-01", other_id, t_ns, std_m, ""))
-    (refused,) = [output for output in outputs if isinstance(output, Refused)]
-    assert sentence in refused.reason
-    assert walk.script.pipeline.state.pins == {}
-
-
-@pytest.mark.parametrize(
-    ("action", "sentence"),
-    [
-        (StartTogether("s", (), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""), "nobody to place"),
-        (
-            StartTogether("s", ("FF-01", "nobody"), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""),
-            "no registered unit",
-        ),
-        (PlaceBeacon("b", "", 1.0, 1.0, None, 1.0, math.nan), "number of metres"),
-        (PlaceBeacon("b", "", 1.0, 1.0, None, 1.0, -1.0), "number of metres"),
-        (PlaceBeacon("b", "", math.inf, 1.0, None, 1.0, 1.0), "no pair of numbers"),
-    ],
-)
-def test_bad_starts_and_beacons_are_refused_with_a_sentence(
-    walk: Walk, action: StartTogether | PlaceBeacon, sentence: str
-) -> None:
-    (refused,) = walk.script.act(action)
-    assert isinstance(refused, Refused)
-    assert sentence in refused.reason
-    state = walk.script.pipeline.state
-    assert (state.pins, state.beacons) == ({}, {})
-
-
-def test_what_is_not_there_cannot_be_removed() -> None:
-    for action in (RemovePin("p"), RemoveBeacon("b")):
-        (refused,) = Script().act(action)
-        assert isinstance(refused, Refused)
-
-
-def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("base_station.pins.book.MOST_PINS", 2)
-    walk = Walk("FF-01")
-    walk.go(20)
-    for pin_id in ("p1", "p2", "p2", "p3"):
-        walk.pin(pin_id, "FF-01", 10.0)
-    assert list(walk.script.pipeline.state.pins) == ["p1", "p2"]
-    assert [type(one) for one in walk.script.outputs].count(Refused) == 1
-
-
-def test_of_those_who_start_together_none_is_placed_where_there_is_no_room_for_all(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("base_station.pins.book.MOST_PINS", 2)
-    walk = Walk("FF-01", "FF-02")
-    walk.go(20)
-    walk.pin("p1", "FF-01", 10.0)
-    both = StartTogether("s", walk.units, 0, 0.0, 0.0, 0.5, None, None, 0.3, "")
-    (refused,) = walk.script.act(both)
-    assert isinstance(refused, Refused)
-    assert list(walk.script.pipeline.state.pins) == ["p1"]
-
-
 def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     both = Walk("FF-01", "FF-02", "FF-03")
     both.go(20)
@@ -496,114 +366,6 @@ def test_a_checkpoint_knows_pins_and_goes_on_the_same(walk: Walk) -> None:
         walk.script.record(key, payload)
     assert again.state.units["FF-01"] == straight.state.units["FF-01"]
     assert again.checkpoint() == straight.checkpoint()
-
-
-def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
-    walk.pin("p1", "FF-01", 200.0)
-    walk.script.act(CloseIncident("i1"))
-    walk.go(5)
-    walk.script.act(OpenIncident("i2", "Another"))
-    state = walk.script.pipeline.state
-    assert not state.pins
-    assert not state.pin_verdicts
-    assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
-    walk.go(5)
-    assert len(walk.trail("FF-01")) <= 6
-
-
-@pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "switched on before"])
-@pytest.mark.parametrize("earlier", ["a morning's check", "an incident"])
-def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
-    earlier: str, is_on: bool
-) -> None:
-    """The run of before tells nothing of where the one in this incident began."""
-    script = Script()
-    script.register("FF-01")
-    if earlier == "an incident":
-        script.act(OpenIncident("i0", "Before"))
-        script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
-        go_north(script, 60)
-        script.act(CloseIncident("i0"))
-    go_north(script, 60)
-    script.now_s += 4.0 * 3600.0
-    script.boot_ids["FF-01"] = 8
-    if is_on:
-        go_north(script, 10)
-    script.act(OpenIncident("i1", "Mill Lane"))
-    go_north(script, 30, since_m=10.0 if is_on else 0.0)
-    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
-    fused = script.pipeline.state.units["FF-01"].fused
-    assert fused is not None
-    assert (fused.north_m, fused.east_m) == pytest.approx((139.0 if is_on else 129.0, 200.0), abs=1)
-    assert fused.quality is Quality.GOOD
-    begin_ns = script.pipeline.state.paths["FF-01"].begin_ns
-    assert begin_ns == script.t_ns - (39 if is_on else 29) * NS_PER_S
-
-
-def go_north(script: Script, seconds: int, since_m: float = 0.0) -> None:
-    for second in range(seconds):
-        script.now_s += 1.0
-        way_m = since_m + second
-        script.position("FF-01", way_m, 0.0, distance_m=way_m)
-
-
-def test_all_start_here_may_be_said_before_the_run_that_it_is_about() -> None:
-    """The commander is quicker than those who switch on their units."""
-    script = Script()
-    script.register("FF-01")
-    go_north(script, 60)
-    script.now_s += 600.0
-    script.act(OpenIncident("i1", "Mill Lane"))
-    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
-    script.now_s += 600.0
-    script.boot_ids["FF-01"] = 8
-    go_north(script, 30)
-    fused = script.pipeline.state.units["FF-01"].fused
-    assert fused is not None
-    assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
-
-
-def test_a_pin_that_was_set_before_the_incident_was_opened_is_solved_in_its_path() -> None:
-    script = Script()
-    script.register("FF-01")
-    go_north(script, 60)
-    script.now_s += 600.0
-    script.boot_ids["FF-01"] = 8
-    go_north(script, 30)
-    script.act(StartTogether("s", ("FF-01",), 0, 100.0, 200.0, 1.0, None, 0.0, 0.05, ""))
-    script.act(OpenIncident("i1", "Mill Lane"))
-    fused = script.pipeline.state.units["FF-01"].fused
-    assert fused is not None
-    assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
-
-
-def test_a_start_of_a_run_that_is_over_contradicts_nothing_in_the_next_incident() -> None:
-    script = Script()
-    script.register("FF-01")
-    script.act(OpenIncident("i0", "Before"))
-    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
-    go_north(script, 60)
-    script.now_s += 1.0
-    script.act(CloseIncident("i0"))
-    script.act(OpenIncident("i1", "Mill Lane"))
-    script.boot_ids["FF-01"] = 8
-    go_north(script, 60)
-    script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
-    assert script.pipeline.state.pin_verdicts["p"].state == "used"
-
-
-def test_a_start_of_the_run_that_goes_on_holds_in_the_next_incident() -> None:
-    script = Script()
-    script.register("FF-01")
-    script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
-    script.act(OpenIncident("i0", "Before"))
-    go_north(script, 60)
-    script.act(CloseIncident("i0"))
-    script.now_s += 1.0
-    script.act(OpenIncident("i1", "Mill Lane"))
-    go_north(script, 10, since_m=60.0)
-    script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
-    assert script.pipeline.state.pin_verdicts["p"].state == "conflict"
 
 
 def test_a_pin_ahead_of_a_slow_link_counts_for_where_the_path_is_when_it_gets_there(

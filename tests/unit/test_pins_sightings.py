@@ -22,15 +22,12 @@ from shared.messages.pins import (
     RemovePin,
     SetMeeting,
 )
-from tests.round_walk import Walk, truth
+from tests.round_walk import Walk, truth, walk_from_the_engine
 
 
 @pytest.fixture
 def walk() -> Walk:
-    walk = Walk("FF-01")
-    walk.start("FF-01")
-    walk.go(300)
-    return walk
+    return walk_from_the_engine()
 
 
 def sighting(

@@ -7,7 +7,7 @@ import os
 
 import pytest
 
-from shared.side_by_side import side_by_side
+from base_station.bench.rig.side_by_side import side_by_side
 
 
 def process_of(_: int) -> int:

@@ -34,12 +34,12 @@ from base_station.bench.incident.scores import (
     FloorScores,
     Scores,
 )
+from base_station.bench.rig.side_by_side import side_by_side
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
-from shared.side_by_side import side_by_side
 
 Floats = NDArray[np.float64]
 
