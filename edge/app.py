@@ -21,6 +21,7 @@ from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
+from edge.journal_writer import JournalWriter
 from edge.knocker import Knocker
 from edge.last_words import answers_before, mayday_before
 from edge.link import Link, OtherEnd
@@ -179,7 +180,8 @@ def compose_agent(
         in_trouble.callback(black_box.close)
         commands: SimpleQueue[bytes] = SimpleQueue()
         link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
-        outbox = Outbox(unit_id, spool, link.publish)
+        journal = JournalWriter(spool)
+        outbox = Outbox(unit_id, journal, link.publish)
         for detail in _set_aside(folder, damaged):
             outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(
@@ -193,6 +195,7 @@ def compose_agent(
                 clock=clock,
                 black_box=black_box,
                 spool=spool,
+                journal=journal,
                 outbox=outbox,
                 link=link,
                 commands=commands,

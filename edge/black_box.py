@@ -27,6 +27,9 @@ logger = logging.getLogger(__name__)
 
 _DESCRIBE_EVERY_NS = 60 * NS_PER_S  # so that any segment can be replayed by itself
 _LOOK_EVERY_S = 0.2
+_HANGS_NS = 5 * NS_PER_S  # a worn card may take some seconds now and then
+_WAITING_MAX = 10_000  # batches, some minutes of samples, for a disk that hangs
+_LAST_S = 5.0
 _REFUSAL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO)  # of a disk, for now
 _POLICY = SegmentPolicy(segment_s=120.0)  # a station fetches whole segments of a window
 
@@ -60,6 +63,8 @@ class BlackBox:
         self._boot_name = f"{began:%Y%m%dT%H%M%SZ}-{description.header.boot_id:016x}"
         self._described_ns = -_DESCRIBE_EVERY_NS
         self._waiting: SimpleQueue[Raw | None] = SimpleQueue()
+        self._given_up = 0  # batches that came while the disk hung
+        self._asked_ns: int | None = None  # since when the disk owes an answer
         self._problem: str | None = None
         self._writer: SegmentWriter | None = None
         self._try_again_ns = 0
@@ -70,33 +75,59 @@ class BlackBox:
     @property
     def fault(self) -> str | None:
         """Why samples are not kept; None while they are."""
-        return self._problem if self._thread.is_alive() else "the black box has stopped"
+        if not self._thread.is_alive():
+            return "the black box has stopped"
+        if self._hangs():
+            return f"the black box hangs: the disk has not answered for {_HANGS_NS // NS_PER_S} s"
+        return self._problem
 
     def write(self, raw: Raw) -> None:
         self._waiting.put(raw)
+        if self._waiting.qsize() > _WAITING_MAX and self._hangs():
+            self._waiting.get()
+            self._given_up += 1
 
     def close(self) -> None:
-        """Everything that was given is written."""
+        """Everything that was given is written, unless the disk hangs to the end."""
         self._waiting.put(None)
-        self._thread.join()
+        while self._thread.is_alive():
+            self._thread.join(_LOOK_EVERY_S)
+            if self._hangs():
+                logger.error("the black box hangs: the samples that wait are not kept")
+                return
+
+    def _hangs(self) -> bool:
+        asked_ns = self._asked_ns
+        return asked_ns is not None and self._now_ns() - asked_ns > _HANGS_NS
 
     def _run(self) -> None:
         while True:
             try:
                 raw = self._waiting.get(timeout=_LOOK_EVERY_S)
             except Empty:
-                if self._writer is not None:
-                    self._writer.advance(self._now_ns())
-                continue
-            if self._writer is None and self._now_ns() >= self._try_again_ns:
-                self._begin()
+                raw = ()
+            self._asked_ns = self._now_ns()
             if raw is None:
                 if self._writer is not None:
                     self._writer.close()
                 return
-            if self._writer is not None:
-                self._write(self._writer, raw)
-                self._note_problem(self._writer.problem)
+            self._take(raw)
+            self._asked_ns = None
+
+    def _take(self, raw: Raw) -> None:
+        """One batch, or none where nothing has come for a while."""
+        if self._writer is None and raw and self._now_ns() >= self._try_again_ns:
+            self._begin()
+        if self._writer is None:
+            return
+        if raw:
+            self._write(self._writer, raw)
+        else:
+            self._writer.advance(self._now_ns())
+        self._note_problem(self._writer.problem)
+        given_up, self._given_up = self._given_up, 0
+        if given_up:
+            logger.warning("the disk hung: %d batches of samples are not kept", given_up)
 
     def _begin(self) -> None:
         """Make this boot's folder, where the disk lets it be made."""

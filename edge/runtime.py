@@ -17,6 +17,7 @@ import msgspec
 
 from edge.black_box import BlackBox
 from edge.commands import CommandDesk
+from edge.journal_writer import JournalWriter
 from edge.last_words import FAILED
 from edge.link import Link
 from edge.outbox import Outbox
@@ -58,6 +59,7 @@ class Parts:
     clock: StationClock
     black_box: BlackBox
     spool: Spool
+    journal: JournalWriter
     outbox: Outbox
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
@@ -152,9 +154,11 @@ class Agent:
         parts = self._parts
         if not parts.outbox.is_working:
             raise RuntimeError("the outbox has stopped; see the log before this")
+        if not parts.journal.is_working:
+            raise RuntimeError("the journal has stopped; see the log before this")
         if not parts.link.is_working:
             raise RuntimeError("the link has stopped; see the log before this")
-        fault = parts.outbox.storage_fault or parts.black_box.fault
+        fault = parts.journal.fault or parts.black_box.fault
         if fault is not None and self._storage_fault is None:
             self._say(EventKind.STORAGE_FAULT, fault)
         self._storage_fault = fault
@@ -174,7 +178,7 @@ class Agent:
             parts.stamper.header(),
             spool.first_seq,
             spool.last_seq,
-            never_saved=parts.outbox.never_saved,
+            never_saved=parts.journal.never_saved,
             given_up=spool.rows_freed,
         )
         if clock is not None:
@@ -198,6 +202,7 @@ class Agent:
             last.callback(parts.spool.close)
             last.callback(parts.link.close)
             last.callback(parts.black_box.close)
+            last.callback(parts.journal.close)
             last.callback(parts.outbox.close)
             parts.reader.close()
             parts.outbox.put(parts.pipeline.finish(self._timeline))

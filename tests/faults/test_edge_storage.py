@@ -1,4 +1,4 @@
-"""A disk that is full stops no message, is told, and what it missed is written later."""
+"""A disk that is full or hangs stops no message, is told, and what it missed is written later."""
 
 from __future__ import annotations
 
@@ -103,15 +103,15 @@ def test_a_full_disk_under_the_journal(running):
     assert "full" in running.station.faults()[0]
 
     set_room(running, 1_000_000)
-    until(lambda: running.parts.outbox.storage_fault is None)
+    until(lambda: running.parts.journal.fault is None)
     spool = running.parts.spool
     kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
-    assert running.parts.outbox.never_saved == 0
+    assert running.parts.journal.never_saved == 0
 
 
 def test_what_a_full_disk_cost_is_said_with_the_heartbeat(running, monkeypatch):
-    monkeypatch.setattr("edge.outbox._UNSAVED_KEPT", 3)
+    monkeypatch.setattr("edge.journal_writer._UNSAVED_KEPT", 3)
     set_room(running, 1)
     until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
     set_room(running, 1_000_000)
@@ -144,6 +144,37 @@ def disk(tmp_path: Path) -> Iterator[Path]:
         pytest.skip(f"no disk can be mounted here: {error}")
     yield place
     subprocess.run(["umount", "--lazy", str(place)], check=True)  # a test that failed holds it
+
+
+@pytest.fixture
+def freezing_disk(tmp_path: Path) -> Iterator[Path]:
+    """A disk of its own that can be made to hang: frozen, it lets who writes to it wait."""
+    image, place = tmp_path / "image", tmp_path / "disk"
+    place.mkdir()
+    with image.open("wb") as file:
+        file.truncate(64 * 1024 * 1024)
+    try:
+        subprocess.run(["mkfs.ext4", "-q", str(image)], check=True, capture_output=True)
+        subprocess.run(
+            ["mount", "-o", "loop", str(image), str(place)], check=True, capture_output=True
+        )
+        freeze(place)
+    except (OSError, subprocess.CalledProcessError) as error:
+        subprocess.run(["umount", str(place)], check=False, capture_output=True)
+        pytest.skip(f"no disk can be frozen here: {error}")
+    thaw(place)
+    yield place
+    with suppress(subprocess.CalledProcessError):  # it was thawed by the test
+        thaw(place)
+    subprocess.run(["umount", "--lazy", str(place)], check=True)
+
+
+def freeze(disk: Path) -> None:
+    subprocess.run(["fsfreeze", "--freeze", str(disk)], check=True, capture_output=True)
+
+
+def thaw(disk: Path) -> None:
+    subprocess.run(["fsfreeze", "--unfreeze", str(disk)], check=True, capture_output=True)
 
 
 def remount(disk: Path, how: str) -> None:
@@ -186,14 +217,25 @@ def test_a_unit_whose_disk_can_only_be_read_is_heard(disk: Path) -> None:
         running.end()
 
 
+def test_a_unit_whose_disk_hangs_is_heard(freezing_disk: Path) -> None:
+    running = Running(freezing_disk)
+    freeze(freezing_disk)
+    try:
+        assert_told_and_made_good(running, lambda: thaw(freezing_disk))
+    finally:
+        with suppress(subprocess.CalledProcessError):
+            thaw(freezing_disk)
+        running.end()
+
+
 def assert_told_and_made_good(running: Running, mend: Callable[[], object]) -> None:
     until(running.station.faults)
     before = running.station.count(Position)
     until(lambda: running.station.count(Position) > before + 20)
     mend()
-    until(lambda: running.parts.outbox.storage_fault is None)
+    until(lambda: running.parts.journal.fault is None)
     until(lambda: running.parts.black_box.fault is None)
     spool = running.parts.spool
     kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
-    assert running.parts.outbox.never_saved == 0
+    assert running.parts.journal.never_saved == 0

@@ -75,6 +75,7 @@ def test_a_person_is_told_of_it(tmp_path: Path) -> None:
     agent = compose_agent(config, "bert", folder, open_source(config.source), NoStation(), None)
     parts = agent._parts
     parts.outbox.close()
+    parts.journal.close()
     parts.black_box.close()
     (said,) = parts.spool.read(parts.spool.boot_id, 1, 10)
     parts.spool.close()

@@ -1,0 +1,157 @@
+"""Writes what a unit says into its journal, by a thread that waits for the disk.
+
+Who gives messages waits with it, but not for long: a disk that refuses or hangs, as worn cards
+do, costs the unit its journal and not its link.  What the disk has not taken waits in memory and
+is written when it does.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Iterable
+from threading import Condition, Thread
+
+from edge.spool import Journaled, Spool
+from shared.channels import Qos
+from shared.errors import StoreError
+
+logger = logging.getLogger(__name__)
+
+_PATIENCE_S = 1.0  # of who gives messages
+_HANGS_S = 5.0  # a worn card may take some seconds now and then
+_AGAIN_S = 1.0  # after a refusal: offering all of them at every message takes half a processor
+_UNSAVED_KEPT = 10_000  # and as many alerts, which nothing else ousts
+_LOOK_EVERY_S = 0.2
+
+
+class JournalWriter:
+    """``write`` is for one thread; it never raises, and waits a second at most."""
+
+    def __init__(self, spool: Spool) -> None:
+        self._spool = spool
+        self._changed = Condition()
+        self._alerts = _Unsaved()
+        self._others = _Unsaved()
+        self._asked_s: float | None = None  # since when the disk owes an answer
+        self._refusal: str | None = None
+        self._closed = False
+        self._thread = Thread(target=self._run, name="journal", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_working(self) -> bool:
+        return self._thread.is_alive()
+
+    @property
+    def fault(self) -> str | None:
+        """Why the journal cannot be written; None while it can."""
+        if self._hangs() and self._refusal is None:
+            return f"the journal hangs: the disk has not answered for {_HANGS_S:.0f} s"
+        return self._refusal
+
+    @property
+    def never_saved(self) -> int:
+        """Messages that were given and are not kept."""
+        return self._alerts.ousted + self._others.ousted
+
+    def write(self, messages: Iterable[Journaled]) -> None:
+        """Returns when they are on the disk, or when it is not to be waited for any longer."""
+        with self._changed:
+            for message in messages:
+                alert = message.channel.qos is Qos.ALERT
+                (self._alerts if alert else self._others).add(message)
+            self._changed.notify_all()
+            if self._owed_for_s() < _PATIENCE_S:
+                self._changed.wait_for(self._is_answered, _PATIENCE_S)
+
+    def close(self) -> None:
+        """Offers the disk what is left; one that hangs is left to the end of the process."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        while self._thread.is_alive():
+            self._thread.join(_LOOK_EVERY_S)
+            if self._hangs():
+                logger.error("the journal hangs: the messages that wait are not kept")
+                return
+
+    def _is_answered(self) -> bool:
+        return self._refusal is not None or not (self._alerts.messages or self._others.messages)
+
+    def _owed_for_s(self) -> float:
+        asked_s = self._asked_s
+        return 0.0 if asked_s is None else time.monotonic() - asked_s
+
+    def _hangs(self) -> bool:
+        return self._owed_for_s() > _HANGS_S
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                if self._refusal is not None:
+                    self._changed.wait_for(lambda: self._closed, _AGAIN_S)
+                self._changed.wait_for(
+                    lambda: self._closed or self._alerts.messages or self._others.messages
+                )
+                ends = self._closed
+                offered = [*self._alerts.take(), *self._others.take()]
+                self._asked_s = time.monotonic()
+            self._offer(offered)
+            if ends:
+                return
+
+    def _offer(self, messages: list[Journaled]) -> None:
+        refusal = None
+        try:
+            if messages:
+                self._spool.append(messages)
+        except StoreError as error:
+            refusal = str(error)
+        with self._changed:
+            self._tell(refusal)
+            self._refusal, self._asked_s = refusal, None
+            for unsaved in (self._alerts, self._others):
+                unsaved.settle(saved=refusal is None)
+            self._changed.notify_all()
+
+    def _tell(self, refusal: str | None) -> None:
+        if refusal is not None and self._refusal is None:
+            logger.error("%s; messages are sent but not kept", refusal)
+        if refusal is None and self._refusal is not None:
+            logger.warning(
+                "the journal can be written again; "
+                "%d messages were sent and not kept since the start",
+                self.never_saved,
+            )
+
+
+class _Unsaved:
+    """What is not on the disk, the oldest first; what it has been offered is not ousted."""
+
+    def __init__(self) -> None:
+        self.messages: deque[Journaled] = deque()
+        self.ousted = 0
+        self._offered = 0
+
+    def add(self, message: Journaled) -> None:
+        self.messages.append(message)
+        self._oust()
+
+    def take(self) -> list[Journaled]:
+        self._offered = len(self.messages)
+        return list(self.messages)
+
+    def settle(self, *, saved: bool) -> None:
+        """The disk has taken what it was offered, or has refused it."""
+        if saved:
+            for _ in range(self._offered):
+                self.messages.popleft()
+        self._offered = 0
+        self._oust()
+
+    def _oust(self) -> None:
+        while len(self.messages) - self._offered > _UNSAVED_KEPT:
+            del self.messages[self._offered]
+            self.ousted += 1
