@@ -17,6 +17,7 @@ Decision = Literal["stay", "follow", "lead", "step back"]
 _GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
 _ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
 _GREETING_LEASES = 5  # that a station waits at most for one that listens, to hear from it
+_OPENING_NS = NS_PER_S  # that a router listens to nobody when it opens again
 _WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
 
 
@@ -41,6 +42,7 @@ class Election:
         self._other: Beat | None = None
         self._heard_ns = 0
         self._token_there = False
+        self._listened_ns: int | None = None  # when the other one's router last did
         self._witness_ns: int | None = None  # since when a unit is heard, and not the other
         self.role: Role = "waiting"
 
@@ -48,6 +50,11 @@ class Election:
     def other(self) -> Beat | None:
         """What the other station said last, however long ago."""
         return self._other
+
+    @property
+    def nobody_can_tell(self) -> bool:
+        """Which of the two is cut off: the other one had no units."""
+        return self._other is not None and self._other.units == 0
 
     def hear(self, beat: Beat, now_ns: int) -> None:
         self._other, self._heard_ns = beat, now_ns
@@ -72,6 +79,8 @@ class Election:
 
     def decide(self, me: Me, now_ns: int) -> Decision:
         self._note_witness(me, now_ns)
+        if me.other_listens:
+            self._listened_ns = now_ns
         other = self._other if self.is_there(now_ns) else None
         if self.role == "active":
             loses = other is not None and other.role == "active" and _claim(other) > _claim_of(me)
@@ -84,7 +93,8 @@ class Election:
 
     def _alone(self, me: Me, now_ns: int) -> Decision:
         if self.role == "standby":
-            return "lead" if self._has_witness(now_ns) else "stay"
+            awaited = self.nobody_can_tell and self._is_awaited(now_ns)
+            return "lead" if self._has_witness(now_ns) and not awaited else "stay"
         if me.place == BEGINNING and not me.preferred:
             return "stay"  # made to follow: a log of its own would keep it from that for ever
         leases = 1 if me.preferred else 2
@@ -98,9 +108,16 @@ class Election:
 
     def _has_witness(self, now_ns: int) -> bool:
         """Whether it is the other station that is gone, and not this one."""
-        if self._other is not None and self._other.units == 0:
-            return True  # there is nobody who could tell
+        if self.nobody_can_tell:
+            return True
         return self._witness_ns is not None and now_ns - self._witness_ns >= _WITNESS_NS
+
+    def _is_awaited(self, now_ns: int) -> bool:
+        """Whether the other station may only be out of reach while the routers link again."""
+        silent_ns = now_ns - self._heard_ns
+        listened_ns = self._listened_ns
+        listens = listened_ns is not None and now_ns - listened_ns < _OPENING_NS
+        return silent_ns < (_GREETING_LEASES if listens else 1) * self._lease_ns
 
 
 def _claim(beat: Beat) -> tuple[int, bool, str]:

@@ -194,7 +194,8 @@ class Pair:
         now_ns = self._around.clock.monotonic_ns()
         other = self._election.other
         me = self._me()
-        if self._election.role == "waiting" and not self._election.is_there(now_ns):
+        waits = self._election.role == "waiting" or self._election.nobody_can_tell
+        if waits and not self.leads and not self._election.is_there(now_ns):
             me = me._replace(other_listens=listens(self._config.peer))
         decision = self._election.decide(me, now_ns)
         if by_hand and not self.leads:

@@ -148,6 +148,41 @@ def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
     site.become("standby")
     site.hear("active", units=0)
     assert site.decide(LEASE_S) == "lead"
+    assert not site.election.is_cut_off(site.now_ns)
+
+
+def test_where_nobody_could_tell_a_router_that_opens_again_is_waited_for() -> None:
+    """As both do when the first unit is enrolled: for seconds neither station hears the other."""
+    site = Site()
+    site.become("standby")
+    site.hear("active", units=0)
+    site.election.note_token(there=False)
+    for listens in (True, False, True, False):
+        site.me = site.me._replace(other_listens=listens)
+        assert site.decide(0.9) == "stay"
+    site.hear("active", units=1)
+    assert site.decide() == "stay"
+
+
+def test_where_nobody_could_tell_a_station_that_is_gone_is_not_waited_for_long() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active", units=0)
+    site.me = site.me._replace(other_listens=True)
+    assert site.decide(LEASE_S) == "stay"
+    site.me = site.me._replace(other_listens=False)
+    assert site.decide(0.9) == "stay"
+    assert site.decide(0.1) == "lead"
+
+
+def test_where_nobody_could_tell_a_station_that_hangs_is_taken_over_from_in_the_end() -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active", units=0)
+    site.me = site.me._replace(other_listens=True)
+    for _ in range(4):
+        assert site.decide(LEASE_S) == "stay"
+    assert site.decide(LEASE_S) == "lead"
 
 
 def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
