@@ -10,7 +10,10 @@ import pytest
 import pytest_asyncio
 
 from base_station.bench.rig.station import free_port
+from base_station.data_folder import DataFolder
 from shared.clock import ManualClock
+from tests.forgetting_folders import split_log
+from tests.forgetting_story import Story
 from tests.station import DeskStation
 from tests.station_command import Command, Unit
 
@@ -62,3 +65,11 @@ def unit(port: int) -> Iterator[Unit]:
     unit = Unit(port, "FF-01")
     yield unit
     unit.close()
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A station's folder with people in it, and a log of several segments."""
+    folder = Story(tmp_path_factory.mktemp("told") / "station").folder
+    split_log(DataFolder(folder).log, 4)
+    return folder

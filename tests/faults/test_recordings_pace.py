@@ -1,0 +1,83 @@
+"""How much of a recording is asked for at a time, and what a link or a bus that fails costs."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from base_station.recordings.fetch import Fetch, FetchState, Wanted
+from shared.clock import ManualClock
+from tests.recorded_unit import U, finish
+from tests.telling_unit import TellingUnit, pulled
+
+
+@pytest.mark.parametrize(("others_s", "link_s", "grows"), [(20.0, 0.0, True), (0.0, 20.0, False)])
+def test_what_other_units_take_is_no_time_of_this_ones_link(
+    tmp_path: Path, others_s: float, link_s: float, grows: bool
+) -> None:
+    """One that is out of reach may take seconds of every round."""
+    unit, clock = TellingUnit(a=bytes(100_000)), ManualClock()
+    unit.before = lambda _: clock.advance(link_s)
+    fetch = Fetch(unit.ask, tmp_path, Wanted(U, 1, 2), clock)
+    for _ in range(8):
+        fetch.step()
+        clock.advance(others_s)
+    fetch.close()
+    assert (unit.pieces[-1] > 10 * unit.pieces[0]) == grows
+
+
+def test_a_link_that_gets_thin_is_asked_for_as_little_as_it_carries(tmp_path: Path) -> None:
+    """What it cannot carry in time is not asked for again and again."""
+    content = random.Random(1).randbytes(300_000)
+    unit, carried_bytes = TellingUnit(a=content), len(content)
+
+    def ask(unit_id: str, question: str) -> bytes | None:
+        answer = unit.ask(unit_id, question)
+        return answer if len(answer) <= carried_bytes else None
+
+    fetch = Fetch(ask, tmp_path, Wanted(U, 1, 2), ManualClock())
+    for _ in range(8):
+        fetch.step()
+    assert unit.pieces[-1] > 10 * unit.pieces[0]
+    carried_bytes = 2000
+    came = fetch.done_bytes
+    for _ in range(10):
+        fetch.step()
+    assert fetch.done_bytes > came
+    carried_bytes = len(content)
+    finish(fetch)
+    assert pulled(tmp_path) == {"a.mcap": content}
+
+
+def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_path: Path) -> None:
+    unit = TellingUnit(a=b"all of it")
+
+    def lie(question: str) -> None:
+        unit.files["boot/a.mcap"] = b"all of it" if question.startswith("index") else b"half"
+
+    unit.before = lie
+    fetch = unit.pull(tmp_path)
+    states = []
+    for _ in range(8):
+        fetch.step()
+        states.append(fetch.state)
+    fetch.close()
+    assert FetchState.WAITING in states[4:], "the desk rests then"
+    assert not fetch.state.is_over
+
+
+def test_a_bus_that_fails_ends_no_pull(tmp_path: Path) -> None:
+    unit, failures = TellingUnit(a=b"all of it"), [RuntimeError("can't start new thread")]
+
+    def fail_once(_: str) -> None:
+        if failures:
+            raise failures.pop()
+
+    unit.before = fail_once
+    fetch = unit.pull(tmp_path)
+    fetch.step()
+    fetch.step()
+    assert (fetch.state, "does not answer" in fetch.problem) == (FetchState.WAITING, True)
+    assert finish(fetch).state is FetchState.DONE

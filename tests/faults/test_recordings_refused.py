@@ -1,0 +1,73 @@
+"""What is refused of a recording: other files, senseless questions, a second pull at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from base_station.recordings.fetch import Fetch, FetchState, Wanted
+from shared.clock import SystemClock
+from shared.errors import DataFolderInUseError
+from shared.messages.recording import (
+    RecordedFile,
+    RecordingIndex,
+    RecordingPiece,
+)
+from tests.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
+
+
+@pytest.mark.parametrize(("from_s", "to_s"), [(-900.0, -800.0), (SECONDS + 900, SECONDS + 1900)])
+def test_a_window_without_a_recording_is_said(
+    unit: RecordedUnit, tmp_path: Path, from_s: float, to_s: float
+) -> None:
+    fetch = finish(begin(unit, tmp_path, unit.window(from_s, to_s)))
+    assert fetch.state is FetchState.FAILED
+    assert "no recording of that time" in fetch.problem
+
+
+@pytest.mark.parametrize(
+    "name", ["../../etc/passwd", "/etc/passwd", "a/../b", "..", "a/b/c", "a/.."]
+)
+def test_a_unit_cannot_name_a_file_outside_its_folder(tmp_path: Path, name: str) -> None:
+    def ask(_: str, question: str) -> bytes | None:
+        assert question.startswith("index")
+        return RecordingIndex((RecordedFile(name, 10),), 1).to_bytes()
+
+    fetch = finish(Fetch(ask, tmp_path, Wanted(U, 1, 2), SystemClock()))
+    assert fetch.state is FetchState.FAILED
+    assert "names files" in fetch.problem
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "piece?path=../journal.sqlite;offset=0;length=10",
+        "piece?path=calibrations/../journal.sqlite;offset=0;length=10",
+        "piece?path=/etc/passwd;offset=0;length=10",
+    ],
+)
+def test_a_station_gets_nothing_but_the_recording(unit: RecordedUnit, question: str) -> None:
+    answer = unit.ask(U, question)
+    assert answer is not None
+    piece = RecordingPiece.from_bytes(answer)
+    assert piece.gone
+    assert piece.data == b""
+
+
+@pytest.mark.parametrize(
+    "question",
+    ["piece?path=a", "index?from=x;to=2", "what?", "piece?path=a/b;offset=-1;length=3", "digest?"],
+)
+def test_questions_that_make_no_sense_are_not_answered(unit: RecordedUnit, question: str) -> None:
+    answer = unit.ask(U, question)
+    assert answer is None or RecordingPiece.from_bytes(answer).gone
+
+
+def test_two_pulls_from_one_unit_do_not_write_over_each_other(
+    unit: RecordedUnit, tmp_path: Path
+) -> None:
+    fetch = begin(unit, tmp_path)
+    with pytest.raises(DataFolderInUseError, match="pull"):
+        begin(unit, tmp_path)
+    fetch.close()

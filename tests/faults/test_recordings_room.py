@@ -1,0 +1,84 @@
+"""A pull of a recording where the station's disk has no room."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from base_station.recordings import fetch as fetching
+from base_station.recordings.fetch import FetchState
+from tests.recorded_unit import RecordedUnit, U, begin, finish
+from tests.telling_unit import TellingUnit
+
+
+def test_a_disk_that_has_no_room_is_said_before_anything_is_pulled(
+    unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fetch = begin(unit, tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        for _ in range(5):
+            fetch.step()
+        assert fetch.state is FetchState.WAITING
+        assert "when the disk is freed" in fetch.problem
+        assert "piece" not in unit.questions
+    assert finish(fetch).state is FetchState.DONE
+
+
+def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
+    unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fetch = begin(unit, tmp_path)
+    for _ in range(15):
+        fetch.step()
+    asked = unit.questions.count("piece")
+    assert 0 < fetch.done_bytes < fetch.total_bytes
+    with monkeypatch.context() as patched:
+        patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
+        for _ in range(5):
+            fetch.step()
+        assert fetch.state is FetchState.WAITING
+        assert unit.questions.count("piece") <= asked + 1  # which was asked before
+    fetch = finish(fetch)
+    assert fetch.state is FetchState.DONE
+    for one in unit.boot.iterdir():
+        assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
+
+
+def test_a_disk_that_gets_full_on_the_way_is_said_and_what_came_is_kept(
+    unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fetch = begin(unit, tmp_path)
+    for _ in range(15):
+        fetch.step()
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "fsync", full)
+        finish(fetch)
+    assert fetch.state is FetchState.FAILED
+    assert "No space left on device" in fetch.problem
+    assert finish(begin(unit, tmp_path)).state is FetchState.DONE
+
+
+def test_what_is_here_of_other_times_makes_no_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unit = TellingUnit(old=b"old" * 1000)
+    finish(unit.pull(tmp_path))
+    unit.files = {f"boot/{name}.mcap": bytes(400) for name in "ab"}
+    unit.pieces.clear()
+    free_bytes = fetching._SPARED_BYTES + 500
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=free_bytes))
+    fetch = unit.pull(tmp_path)
+    for _ in range(5):
+        fetch.step()
+    fetch.close()
+    assert fetch.state is FetchState.WAITING
+    assert unit.pieces == []

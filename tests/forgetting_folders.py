@@ -1,0 +1,50 @@
+"""Forgetting in a station's folder, with no station or one that pulls nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from base_station.data_folder import DataFolder
+from base_station.db.records import Records
+from base_station.db.store import Store
+from base_station.forgetting.forgetter import ClosedLog, Forgetter
+from base_station.past.checkpoints import Checkpoints
+from shared.clock import SystemClock
+from shared.errors import StoreError
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentWriter,
+    read_log,
+)
+
+
+class NoPulls:
+    """Nothing is being pulled."""
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        pass
+
+
+def forgetter_of(data: DataFolder, store: Store, records: Records) -> Forgetter:
+    """Of a station that does not run."""
+    log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
+    return Forgetter(log, store, checkpoints, records, SystemClock(), NoPulls())
+
+
+def fails(*_: object) -> None:
+    """In place of what a full disk does not take."""
+    raise StoreError("the disk is full")
+
+
+def split_log(folder: Path, parts: int) -> None:
+    """The same log in more segments."""
+    records = list(read_log(folder))
+    for path in folder.iterdir():
+        path.unlink()
+    writer = SegmentWriter(folder, SegmentPolicy(chunk_bytes=4096))
+    for number, record in enumerate(records):
+        writer.write(*record)
+        if (number + 1) % (len(records) // parts) == 0:
+            writer.end_segment()
+    writer.close()

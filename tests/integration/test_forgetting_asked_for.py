@@ -1,0 +1,64 @@
+"""Forgetting that is asked for over the API: by whom, by which name, and when not yet."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from base_station.db.principals import Role
+from shared.clock import ManualClock
+from shared.messages import CommandKind
+from shared.messages.station import (
+    ConfirmCommand,
+    RegisterUnit,
+    SendCommand,
+)
+from tests.forgetting_story import ANA, BO
+from tests.station import DeskStation
+
+
+@pytest.fixture
+def desk(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+    (tmp_path / "log").mkdir()
+    desk = DeskStation(tmp_path, clock)
+    yield desk
+    desk.close()
+
+
+async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStation) -> None:
+    desk.hub.connect(asyncio.get_running_loop(), desk.drive)
+    async with desk.client(Role.COMMANDER) as commander:
+        person = (await commander.post("/people", json={"name": ANA})).json()
+        path = f"/people/{person['person_id']}/forget"
+        assert (await commander.post(path, json={"name": ANA})).status_code == 403
+    async with desk.client(Role.ADMINISTRATOR) as administrator:
+        assert (await administrator.post(path, json={"name": BO})).status_code == 422
+        asked = await administrator.post(path, json={"name": ANA})
+        assert (asked.status_code, asked.json()["state"]) == (202, "waiting")
+        while (one := (await administrator.get("/forgettings")).json()[-1])["state"] != "done":
+            await asyncio.sleep(0.02)
+        assert (one["kind"], one["subject_id"], one["share"]) == ("person", person["person_id"], 1)
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 404
+        entries = (await administrator.get("/audit")).json()
+    assert ("administrator", "ForgotPerson") in {(one["by"], one["action"]) for one in entries}
+    assert not any(ANA in one["detail"] for one in entries)
+
+
+async def test_a_message_that_is_on_its_way_is_not_forgotten_before_it_is_there(
+    desk: DeskStation,
+) -> None:
+    desk.hub.connect(asyncio.get_running_loop(), desk.drive)
+    message = SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, "north door", 0.0, 600.0)
+    for action in (RegisterUnit("FF-01", "one"), message):
+        desk.drive.submit("chief", action)
+    async with desk.client(Role.ADMINISTRATOR) as administrator:
+        person = (await administrator.post("/people", json={"name": ANA})).json()
+        path = f"/people/{person['person_id']}/forget"
+        refused = await administrator.post(path, json={"name": ANA})
+        assert refused.status_code == 409
+        assert "message" in refused.json()["detail"]
+        desk.drive.submit("chief", ConfirmCommand("c1", "FF-01"))
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 202

@@ -1,0 +1,168 @@
+"""Forgetting beside a running station: what it holds in memory, saves and pulls goes too."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from concurrent.futures import Future
+from contextlib import ExitStack
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from base_station.app.disk import open_disk
+from base_station.data_folder import DataFolder
+from base_station.db.models import Incident
+from base_station.db.records import Records
+from base_station.db.store import Store
+from base_station.forgetting import forgetter as forgetter_module
+from base_station.forgetting.forgetter import ClosedLog, Forgetter
+from base_station.live.sinks import ActionDone
+from base_station.past.checkpoints import Checkpoints
+from base_station.recorder import Recorder
+from base_station.recordings.desk import RecordingDesk
+from base_station.recordings.fetch import FetchState, Wanted
+from shared.clock import SystemClock
+from shared.errors import StoreError
+from shared.mcap_log import (
+    read_log,
+)
+from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
+from shared.messages.station import (
+    Assign,
+    RegisterUnit,
+    ResolveAlarm,
+    Unassign,
+)
+from tests.forgetting_folders import NoPulls
+from tests.forgetting_story import ANA, BO, Walker
+from tests.live_station import LiveStation
+from tests.waiting import until
+
+
+def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    with LiveStation(tmp_path) as station, ExitStack() as closing:
+        store = closing.enter_context(Store(folder.database))
+        records = Records(store, SystemClock())
+        forgetter = Forgetter(
+            station.recorder, store, station.checkpoints, records, SystemClock(), NoPulls(),
+            station.drive.submit,
+        )  # fmt: skip
+        station.act(RegisterUnit("FF-01", "FF-01"))
+        station.act(Assign("FF-01", "p-77", ANA, "", ""))
+        walker = Walker(station, "FF-01")
+        walker.walk(10, 3.0)
+        walker.press_mayday()
+        (mayday,) = station.pipeline.state.alarms.values()
+        station.act(ResolveAlarm(mayday.alarm_id, f"spoke with {ANA}"))
+        station.act(Unassign("FF-01"))
+        station.act(RegisterUnit("FF-02", "FF-02"))
+        station.act(Assign("FF-02", "p-bo", BO, "", ""))
+        Walker(station, "FF-02").press_mayday()
+        forgetter.person("admin", "p-77")
+        unit = station.pipeline.state.units["FF-01"]
+        assert unit.trail == []
+        assert unit.fused is None
+        saved = station.pipeline.checkpoint()
+        assert ANA.encode() not in saved
+        assert BO in station.pipeline.state.alarms["mayday|FF-02"].text
+        station.act(RegisterUnit("FF-03", "FF-03"))  # the log goes on
+        assert len(station.recorder.segments()) == 2
+    assert len(list(read_log(folder.log))) > 10
+    text = b"".join(payload for _, _, payload in read_log(folder.log)).decode("utf-8", "ignore")
+    assert ANA not in text
+    for path in folder.checkpoints.glob("*.checkpoint"):
+        found = station.checkpoints.latest(int(path.stem))
+        assert ANA.encode() not in msgspec.msgpack.encode(found)
+
+
+def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: Path) -> None:
+    folder, clock, acted = DataFolder(tmp_path), SystemClock(), []
+    with ExitStack() as closing:
+        recorder = Recorder(folder.log, clock)
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        with disk.store.write() as session:
+            session.add(
+                Incident(
+                    incident_id="i1", name="", opened_ns=1, opened_by="bo", closed_ns=None,
+                    closed_by="",
+                )
+            )  # fmt: skip
+        desk = disk.forgetting_desk(
+            NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True
+        )
+        with desk:
+            desk.add("ada", "person", "p-77")
+            until(lambda: "an incident is open" in desk.all()[0].problem)
+        assert acted == []
+
+
+def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
+    tmp_path: Path, told: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What it saves before that has everything in it."""
+    data, happened = DataFolder(shutil.copytree(told, tmp_path / "station")), list[str]()
+
+    class Acted(Future[ActionDone]):
+        def result(self, timeout: float | None = None) -> ActionDone:
+            assert timeout is not None
+            happened.append("acted")
+            return ActionDone("", 0, None)
+
+    checkpoints = Checkpoints(data.checkpoints)
+    monkeypatch.setattr(checkpoints, "clear", lambda: happened.append("cleared"))
+    with Store(data.database) as store:
+        Forgetter(
+            ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()), SystemClock(),
+            NoPulls(), lambda _by, _action: Acted(),
+        ).incident("ada", "i1")  # fmt: skip
+        assert happened == ["acted", "acted", "cleared", "cleared"]
+        monkeypatch.setattr(forgetter_module, "_ACTED_WITHIN_S", 0.0)
+        with pytest.raises(StoreError, match="did not get to"):
+            Forgetter(
+                ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()),
+                SystemClock(), NoPulls(), lambda _by, _action: Future(),
+            ).person("ada", "p-77")  # fmt: skip
+
+
+def test_a_recording_that_is_being_pulled_does_not_come_back(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    asked: list[str] = []
+
+    def ask(unit_id: str, question: str) -> bytes | None:
+        asked.append(f"{unit_id} {question}")
+        what, _, parameters = question.partition("?")
+        told = dict(pair.split("=", 1) for pair in parameters.split(";"))
+        if what == "index":
+            file = RecordedFile("day/000001.mcap", 100_000_000)  # it lasts
+            return RecordingIndex((file,), 1).to_bytes()
+        offset, data = int(told["offset"]), b"somebody walked" * 50
+        digest = hashlib.sha256(data).digest()
+        return RecordingPiece(offset, data, digest, gone=False).to_bytes()
+
+    def others() -> list[Path]:
+        return [path for path in folder.recordings.rglob("*.mcap*") if path.is_file()]
+
+    with RecordingDesk(ask, folder.recordings, SystemClock()) as pulls:
+        pulls.add("ada", Wanted("FF-01", 1, 2))
+        until(lambda: any(path.stat().st_size > 3000 for path in others()))
+        with LiveStation(tmp_path) as station, Store(folder.database) as store:
+            station.act(RegisterUnit("FF-01", "FF-01"))
+            station.act(Assign("FF-01", "p-77", ANA, "", ""))
+            station.act(Unassign("FF-01"))
+            Forgetter(
+                station.recorder, store, station.checkpoints, Records(store, SystemClock()),
+                SystemClock(), pulls,
+            ).person("ada", "p-77")  # fmt: skip
+        assert not (folder.recordings / "FF-01").exists()
+        until(lambda: not pulls._running)
+        assert not (folder.recordings / "FF-01").exists()
+        asked.clear()
+    with RecordingDesk(ask, folder.recordings, SystemClock()) as again:
+        (pull,) = again.pulls()
+        assert (pull.state, pull.problem) == (FetchState.FAILED, "deleted: its wearer is forgotten")
+    assert asked == []
+    assert others() == []

@@ -1,0 +1,70 @@
+"""Segments that a crash left torn are ended in order, and what that cost is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from shared.mcap_log import (
+    SegmentReader,
+    SegmentWriter,
+    recover_log,
+    segment_paths,
+)
+from tests.small_log import KEY, T0_NS, on_disk
+
+
+def test_a_recovery_that_was_cut_off_goes_on(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    path.with_name(path.name + ".recovering").write_bytes(b"half made")
+    path.rename(path.with_name(path.name + ".torn"))
+    [recovery] = recover_log(tmp_path)
+    assert recovery.path == path
+    assert recovery.bytes_lost == 0
+    assert "1 records kept" in str(recovery)
+    assert on_disk(tmp_path) == [b"1"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, path.name + ".torn"]
+
+
+def test_of_a_segment_that_is_torn_again_and_again_every_original_is_kept(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    for number in range(3):
+        with path.open("ab") as file:
+            file.write(bytes([number]))
+        assert len(recover_log(tmp_path)) == 1
+    names = [f"{path.name}{torn}" for torn in ("", ".torn", ".torn2", ".torn3")]
+    assert sorted(one.name for one in tmp_path.iterdir()) == names
+    assert [(tmp_path / name).read_bytes()[-1] for name in names[1:]] == [0, 1, 2]
+    assert on_disk(tmp_path) == [b"1"]
+
+
+@pytest.mark.parametrize(("torn_off", "said"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")])
+def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    [path] = segment_paths(tmp_path)
+    with path.open("ab") as file:
+        file.write(torn_off)
+    [recovery] = recover_log(tmp_path)
+    assert said in str(recovery)
+    assert recover_log(tmp_path) == []
+
+
+def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for number in range(2):
+        writer.write(T0_NS + number, KEY, bytes([number]), urgent=True)
+    [path] = segment_paths(tmp_path)
+    with SegmentReader(path) as reader:
+        place = reader._contents.chunks[0].offset + 60
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1
+    path.write_bytes(content)
+    [recovery] = recover_log(tmp_path)
+    assert "is lost" in str(recovery)
+    assert "whole" not in str(recovery)

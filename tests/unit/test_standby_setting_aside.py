@@ -1,0 +1,55 @@
+"""A log is cut where two stations parted, and what stood behind it is kept beside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from base_station.data_folder import DataFolder
+from base_station.feed import LogFeed
+from base_station.recorder import Recorder
+from base_station.standby.places import BEGINNING, Place
+from base_station.standby.setting_aside import mark_told, parts, read_part, set_aside
+from base_station.standby.shared_log import SharedLog
+from shared.clock import SystemClock
+from tests.standby_logs import T0, TICKED, events, written
+
+
+@pytest.mark.parametrize("kept", [0, 1, 7, 20])
+def test_a_cut_log_holds_what_stands_up_to_the_place_and_the_rest_is_beside(
+    tmp_path: Path, kept: int
+) -> None:
+    records = events(20)
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), records)
+    recorder.close()
+    place = BEGINNING
+    for t_ns, _, _ in records[:kept]:
+        place = place.then(t_ns)
+    folder = DataFolder(tmp_path)
+    set_aside(folder, place)
+    left = list(LogFeed(folder.log).records())
+    assert [record for record in left if record[1] == TICKED] == records[:kept]
+    assert len(left) == 2 * kept  # with what was decided
+    (name,) = parts(tmp_path)
+    assert list(read_part(tmp_path, name)) == records[kept:]
+    mark_told(tmp_path, name)
+    assert parts(tmp_path) == []
+
+
+def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -> None:
+    records = events(9)
+    for begin, apart in ((0, b"once"), (9, b"twice")):
+        recorder = Recorder(tmp_path, SystemClock())
+        strays = [(T0 + 10, TICKED, apart)]
+        written(recorder, SharedLog(recorder, SystemClock()), records[begin:] + strays)
+        recorder.close()
+        set_aside(DataFolder(tmp_path), Place(T0 + 7, 2))
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), events(3, start=9))
+    recorder.close()
+    kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+    assert kept == events(12)
+    said = [[payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)]
+    assert said == [[b"once"], [b"twice"]]

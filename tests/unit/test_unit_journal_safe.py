@@ -1,0 +1,93 @@
+"""What a unit's journal is told it may forget, and what it is asked for again."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.journals.unit_journal import Held, Question, UnitJournal
+from shared.messages import JournalBoot, JournalChunk, JournalIndex
+from shared.sequence_set import Run
+from tests.asked_journal import BOOT, answer, asked_in_turn, asked_of, indexed, journal_of, next_of
+
+
+@pytest.mark.parametrize("reports", [1, 2, 3])
+def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -> None:
+    journal = journal_of(Run(1, 100))
+    for number in range(1, reports):
+        journal.report((Held(BOOT, (Run(1, 100 + number),)),), number)
+    question = journal.next_question()
+    if reports < 3:
+        assert question is None
+        return
+    assert question is not None
+    assert question == Question("acknowledge", (("epoch", BOOT), ("to", 100)), urgent=False)
+    index = JournalIndex((JournalBoot(BOOT, 1, 101, 100, 0),)).to_bytes()
+    journal.take(question, index, 1)
+    journal.end(question, 1)
+    assert journal.next_question() is None
+
+
+def test_a_run_of_a_single_message_is_acknowledged_too() -> None:
+    journal = journal_of(Run(1, 1), last=1)
+    for number in range(1, 3):
+        journal.report((Held(BOOT, (Run(1, 1),)),), number)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 1})
+
+
+def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() -> None:
+    """Or it would give up what nobody has, for what the station has had for long."""
+    journal = UnitJournal()
+    held = (Held(BOOT, (Run(51, 100),)),)
+    journal.report(held, 0)
+    indexed(journal, JournalBoot(BOOT, 51, 100, 0, 0))
+    for number in range(1, 4):
+        assert journal.next_question() is None
+        journal.report(held, number)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100})
+
+
+def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
+    journal = journal_of(Run(1, 4), Run(8, 8), last=8)
+    question = journal.next_question()
+    assert question is not None
+    answer(journal, question, JournalChunk(BOOT, 5, 7, (), urgent_only=True))
+    for number in range(2):
+        journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
+        question = journal.next_question()
+        assert question is not None
+        if question.what == "range":
+            answer(journal, question, JournalChunk(BOOT, 5, 7, ()))
+    assert journal.gone == 3
+    for number in (3, 4):
+        journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8})
+
+
+def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30), last=30)
+    for what in ("urgent", "range", "range"):
+        journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 1)
+        question = journal.next_question() or Question("none")
+        assert question.what == what
+        asked = dict(question.parameters)
+        chunk = JournalChunk(BOOT, asked["from"], asked["to"], (), urgent_only=what == "urgent")
+        answer(journal, question, chunk)
+    for _ in range(5):
+        journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 2)
+    assert next_of(journal)[0] == "acknowledge"  # nobody has them
+    journal.start_over()
+    journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 3)
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+
+
+def test_nothing_is_told_to_be_safe_before_it_is_reported_anew() -> None:
+    journal = journal_of(Run(1, 10), last=20)
+    held = (Held(BOOT, (Run(1, 10),)),)
+    asked_in_turn(journal, held[0], 20)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 20})
+    journal.start_over()
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+    asked_of(journal)
+    assert journal.next_question() is None  # the log may have refused these, too
