@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import get_args
 
 import numpy as np
@@ -26,12 +27,13 @@ def scenario_named(name: str) -> Scenario:
     return replace(found, duration_s=130.0)
 
 
-SIMULATIONS = [
-    Simulation(replace(scenario_named(name), worn_on=segment), seed=11)
-    for name in ("climbs-stairs", "gets-hot", "goes-down", "gaits", "track-400m")
-    for segment in get_args(Segment)
-]
-SIMULATED = st.sampled_from(SIMULATIONS)
+@cache
+def simulated(name: str, segment: Segment) -> Simulation:
+    return Simulation(replace(scenario_named(name), worn_on=segment), seed=11)
+
+
+NAMES = ("climbs-stairs", "gets-hot", "goes-down", "gaits", "track-400m")
+SIMULATED = st.builds(simulated, st.sampled_from(NAMES), st.sampled_from(get_args(Segment)))
 
 
 def central(values: Floats) -> Floats:
