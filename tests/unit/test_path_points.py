@@ -42,7 +42,7 @@ POINT = Point(
 def test_every_field_comes_back_to_a_centimetre_and_a_millisecond() -> None:
     fix = PlaceFix(0, -3.211, 4.566, 0.0, 2.503, None)
     later = msgspec.structs.replace(POINT, t_ns=POINT.t_ns + NS_PER_S, floor=NO_FLOOR)
-    fixes = np.concatenate([fix_row(fix, one.t_ns) for one in (later, POINT)])
+    fixes = np.concatenate([fix_row(fix, one.t_ns) for one in (POINT, later)])
     arrays = arrays_of(rows_of([POINT, later]), fixes)
     t_ns = POINT.t_ns // NS_PER_MS * NS_PER_MS
     assert arrays.t_ns.tolist() == arrays.fix_t_ns.tolist() == [t_ns, t_ns + NS_PER_S]

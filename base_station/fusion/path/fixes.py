@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+
 import msgspec
 import numpy as np
 
@@ -9,9 +11,9 @@ from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.packed import CHUNK, Packed, Records
 from base_station.fusion.path.points import FIX_ROW, fix_row
 from base_station.fusion.port import PlaceFix
-from shared.clock import NS_PER_MS, NS_PER_S
+from shared.clock import NS_PER_MS
 
-APART_NS = 2 * NS_PER_S  # their errors are much the same meanwhile
+APART_MS = 2000  # their errors are much the same meanwhile
 _SEEN = "north_cm", "east_cm"
 
 
@@ -19,20 +21,23 @@ class PathFixes(msgspec.Struct, array_like=True):
     """``frame``: how the incident frame has moved since anything was packed."""
 
     packed: Packed = msgspec.field(default_factory=Packed)
-    loose: bytes = b""  # rows, behind the packed ones
+    loose: bytes = b""  # rows by time: what comes late, out of a journal, comes between live ones
 
     def __bool__(self) -> bool:
         return bool(self.loose or self.packed)
 
     def note(self, fix: PlaceFix, t_ns: int, frame: Moved) -> None:
         """Others close by tell the same."""
-        rows = self._loose()
-        if len(rows) and abs(t_ns - int(rows["t_ms"][-1]) * NS_PER_MS) < APART_NS:
+        times_ms, t_ms = self._loose()["t_ms"].tolist(), t_ns // NS_PER_MS
+        at = bisect_left(times_ms, t_ms)
+        if any(abs(near_ms - t_ms) < APART_MS for near_ms in times_ms[max(at - 1, 0) : at + 1]):
             return
+        before, behind = self.loose[: at * FIX_ROW.itemsize], self.loose[at * FIX_ROW.itemsize :]
+        self.loose = before + fix_row(fix, t_ns).tobytes() + behind
+        rows = self._loose()
         if len(rows) > CHUNK:
             self.packed.add(frame.undone().of(rows[:CHUNK], *_SEEN), lambda rows: rows[::2])
             self.loose = rows[CHUNK:].tobytes()
-        self.loose += fix_row(fix, t_ns).tobytes()
 
     def trim(self, before_ms: int) -> None:
         self.packed.cut(before_ms, FIX_ROW)
@@ -52,8 +57,15 @@ class PathFixes(msgspec.Struct, array_like=True):
         )
 
     def rows(self, frame: Moved) -> Records:
-        """All of them, in any order."""
-        return np.concatenate((frame.of(self.packed.rows(FIX_ROW), *_SEEN), self._loose()))
+        """By time, none close to another: what came late may lie beside packed ones."""
+        rows = np.concatenate((frame.of(self.packed.rows(FIX_ROW), *_SEEN), self._loose()))
+        rows = rows[np.argsort(rows["t_ms"], kind="stable")]
+        kept, last_ms = [], -APART_MS
+        for row, t_ms in enumerate(rows["t_ms"].tolist()):
+            if t_ms - last_ms >= APART_MS:
+                kept.append(row)
+                last_ms = t_ms
+        return rows[kept]
 
     def _loose(self) -> Records:
         return np.frombuffer(self.loose, FIX_ROW)

@@ -85,8 +85,7 @@ class PathArrays:
 
 
 def arrays_of(rows: Records, fixes: Records) -> PathArrays:
-    """Points in their order, fixes in any."""
-    fixes = fixes[np.argsort(fixes["t_ms"], kind="stable")]
+    """Both by time."""
     return PathArrays(
         t_ns=rows["t_ms"] * NS_PER_MS,
         own_m=_metres(rows, "north_cm", "east_cm"),

@@ -1,0 +1,78 @@
+"""The satellite fixes that are kept with a unit's own path."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.moved import Moved
+from base_station.fusion.port import PlaceFix
+from shared.clock import NS_PER_S
+from tests.walked_path import walked
+
+
+def taken(history: PathHistory, t_s: float) -> None:
+    """A fix that tells by where it lies when it was taken."""
+    history.fix(PlaceFix(0, t_s, 0.0, 0.0, 3.0, None), round(t_s * NS_PER_S))
+
+
+def kept_s(history: PathHistory) -> list[float]:
+    arrays = history.arrays()
+    times_s: list[float] = (arrays.fix_t_ns / NS_PER_S).tolist()
+    assert arrays.fix_m[:, 0].tolist() == times_s
+    return times_s
+
+
+def test_fixes_close_by_are_one() -> None:
+    history = walked(10)
+    for fifth in range(50):
+        taken(history, fifth / 5)
+    assert kept_s(history) == [0.0, 2.0, 4.0, 6.0, 8.0]
+
+
+def test_late_ones_that_come_between_live_ones_are_no_more_than_they_would_have_been() -> None:
+    """A journal is read while the receiver goes on."""
+    history = walked(10)
+    for second in range(600):
+        taken(history, 1000.0 + second)
+        taken(history, float(second))
+    assert history.fixes.packed
+    live = [1000.0 + second for second in range(0, 600, 2)]
+    assert kept_s(history) == [*map(float, range(0, 600, 2)), *live]
+
+
+@pytest.mark.parametrize("late_s", [100.5, 1001.0])
+def test_a_late_one_beside_one_that_is_known_tells_nothing_new(late_s: float) -> None:
+    """Packed or not."""
+    history = walked(10)
+    for second in range(0, 1004, 2):
+        taken(history, float(second))
+    assert history.fixes.packed
+    before = kept_s(history)
+    taken(history, late_s)
+    assert kept_s(history) == before
+
+
+def test_late_ones_fill_a_gap_whichever_comes_first() -> None:
+    history = walked(10)
+    for late_s in (0.0, 2.0, 20.0, 22.0, 18.0, 19.0, 3.0, 4.0, 10.0):
+        taken(history, late_s)
+    assert kept_s(history) == [0.0, 2.0, 4.0, 10.0, 18.0, 20.0, 22.0]
+
+
+def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:
+    history = walked(20)
+    assert not history.move_fixes(0.3, 1.0, 2.0)
+    for second in range(0, 800, 2):
+        history.fix(PlaceFix(0, 0.1 * second, 5.0, 0.0, 3.0, None), second * NS_PER_S)
+    history.reframe(0.4, 3.0, -2.0, 0.0)
+    before = history.arrays()
+    assert history.fixes.packed
+    assert history.move_fixes(-0.7, 10.0, 4.0)
+    assert history.is_refixed
+    after = history.arrays()
+    expected_m = [Moved(-0.7, 10.0, 4.0).place(*place_m) for place_m in before.fix_m.tolist()]
+    assert after.fix_m == pytest.approx(np.array(expected_m), abs=0.04)
+    assert np.array_equal(after.shown_m, before.shown_m)
+    assert not after.shown_std_m.any(), "what was estimated with them tells nothing"
