@@ -1,0 +1,86 @@
+"""What comes late of a unit's own path: into its gaps, and before its beginning."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from base_station.fusion.path.history import PathHistory
+from base_station.fusion.path.packed import CHUNK
+from base_station.fusion.path.points import DOUBTFUL, RESTART
+from base_station.fusion.port import Estimate, Start
+from shared.clock import NS_PER_S
+from shared.messages import Position
+from shared.quality import Quality
+from tests.walked_path import at
+
+
+def test_what_comes_late_fills_a_gap() -> None:
+    history = PathHistory()
+    for t_s in (0, 1, 2, 22, 23):
+        history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
+    before = history.arrays()
+    fill(history, at(12.0, 12.0))
+    fill(history, at(12.5, 12.5))
+    fill(history, at(17.0, 17.0, quality=Quality.DEGRADED))
+    fill(history, at(15.0, 15.0, boot_id=9))
+    after = history.arrays()
+    assert len(after) == len(before) + 2
+    row = after.own_m[:, 0].tolist().index(12.0)
+    assert after.flags[row : row + 2].tolist() == [0, DOUBTFUL]
+    assert after.down_m[row] == -12.0, "as it was estimated for that time"
+    assert after.moving_s[row] == pytest.approx(10.0), "half of the way"
+    assert after.moving_s.sum() == pytest.approx(before.moving_s.sum())
+
+
+def fill(history: PathHistory, position: Position) -> None:
+    """The wearer climbed a metre a second."""
+    t_ns = position.header.t_mono_ns
+    down_m = -t_ns / NS_PER_S
+    place = position.north_m, position.east_m, down_m, 0.5, 0.5, 0.5
+    estimate = Estimate(t_ns, *place, 0.0, 0.0, 0.1, Quality.GOOD, "", None)
+    history.fill(position, t_ns, estimate, 0)
+
+
+def test_a_run_of_which_the_end_was_heard_first_begins_where_it_began() -> None:
+    """An hour of the journal, the newest first, while the wearer walks on."""
+    history = PathHistory()
+    history.begin_with(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.2))
+    heard_s = 3600
+    for second in range(240):
+        history.note(at(heard_s + second, heard_s + second), (heard_s + second) * NS_PER_S, False)
+        for late_s in range(heard_s - 15 * second, heard_s - 15 * (second + 1), -1):
+            fill(history, at(late_s, late_s))
+    arrays = history.arrays()
+    assert history.begin_ns == history.boot_begin_ns == 2 * NS_PER_S
+    assert history.start_ns == history.begin_ns, "nobody had been heard when that was said"
+    assert np.diff(arrays.t_ns).max() <= 2 * NS_PER_S
+    assert (np.diff(arrays.t_ns) > 0).all()
+    assert arrays.moving_s.sum() == pytest.approx(3600 + 239 - 2)
+    for second in range(400):
+        history.note(at(3840 + second, 3840 + second), (3840 + second) * NS_PER_S, False)
+    assert len(history.points) <= 2 * CHUNK, "packed once nothing comes late any more"
+
+
+def test_a_run_that_was_heard_late_begins_after_the_one_before() -> None:
+    history = PathHistory()
+    history.note(at(0.0, 5.0), 0, jumped=False)
+    history.note(at(60.0, 30.0, boot_id=2), 60 * NS_PER_S, jumped=False)
+    history.note(at(61.0, 31.0, boot_id=2), 61 * NS_PER_S, jumped=False)
+    history.begin_with(Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2))
+    for late_s in (50.0, 40.0, 45.0):
+        fill(history, at(late_s, late_s - 30.0, boot_id=2))
+    arrays = history.arrays()
+    assert arrays.own_m[:, 0].tolist() == [5.0, 10.0, 15.0, 20.0, 30.0, 31.0]
+    assert np.flatnonzero(arrays.flags & RESTART).tolist() == [1]
+    assert history.start_ns == 40 * NS_PER_S
+
+
+def test_what_was_before_an_incident_is_not_brought_back() -> None:
+    history = PathHistory()
+    history.note(at(60.0, 60.0), 60 * NS_PER_S, jumped=False)
+    history.begin_incident(60 * NS_PER_S, 30 * NS_PER_S)
+    fill(history, at(20.0, 20.0))
+    assert history.begin_ns == 60 * NS_PER_S
+    fill(history, at(40.0, 40.0))
+    assert history.begin_ns == 40 * NS_PER_S
