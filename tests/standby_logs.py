@@ -1,4 +1,4 @@
-"""Events for the logs of two stations, and writing them with what is decided from them."""
+"""Events for the logs of two stations, written with what is decided from them; a full disk."""
 
 from __future__ import annotations
 
@@ -30,3 +30,23 @@ def written(recorder: Recorder, log: SharedLog, records: list[Record]) -> None:
 
 def disk(recorder: Recorder) -> LogFeed:
     return LogFeed(recorder.folder, recorder.flush)
+
+
+class FullDisk:
+    """A ``Log`` that takes as much as it has room for."""
+
+    problem, little_room = "the log cannot be written", "only 1 MB is free"
+    is_behind = False
+
+    def __init__(self) -> None:
+        self.room = 0
+        self.kept: list[Record] = []
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        self.room -= 1
+        if self.room >= 0:
+            self.kept.append((t_ns, key, payload))
+        return self.room >= 0
+
+    def flush(self) -> bool:
+        return True

@@ -224,18 +224,18 @@ class Pair:
         around.log.follows = around.log.is_cut_short = (
             False  # a log with a hole is better than none
         )
-        around.log.wait_reached(self._follower.delivered, _STEP_S)
-        place = around.log.place
-        around.clock.not_before(place.t_ns)
+        around.log.wait_offered(self._follower.delivered, _STEP_S)
+        place, offered = around.log.place, around.log.offered
+        around.clock.not_before(offered.t_ns)
         term = max(around.log.term, other.term if other is not None else 0) + 1
         header = self._stamper.header()
         action = TakeOver(term, self._config.name, place.t_ns, place.events)
         action_id = f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, STATION_ID, action)
-        t_ns = max(header.t_utc_ns, place.t_ns)
+        t_ns = max(header.t_utc_ns, offered.t_ns)
         around.feed.deliver([(t_ns, OPERATOR.key(STATION_ID), encode(message))])
         around.feed.lead()
-        around.log.wait_reached(place.then(t_ns), _STEP_S)
+        around.log.wait_offered(offered.then(t_ns), _STEP_S)
         self._election.role = "active"
         logger.warning("%s takes over (term %d)", self._config.name, term)
         around.on_lead()

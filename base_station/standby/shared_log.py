@@ -37,12 +37,13 @@ class SharedLog:
         self._recent: list[Record] = []
         self._bytes = 0
         self._durable = BEGINNING
+        self._offered = BEGINNING
         self._take_overs: list[TakeOver] = []
         self._log_id = 0
 
     def begin(self, place: Place, log_id: int, take_overs: Sequence[TakeOver]) -> None:
         """Before anything is written: what the log says so far."""
-        self._first = self._durable = place
+        self._first = self._durable = self._offered = place
         self._log_id = log_id
         self._take_overs = list(take_overs)
 
@@ -63,6 +64,9 @@ class SharedLog:
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         with self._news:  # in one order here and there
             kept = not self.is_cut_short and self._log.write(t_ns, key, payload)
+            if is_event(key):
+                self._offered = self._offered.then(t_ns)
+                self._news.notify_all()
             if kept:
                 self.written_ns = self._clock.monotonic_ns()
                 if is_event(key):
@@ -87,6 +91,11 @@ class SharedLog:
         """Behind the last event written."""
         with self._news:
             return self._place()
+
+    @property
+    def offered(self) -> Place:
+        """Behind the last event that was to be written, whether or not the disk took it."""
+        return self._offered
 
     @property
     def durable(self) -> Place:
@@ -116,6 +125,11 @@ class SharedLog:
         with self._news:
             return self._news.wait_for(lambda: self._place() >= place, timeout_s)
 
+    def wait_offered(self, place: Place, timeout_s: float) -> bool:
+        """As ``wait_reached``, though the log has a hole or ends before."""
+        with self._news:
+            return self._news.wait_for(lambda: self._offered >= place, timeout_s)
+
     def behind(self, place: Place, most_bytes: int) -> list[Record] | None:
         """The events behind ``place``, as many as that; None: they are no longer at hand."""
         with self._news:
@@ -141,7 +155,6 @@ class SharedLog:
             self._forget_oldest()
         if key == _OPERATOR_KEY:
             self._note_action(payload)
-        self._news.notify_all()
 
     def _forget_oldest(self) -> None:
         gone = 0

@@ -15,7 +15,7 @@ from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
 from shared.messages import STATION_ID, Header, OperatorAction
 from shared.messages.station import ForgetWearers, TakeOver
-from tests.standby_logs import T0, Record, disk, events, written
+from tests.standby_logs import T0, FullDisk, disk, events, written
 
 
 @pytest.fixture
@@ -109,26 +109,6 @@ def test_the_term_is_that_of_the_last_take_over_also_one_that_came_later(
     assert log.term == 4
     assert [one.term for one in log.take_overs] == [3, 4]
     assert recorder.flush()
-
-
-class FullDisk:
-    """A ``Log`` that takes as much as it has room for."""
-
-    problem, little_room = "the log cannot be written", "only 1 MB is free"
-    is_behind = False
-
-    def __init__(self) -> None:
-        self.room = 0
-        self.kept: list[Record] = []
-
-    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
-        self.room -= 1
-        if self.room >= 0:
-            self.kept.append((t_ns, key, payload))
-        return self.room >= 0
-
-    def flush(self) -> bool:
-        return True
 
 
 def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> None:
