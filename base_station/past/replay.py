@@ -82,10 +82,13 @@ class ReplaySession:
         self._news.set()
 
     def seek(self, t_ns: int) -> None:
-        """Before the beginning is the beginning, behind the end the end."""
+        """Before the beginning is the beginning; the last millisecond and what is behind it are
+        the end, for a console knows it to a millisecond.
+        """
+        start_ns, end_ns = self._window.start_ns, self._window.end_ns
+        is_end = t_ns // NS_PER_MS >= end_ns // NS_PER_MS
         with self._lock:
-            self._seek_ns = min(max(t_ns, self._window.start_ns), self._window.end_ns)
-            self._at_ns = self._seek_ns
+            self._seek_ns = self._at_ns = end_ns if is_end else max(t_ns, start_ns)
         self._news.set()
 
     def set_speed(self, speed: float) -> None:

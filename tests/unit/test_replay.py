@@ -22,12 +22,12 @@ from base_station.past.playback import Archive, Playback, Record
 from base_station.past.replay import ReplaySession, Window
 from base_station.pipeline import StationPipeline
 from shared.channels import POSITION, backfilled_key
-from shared.clock import NS_PER_S, ManualClock, SystemClock
+from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
 from shared.errors import StoreError, UserError
 from shared.mcap_log import SegmentWriter
 from shared.messages import EventKind, UnitEvent
-from shared.messages.station import Assign, OpenIncident, ReportProblem
+from shared.messages.station import Assign, CloseIncident, OpenIncident, ReportProblem
 from tests.live_station import Screen, make_pipeline
 from tests.station_script import START_NS, Script
 from tests.waiting import until
@@ -189,6 +189,28 @@ def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
     assert at_s(session) == DURATION_S, "behind the end is the end"
     session.play()
     until(lambda: 0.0 < at_s(session) < 60.0)
+
+
+def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
+    tmp_path: Path, screen: Screen
+) -> None:
+    """They say it in whole milliseconds, and hardly an incident is closed on one."""
+    script = Script()
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.now_s = 7.000_345_678
+    script.act(CloseIncident("i1"))
+    window, source = Window("i1", START_NS, script.t_ns), archive(script.records, tmp_path)
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, ManualClock())
+    session.pause()
+    session.seek(session.view().end_ms * NS_PER_MS)
+    incident = picture(session).incident
+    session.play()
+    picture(session)
+    again_s = at_s(session)
+    session.close()
+    assert incident is not None
+    assert incident.closed_ms is not None
+    assert again_s == 0.0
 
 
 def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
