@@ -239,12 +239,13 @@ def _assign(state: StationState, by: str, action: Assign) -> Iterator[UnitState]
     same = unit.person is not None and unit.person.person_id == action.person_id
     unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
+        unit.worn_since_ns = state.t_ns
         accountability.begin(state, unit, by)
     yield unit
 
 
 def _without_wearer(state: StationState, unit: UnitState) -> UnitState:
-    unit.person = None
+    unit.person, unit.worn_since_ns = None, state.t_ns
     accountability.end(state, unit)
     return unit
 

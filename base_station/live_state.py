@@ -85,6 +85,7 @@ class UnitState(Sender):
     label: str = ""
     registered: bool = False
     person: Person | None = None
+    worn_since_ns: int = 0  # by that person, or by nobody
     link: Link = "never"
     status: Status | None = None
     status_ns: int = 0

@@ -239,11 +239,12 @@ class StationPipeline:
         return []
 
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
-        command = command_book.note_reply(self.state, unit, reply)
+        now_ns = self.state.t_ns  # an answer may have waited in the unit's journal
+        said_ns = captured_ns(unit.boots, reply.header, now_ns) or now_ns
+        command = command_book.note_reply(self.state, unit, reply, said_ns)
         if command is not None and reply.state is CommandState.ACKNOWLEDGED:
-            now_ns = self.state.t_ns  # an answer may have waited in the unit's journal
-            answered_ns = captured_ns(unit.boots, reply.header, now_ns) or now_ns
-            accountability.note_answer(self.state, unit, command, unit.name, answered_ns)
+            by = command.deliveries[unit.unit_id].acknowledged_by
+            accountability.note_answer(self.state, unit, command, by, said_ns)
         return _touched(command)
 
     def _repin(self, unit_ids: Collection[str]) -> list[Output]:

@@ -242,6 +242,35 @@ def test_a_reply_out_of_the_journal_counts():
     assert states(script) == {"FF-01": "acknowledged"}
 
 
+@pytest.mark.parametrize(("said", "by"), [("before", "Person 1"), ("after", "Person 4")])
+def test_a_late_acknowledgement_is_of_who_wore_the_unit_when_it_was_said(said, by):
+    script = to_one()
+    script.status("FF-01")
+    replies = {}
+    for when in ("before", "after"):
+        script.wait(5)
+        script.status("FF-01")
+        replies[when] = CommandReply(script.header("FF-01"), "c1", ACKNOWLEDGED)
+        script.wait(5)
+        if when == "before":
+            script.act(Unassign("FF-01"))
+            script.act(Assign("FF-01", "p4", "Person 4", "", ""))
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(replies[said]))
+    assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == by
+
+
+def test_who_wore_a_unit_that_was_told_something_is_forgotten_with_it():
+    script = to_one()
+    reply = CommandReply(script.header("FF-01"), "c1", ACKNOWLEDGED)
+    script.status("FF-01")
+    script.wait(5)
+    script.act(Unassign("FF-01"))
+    script.act(ForgetWearers("FF-01"))
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(reply))
+    assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == FORGOTTEN
+    assert b"Person 1" not in script.pipeline.checkpoint()
+
+
 def test_who_speaks_as_the_station_must_be_the_station():
     script = to_one()
     forged = CommandReply(script.header("FF-02"), "c1", ACKNOWLEDGED)
