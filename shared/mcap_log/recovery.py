@@ -7,7 +7,7 @@ from pathlib import Path
 
 from shared.errors import LogError
 from shared.mcap_log.durable_file import sync_folder
-from shared.mcap_log.folder import segment_paths
+from shared.mcap_log.folder import segment_number, segment_paths
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment
 
@@ -42,11 +42,11 @@ def recover_log(folder: Path) -> list[Recovery]:
     """
     try:
         for half_made in folder.glob(f"*.mcap{MAKING}"):
+            path = half_made.with_name(half_made.name.removesuffix(MAKING))
+            torn = _torn_of(path)
+            if torn and not path.exists():  # the last recovery ended between its two renamings
+                torn[-1].rename(path)
             half_made.unlink()
-        for torn in folder.glob(f"*.mcap{TORN}"):
-            clean = torn.with_name(torn.name.removesuffix(TORN))
-            if not clean.exists():  # the last recovery came to an end between its two renamings
-                torn.rename(clean)
         return [
             recovery
             for path in segment_paths(folder)
@@ -81,11 +81,19 @@ def _recover_segment(path: Path) -> Recovery | None:
         return Recovery(path, torn_path, messages, reader.bytes_lost, tuple(reader.damage))
 
 
+def _torn_of(path: Path) -> list[Path]:
+    """The torn originals that are kept of a segment, oldest first."""
+    torn = path.parent.glob(f"{path.name}{TORN}*")
+    return sorted(filter(segment_number, torn), key=_tear)
+
+
+def _tear(torn: Path) -> int:
+    """Of how many it is of its segment."""
+    return int(torn.name.rpartition(TORN)[2] or 1)
+
+
 def _free_name(path: Path) -> Path:
-    """Where the torn original goes; an earlier one of the same segment is kept too."""
-    torn = path.with_name(path.name + TORN)
-    number = 2
-    while torn.exists():
-        torn = path.with_name(f"{path.name}{TORN}{number}")
-        number += 1
-    return torn
+    """Where the torn original goes; earlier ones of the same segment are kept too."""
+    before = _torn_of(path)
+    number = 1 + _tear(before[-1]) if before else 1
+    return path.with_name(f"{path.name}{TORN}{number if number > 1 else ''}")

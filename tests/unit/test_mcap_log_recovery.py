@@ -43,6 +43,36 @@ def test_of_a_segment_that_is_torn_again_and_again_every_original_is_kept(tmp_pa
     assert on_disk(tmp_path) == [b"1"]
 
 
+def test_a_recovery_that_was_cut_off_goes_on_with_the_last_of_several_originals(
+    tmp_path: Path,
+) -> None:
+    writer = SegmentWriter(tmp_path)
+    originals = []
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, bytes([number]), urgent=True)
+        originals.append(segment_paths(tmp_path)[0].read_bytes())
+    [path] = segment_paths(tmp_path)
+    path.unlink()
+    for torn, original in zip((".torn", ".torn2", ".torn10"), originals, strict=True):
+        path.with_name(path.name + torn).write_bytes(original)
+    path.with_name(path.name + ".torn.copy").write_bytes(b"somebody's own")
+    path.with_name(path.name + ".recovering").write_bytes(b"half made")
+    [recovery] = recover_log(tmp_path)
+    assert recovery.torn_path.read_bytes() == originals[-1]
+    assert on_disk(tmp_path) == [b"\0", b"\1", b"\2"]
+
+
+def test_a_segment_that_was_moved_away_does_not_come_back(tmp_path: Path) -> None:
+    """What was found of it before it was mended stays where it is."""
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    recover_log(tmp_path)
+    [path] = segment_paths(tmp_path)
+    path.unlink()
+    assert recover_log(tmp_path) == []
+    assert [one.name for one in tmp_path.iterdir()] == [path.name + ".torn"]
+
+
 @pytest.mark.parametrize(("torn_off", "said"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")])
 def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) -> None:
     writer = SegmentWriter(tmp_path)

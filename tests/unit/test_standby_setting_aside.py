@@ -13,6 +13,7 @@ from base_station.standby.places import BEGINNING, Place
 from base_station.standby.setting_aside import mark_told, parts, read_part, set_aside
 from base_station.standby.shared_log import SharedLog
 from shared.clock import SystemClock
+from shared.mcap_log import segment_paths
 from tests.standby_logs import T0, TICKED, events, written
 
 
@@ -53,3 +54,22 @@ def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     assert kept == events(12)
     said = [[payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)]
     assert said == [[b"once"], [b"twice"]]
+
+
+def test_what_was_set_aside_does_not_come_back_with_the_next_start(tmp_path: Path) -> None:
+    """It was killed, and what it mended of its log has the torn file beside it."""
+    records = [*events(9), (T0 + 10**12, TICKED, b"apart"), (T0 + 10**12 + 1, TICKED, b"apart too")]
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), records)
+    recorder.close()
+    *_, last = segment_paths(tmp_path / "log")
+    with last.open("rb+") as torn:
+        torn.truncate(last.stat().st_size - 10)
+    Recorder(tmp_path, SystemClock()).close()
+    set_aside(DataFolder(tmp_path), Place(T0 + 7, 2))
+    for _ in range(2):
+        Recorder(tmp_path, SystemClock()).close()
+        kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+        assert kept == records[:9]
+    (name,) = parts(tmp_path)
+    assert list(read_part(tmp_path, name)) == records[9:]
