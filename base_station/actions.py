@@ -19,7 +19,7 @@ from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
 from base_station.pins import book as pin_book
 from base_station.pins.book import PinAction, change_pins, units_of
-from base_station.pins.late import note_late
+from base_station.pins.late_history import note_late
 from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
 from shared.errors import UserError

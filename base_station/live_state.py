@@ -16,7 +16,7 @@ from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.vertical.weather import Barometers
 from base_station.limits import PAR_INTERVAL_S, WORK_LIMIT_S
-from base_station.pins.late import Late
+from base_station.pins.late_history import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
 from base_station.sender import STALE_AFTER_S, Link, Sender
 from base_station.site.learnt_floors import LearntFloors

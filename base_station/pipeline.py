@@ -33,11 +33,11 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, StationState, UnitState
-from base_station.noting import note
-from base_station.pins.late import take_due
+from base_station.pins.late_history import take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
 from base_station.sender import News, Sender
+from base_station.unit_updates import note
 from shared.channels import Channel, Direction, channel_of, tracked_unit
 from shared.errors import UserError
 from shared.messages import (

@@ -25,8 +25,8 @@ from base_station.db.models import Alarm as StoredAlarm
 from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
 from base_station.pins.pin import WAITING, Pin
+from base_station.unit_losses import unkept_problem
 from base_station.unit_views import unit_views
-from base_station.unkept import unkept_problem
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 

@@ -9,7 +9,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from edge.commands import POSITION_RATE_HZ
-from edge.whereabouts import Place
+from edge.expected_field import Place
 from shared.log import LogLevel
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from edge.calibration import Calibration, Correction, identity
 from edge.decimation import Decimator, OncePerPeriod
+from edge.expected_field import ExpectedField, Place
 from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
 from edge.raw_stream import gps_fix, says_what, sighting
@@ -30,7 +31,6 @@ from edge.samples import (
 from edge.sensor_health import SensorHealth
 from edge.timeline import Timeline
 from edge.tracker.port import Tracker
-from edge.whereabouts import Place, Whereabouts
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
@@ -81,7 +81,7 @@ class TrackerPipeline:
         self._positions = PositionStream(stamper, position_rate_hz)
         self._monitor = ActivityMonitor()
         self._health = SensorHealth()
-        self._whereabouts = Whereabouts(identity.place)
+        self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
         self._raw_uplink = raw_uplink
         self._description_times = Decimator(
@@ -142,7 +142,7 @@ class TrackerPipeline:
         def utc_ns_of(t_ns: int) -> int:
             return self._stamper.utc_ns(timeline.to_mono_ns(t_ns))
 
-        learned = self._whereabouts.take(batch, utc_ns_of)
+        learned = self._expected_field.take(batch, utc_ns_of)
         if learned is not None:
             self._tracker.learn_field(*learned)
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from edge.answers import Answers, Parameters
-from edge.box_time import ahead_of
 from edge.data_folder import DataFolder
+from edge.recording_time import ahead_of
 from edge.station_clock import StationClock
 from shared.clock import NS_PER_S
 from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths, segments_within

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from base_station.app.opened import Opened
+from base_station.app.resources import Resources
 from base_station.standby.side import Side
 from base_station.steady_clock import SteadyClock
 from base_station.views import StationFacts
@@ -18,23 +18,23 @@ class Troubled(Protocol):
 
 
 def facts_of(
-    opened: Opened, clock: SteadyClock, side: Side, others: Sequence[Troubled]
+    resources: Resources, clock: SteadyClock, side: Side, others: Sequence[Troubled]
 ) -> StationFacts:
-    parts: tuple[Troubled, ...] = (clock, opened.expiry, opened.renewal, side, *others)
+    parts: tuple[Troubled, ...] = (clock, resources.expiry, resources.renewal, side, *others)
     problems = [
-        *opened.config.standing_problems(),
+        *resources.config.standing_problems(),
         *(problem for part in parts for problem in part.problems()),
     ]
-    if not opened.router.is_open:
+    if not resources.router.is_open:
         problems.append("The bus's router is away and is started again; no unit is linked")
-    if opened.feed.overflowed:
-        lost = opened.feed.overflowed
+    if resources.feed.overflowed:
+        lost = resources.feed.overflowed
         problems.append(f"{lost} messages came faster than this machine can take them")
     return StationFacts(
         problems=tuple(problems),
-        log_bytes=opened.recorder.log_bytes,
-        disk_free_bytes=opened.recorder.disk_free_bytes,
-        insecure=bool(opened.config.plain_endpoints()),
+        log_bytes=resources.recorder.log_bytes,
+        disk_free_bytes=resources.recorder.disk_free_bytes,
+        insecure=bool(resources.config.plain_endpoints()),
         standby=None if side.standing is None else side.standing.view(),
-        recordings=opened.recordings.views(),
+        recordings=resources.recordings.views(),
     )

@@ -14,15 +14,15 @@ from base_station import collector
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.services import Services
-from base_station.app.early import early_console
+from base_station.app.early_console import early_console
 from base_station.app.facts import facts_of
 from base_station.app.folder import cut_log
-from base_station.app.opened import Opened, open_station
 from base_station.app.parts import (
     Announce,
     announce_first_login,
     replay_starter,
 )
+from base_station.app.resources import Resources, open_station
 from base_station.app.start_drive import start_drive
 from base_station.clock_server import ClockServer
 from base_station.commands.downlink import Downlink
@@ -81,8 +81,8 @@ def run_station(config: StationConfig, announce: Announce) -> None:
 
 def _run_once(config: StationConfig, announce: Announce, manager: ServiceManager) -> _Again | None:
     with ExitStack() as closing:
-        opened = open_station(config, announce, closing)
-        return _LiveStation(opened, announce, manager, closing).run()
+        resources = open_station(config, announce, closing)
+        return _LiveStation(resources, announce, manager, closing).run()
 
 
 class _LiveStation:
@@ -93,13 +93,13 @@ class _LiveStation:
     """
 
     def __init__(
-        self, opened: Opened, announce: Announce, manager: ServiceManager, closing: ExitStack
+        self, resources: Resources, announce: Announce, manager: ServiceManager, closing: ExitStack
     ) -> None:
         """Begins to hear and to step; ``closing`` ends everything in its order."""
-        self._opened, self._disk = opened, opened.disk
+        self._resources, self._disk = resources, resources.disk
         self._announce, self._manager = announce, manager
         self._again: _Again | None = None
-        bus, steady = opened.bus, self._disk.clock
+        bus, steady = resources.bus, self._disk.clock
         self._lacking = Lacking()
         self._ended = closing.enter_context(EndedThreads())
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
@@ -109,11 +109,11 @@ class _LiveStation:
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
-        self._backfill = Backfill(bus, opened.feed.deliver, opened.clock, self._may_forget)
+        self._backfill = Backfill(bus, resources.feed.deliver, resources.clock, self._may_forget)
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
         self._downlink = Downlink(bus, stamper, steady)
         self._forgettings = self._disk.forgetting_desk(
-            opened.recordings, self._act, self._save_soon, self._leads
+            resources.recordings, self._act, self._save_soon, self._leads
         )
         saved = self._disk.archive.latest()
         self._stepped_from_ns = saved.t_ns if saved else 0
@@ -142,19 +142,19 @@ class _LiveStation:
     # ---- what is made
 
     def _new_side(self) -> Side:
-        opened, disk = self._opened, self._disk
+        resources, disk = self._resources, self._disk
         parts = Parts(
             data=disk.folder.path,
-            bus=opened.bus,
+            bus=resources.bus,
             log=disk.recorder,
             disk=disk.log,
             files=disk.recorder,
             check=disk.check,
-            live=opened.feed,
+            live=resources.feed,
             clock=disk.clock,
             tables=KeptTables(disk.store),
             records=disk.records,
-            pki=opened.pki,
+            pki=resources.pki,
             on_people=disk.roster.read_again,
             on_lead=lambda: announce_first_login(
                 disk.accounts, disk.folder.first_login, self._announce
@@ -163,7 +163,7 @@ class _LiveStation:
             step_again=self._step_again,
             forget=self._forget,
         )
-        standby = opened.config.standby
+        standby = resources.config.standby
         return OneOfTwo(standby, parts) if standby.name else OnlyStation(parts)
 
     def _surroundings(self) -> Surroundings:
@@ -171,7 +171,7 @@ class _LiveStation:
         return Surroundings(
             feed=self._side.feed,
             log=self._side.log,
-            live=self._opened.hub,
+            live=self._resources.hub,
             projection=self._disk.projection,
             checkpoints=self._disk.checkpoints,
             photo_urls=self._disk.roster.photo_url,
@@ -183,53 +183,57 @@ class _LiveStation:
         )
 
     def _recovering(self) -> AbstractContextManager[Watch]:
-        opened = self._opened
+        resources = self._resources
         return recovering(
-            opened.recorder.segments(),
-            opened.listening,
-            opened.config.http,
-            lambda: early_console(opened.config, self._disk),
+            resources.recorder.segments(),
+            resources.listening,
+            resources.config.http,
+            lambda: early_console(resources.config, self._disk),
             self._announce,
         )
 
     def _new_services(self) -> Services:
-        opened, disk = self._opened, self._disk
+        resources, disk = self._resources, self._disk
         return Services(
             accounts=disk.accounts,
             roster=disk.roster,
             records=disk.records,
             base_maps=BaseMaps(disk.store),
-            hub=opened.hub,
+            hub=resources.hub,
             gate=self._gate,
             settle=disk.projection.flush,
             replays=Replays(replay_starter(disk.archive, disk.roster, disk.clock)),
             forgettings=self._forgettings,
             clock=disk.clock,
-            secure=opened.config.http.certificate is not None,
+            secure=resources.config.http.certificate is not None,
             standing=self._side.standing,
-            recordings=opened.recordings,
+            recordings=resources.recordings,
             hindsight=disk.hindsight(),
-            accountability=opened.config.accountability,
+            accountability=resources.config.accountability,
         )
 
     def _new_server(self) -> ConsoleServer:
-        hub, http = self._opened.hub, self._opened.config.http
+        hub, http = self._resources.hub, self._resources.config.http
         app = create_app(self._services, started=lambda loop: hub.connect(loop, self._drive))
-        return ConsoleServer(app, self._opened.listening, http.certificate, http.private_key)
+        return ConsoleServer(app, self._resources.listening, http.certificate, http.private_key)
 
     def _housekeeping(self) -> Callable[[], None]:
-        opened, records, hindsight = self._opened, self._disk.records, self._services.hindsight
-        recoveries = {one.path: str(one) for one in opened.recorder.recoveries}
+        resources, records, hindsight = (
+            self._resources,
+            self._disk.records,
+            self._services.hindsight,
+        )
+        recoveries = {one.path: str(one) for one in resources.recorder.recoveries}
         index = SegmentIndex(records, recoveries)
         enrolled = EnrolledUnits(
-            opened.pki, self._gate, self._disk.roster.registered_units, records
+            resources.pki, self._gate, self._disk.roster.registered_units, records
         )
 
         def keep_house() -> None:
-            index.update(opened.recorder.segments())
-            self._disk.check.look(opened.recorder.segments())
+            index.update(resources.recorder.segments())
+            self._disk.check.look(resources.recorder.segments())
             self._make_good()
-            if opened.renewal.is_due(in_incident=self._is_in_incident()):
+            if resources.renewal.is_due(in_incident=self._is_in_incident()):
                 self._announce("the renewed certificate is taken up")
                 self._start_again(None)
             if self._side.leads:
@@ -277,7 +281,7 @@ class _LiveStation:
             self._start_again(None)
 
     def _may_forget(self) -> bool:
-        return self._side.may_forget() and not self._opened.feed.late_waits
+        return self._side.may_forget() and not self._resources.feed.late_waits
 
     def _act(self, by: str, action: Action) -> Future[ActionDone] | None:
         """A standby does what stands in the other's log."""
@@ -288,7 +292,7 @@ class _LiveStation:
 
     def _report(self, held: Report) -> None:
         self._side.note_report()
-        self._backfill.report(held, self._opened.recorder.lost)
+        self._backfill.report(held, self._resources.recorder.lost)
 
     def _forget(self, what: str) -> None:
         """The other station has forgotten this, and of who it is this one's log tells, too."""
@@ -301,7 +305,7 @@ class _LiveStation:
         """
         self._manager.working()
         others = (self._forgettings, self._disk.check, self._lacking, self._ended)
-        return facts_of(self._opened, self._disk.clock, self._side, others)
+        return facts_of(self._resources, self._disk.clock, self._side, others)
 
     def _ready(self, line: str) -> None:
         """Consoles can connect."""

@@ -14,15 +14,15 @@ import msgspec
 import numpy as np
 
 from base_station.fusion.fixes.taking import FixTaker
+from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.kernels import Placed, Stretch
-from base_station.fusion.knowledge import quality_of
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path.memory import PathMemory
 from base_station.fusion.path.own_path import OwnPath
-from base_station.fusion.plane.compassed import CompassedFilter
-from base_station.fusion.plane.walled import WalledFilter
+from base_station.fusion.plane.compassed_filter import CompassedFilter
+from base_station.fusion.plane.walled_filter import WalledFilter
 from base_station.fusion.port import (
     AirHeight,
     Bearing,
@@ -32,7 +32,7 @@ from base_station.fusion.port import (
     Present,
     Start,
 )
-from base_station.fusion.remembered import Memory
+from base_station.fusion.position_quality import quality_of
 from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.roaming import RADII_95, roamed_m

@@ -18,16 +18,16 @@ from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import StationState, UnitState
 from base_station.pins.book import drop, has_pins, units_of
 from base_station.pins.evidence import floors_said
-from base_station.pins.late import note_late
-from base_station.pins.pinned import PinnedUnits
-from base_station.positioning.begun import begin
+from base_station.pins.late_history import note_late
+from base_station.pins.pinned_units import PinnedUnits
+from base_station.positioning.anchor_correction import move_fixes, place_again
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
 from base_station.positioning.frame import reframe
+from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
-from base_station.positioning.refixed import move_fixes, place_again
-from base_station.positioning.said import said
-from base_station.positioning.silent import Silent
+from base_station.positioning.lost_contact import LostContact
+from base_station.positioning.unit_starts import begin
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import BEGAN_M, Landing
 from base_station.site.plan import Plan, Ring
@@ -52,20 +52,20 @@ class Positioning:
         self._kind = kind
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
         self._grid: FloorGrid | None = None
-        self._silent = Silent(None)
+        self._lost_contact = LostContact(None)
         self._pinned = PinnedUnits(kind, smoother, saved_pinned)
 
     def consider(self, plan: Plan | None) -> None:
         """What stands in everybody's way, from now on."""
         self._grid = FloorGrid.of(plan)
-        self._silent = Silent(self._grid)
+        self._lost_contact = LostContact(self._grid)
         self._pinned.grid = self._grid
         for fuser in (*self._fusers.values(), *self._pinned.all()):
             fuser.consider(self._grid)
 
     def reach(self, state: StationState, unit: UnitState) -> Ring:
-        """``Silent.reach`` of now."""
-        return self._silent.reach(state.t_ns, unit)
+        """``LostContact.reach`` of now."""
+        return self._lost_contact.reach(state.t_ns, unit)
 
     def save(self) -> dict[str, bytes]:
         return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
@@ -180,13 +180,13 @@ class Positioning:
         held = unit.fused.floor if unit.fused is not None else None
         pinned = self._pinned.get(unit.unit_id)
         if pinned is None:
-            unit.fused = plain = said(state, unit, estimate, self._kind.name, held, header)
+            unit.fused = plain = fused_message(state, unit, estimate, self._kind.name, held, header)
         else:
             trail = unit.plain_trail or []
             was = trail[-1].floor if trail else held
-            plain = said(state, unit, estimate, self._kind.name, was, header)
+            plain = fused_message(state, unit, estimate, self._kind.name, was, header)
             unit.extend_plain_trail(plain)
-            unit.fused = said(
+            unit.fused = fused_message(
                 state, unit, pinned.estimate() or estimate, self._kind.name, held, header
             )
         unit.reach = ()
@@ -210,7 +210,7 @@ class Positioning:
         if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
         self._fuser(unit).remember(position)
-        fused = plain = said(state, unit, estimate, self._kind.name, None, header)
+        fused = plain = fused_message(state, unit, estimate, self._kind.name, None, header)
         opened_ns = state.incident.opened_ns if state.incident is not None else 0
         is_drawn = plain.t_meas_ns >= opened_ns
         if is_drawn:
@@ -219,7 +219,7 @@ class Positioning:
         known = None if pinned is None else pinned.recall(position)
         if pinned is not None and known is not None:
             pinned.remember(position)
-            fused = said(state, unit, known, self._kind.name, None, header)
+            fused = fused_message(state, unit, known, self._kind.name, None, header)
         if is_drawn:
             unit.fill_trail(fused)
         if unit.unit_id in state.paths:

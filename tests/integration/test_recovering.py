@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 
 from base_station.api.security import COOKIE
 from base_station.app.disk import Disk, open_disk
-from base_station.app.early import early_console
+from base_station.app.early_console import early_console
 from base_station.bench.rig import said as said_by_bench
 from base_station.config import HttpConfig, StationConfig
 from base_station.data_folder import DataFolder

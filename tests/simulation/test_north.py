@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from edge.bench.calibrated import calibration_of
+from edge.expected_field import Place
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import SensorBatch
 from edge.simulation import SCENARIOS, Simulation
 from edge.simulation.building import load_building
 from edge.simulation.simulation import UNCALIBRATED_SENSORS
 from edge.tracker import make_tracker
-from edge.whereabouts import Place
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position

@@ -12,11 +12,11 @@ import pytest
 from base_station.bench.rig import said
 from base_station.fusion.fixes.sky import common_m2
 from base_station.fusion.fixes.trust import FRESH_LEAST, FRESH_PART, SURPRISE_MOST, FixTrust
+from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.gps_inertial import GpsInertial, GpsInertialFuser
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path.memory import OwnPlace
 from base_station.fusion.port import PlaceFix
-from base_station.fusion.remembered import Memory
 from shared.clock import NS_PER_S
 from shared.messages import Header
 

@@ -9,7 +9,7 @@ import pytest
 from base_station.bench.rig import said
 from base_station.events import PinsTouched, TrailFilled
 from base_station.past.playback import compare
-from base_station.pins.late import Late, note_late, take_due
+from base_station.pins.late_history import Late, note_late, take_due
 from shared.channels import GPS, POSITION, backfilled_key, channel_of
 from shared.clock import NS_PER_S
 from shared.codec import encode

@@ -8,11 +8,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from base_station.fusion.conditioning import conservative_fusion, jeffrey_update
 from base_station.fusion.learnt.axes import AxisFilter
 from base_station.fusion.learnt.building import MOST_STAIRS, KnownStairs, LearntBuilding
 from base_station.fusion.learnt.legs import Axis, Drift, Leg, LegWatch, quarter
 from base_station.fusion.learnt.stairs import Climb, ClimbWatch, Stairs
-from base_station.fusion.told import taken_over, told
 
 STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True, shared_m2=0.5)
 
@@ -94,7 +94,7 @@ def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() ->
     known, spread = np.array([3.0, 0.0]), np.diag([1.0, 4.0])
     place, own = np.array([0.0, 0.0]), np.diag([9.0, 2.0])
     for _ in range(20):
-        place, own = taken_over(place, own, known, spread, 0.25 * np.eye(2))
+        place, own = conservative_fusion(place, own, known, spread, 0.25 * np.eye(2))
     assert own[0, 0] >= 1.0
     assert own[1, 1] == pytest.approx(2.0)  # it was surer already
     assert place[0] == pytest.approx(3.0, abs=0.3)
@@ -104,7 +104,7 @@ def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() ->
 def test_what_is_told_carries_what_hangs_on_it() -> None:
     mean, covariance = np.array([0.0, 0.0]), np.array([[4.0, 2.0], [2.0, 4.0]])
     first = np.array([[1.0, 0.0]])
-    moved, left = told(mean, covariance, first, np.array([2.0]), np.array([[1.0]]))
+    moved, left = jeffrey_update(mean, covariance, first, np.array([2.0]), np.array([[1.0]]))
     assert moved == pytest.approx([2.0, 1.0])
     assert left[0, 0] == pytest.approx(1.0)
     assert left[1, 1] == pytest.approx(4.0 - 0.5**2 * 3.0)
@@ -112,7 +112,7 @@ def test_what_is_told_carries_what_hangs_on_it() -> None:
 
 def test_what_is_known_without_doubt_stays_as_it_is() -> None:
     mean, covariance = np.array([1.0, 2.0]), np.zeros((2, 2))
-    moved, left = told(mean, covariance, np.eye(2), np.array([9.0, 9.0]), covariance)
+    moved, left = jeffrey_update(mean, covariance, np.eye(2), np.array([9.0, 9.0]), covariance)
     assert moved.tolist() == mean.tolist()
     assert not left.any()
 

@@ -73,7 +73,7 @@ def test_what_a_goodbye_overtook_does_not_take_it_back(sender: Sender) -> None:
     for seq, channel, goodbye in ((9, EVENT, True), (8, POSITION, False), (7, STATUS, False)):
         assert sender.accept(channel, said(seq, 100.0 + seq), NOW_NS) == "new"
         if goodbye:
-            sender.stopped_ns = NOW_NS  # as ``noting`` does
+            sender.stopped_ns = NOW_NS  # as ``unit_updates`` does
     assert sender.stopped_ns == NOW_NS
     left = []
     for later in (said(10, 110.0), said(1, 1.0, boot_id=8)):

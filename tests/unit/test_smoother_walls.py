@@ -13,8 +13,8 @@ from base_station.bench.rig.said import position
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
 from base_station.fusion.smoother import SMOOTHERS
+from base_station.fusion.smoother.common_errors import START_PART
 from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath, Smoother, UnitEvidence
-from base_station.fusion.smoother.shared import START_PART
 from base_station.site.crossing import BESIDE, FREE, WALL
 from base_station.site.floor_grid import FloorGrid
 from shared.clock import NS_PER_S

@@ -2,7 +2,7 @@
 
 Its stairs and the direction of its walls are each the mean of what those said who came upon them
 knowing nothing of them yet.  Others take that over where their own path shows the same, and nobody
-becomes surer by hearing their own word again (``told``).
+becomes surer by hearing their own word again (``conservative_fusion``).
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
+from base_station.fusion.conditioning import at_least
 from base_station.fusion.learnt.legs import Axis, quarter
 from base_station.fusion.learnt.stairs import Stairs
-from base_station.fusion.told import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
 MOST_STAIRS = 40

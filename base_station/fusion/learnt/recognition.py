@@ -6,14 +6,14 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.conditioning import conservative_fusion
 from base_station.fusion.kernels import Stretch
 from base_station.fusion.learnt.axes import AxisFilter
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.legs import Drift, Leg, LegWatch
 from base_station.fusion.learnt.stairs import SHARED_M2, STD_M, Climb, ClimbWatch, Stairs
 from base_station.fusion.plane.state import DRIFT, turn_of
-from base_station.fusion.plane.walled import WalledFilter
-from base_station.fusion.told import taken_over
+from base_station.fusion.plane.walled_filter import WalledFilter
 
 Floats = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ class Recognition(msgspec.Struct):
             learnt = learnt.with_stairs(row, unit_id, seen)
         if row >= 0:
             known, noise = learnt.stairs[row].mean, STD_M**2 * np.eye(2)
-            place, covariance = taken_over(place, covariance, *known.place, noise)
+            place, covariance = conservative_fusion(place, covariance, *known.place, noise)
             horizontal.stand_then(*since, place, covariance)
             self.heard = True
         return learnt

@@ -26,6 +26,7 @@ from filterpy.kalman import update
 from numpy.typing import NDArray
 
 from base_station.fusion import kernels
+from base_station.fusion.conditioning import jeffrey_update
 from base_station.fusion.kernels import PLANE, Placed
 from base_station.fusion.plane.heading_bank import HeadingBank, SavedBank, Sighting, slow_errors
 from base_station.fusion.plane.state import (
@@ -37,7 +38,6 @@ from base_station.fusion.plane.state import (
     place_then,
     turn_of,
 )
-from base_station.fusion.told import told
 from shared.geo import wrap_pi
 
 Floats = NDArray[np.float64]
@@ -232,7 +232,7 @@ class HorizontalFilter:
         observe = np.zeros((1, STATES))
         observe[0, 2:4] = -s / scale2, c / scale2
         to = observe @ mean + wrap_pi(turn_rad - math.atan2(s, c))
-        mean, covariance = told(mean, covariance, observe, to, np.array([[variance]]))
+        mean, covariance = jeffrey_update(mean, covariance, observe, to, np.array([[variance]]))
         mean[2:4] *= math.sqrt(scale2) / math.hypot(mean[2], mean[3])
         self._mean[:], self._covariance[:] = mean, covariance
 

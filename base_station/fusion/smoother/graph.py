@@ -15,16 +15,16 @@ from numpy.typing import NDArray
 
 from base_station.fusion.smoother.agreement import Expected
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise, place_of
+from base_station.fusion.smoother.common_errors import CommonErrors
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.landmarks import Landmark, Visit, Visited
 from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
-from base_station.fusion.smoother.lines import Line, add_line, find_lines
 from base_station.fusion.smoother.live_estimates import add_shown
 from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
 from base_station.fusion.smoother.path_equations import add_path, add_places, add_seen
 from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence
-from base_station.fusion.smoother.receivers import add_receiver
-from base_station.fusion.smoother.shared import Shared
+from base_station.fusion.smoother.receiver_errors import add_receiver
+from base_station.fusion.smoother.wall_lines import Line, add_line, find_lines
 from base_station.fusion.smoother.walls import Words
 
 Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Graph:
         for unit_id, chain in chains.items():
             self._columns[unit_id] = slice(first, first + STATES * len(chain))
             first = self._columns[unit_id].stop
-        self.shared = Shared(first, units)
+        self.common = CommonErrors(first, units)
         self._bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
         self.visited = Visited(self._bases, self.beliefs)
         self._legs = {unit_id: Legs.of(chain) for unit_id, chain in chains.items()}
@@ -66,7 +66,7 @@ class Graph:
         """Paths led through these places too, wherever those are."""
         self.landmarks += landmarks
         for one in landmarks:
-            self.shared.add_landmarks(self.visited.places_m(one).mean(axis=0))
+            self.common.add_landmarks(self.visited.places_m(one).mean(axis=0))
 
     def find_lines(self) -> bool:
         """Lines that people walk along again and again, as it looks now, in place of those found
@@ -76,14 +76,14 @@ class Graph:
             return False
         before, spreads = self._lines, self.own_spreads()
         self._lines = find_lines(self._legs, self.beliefs, spreads, self._axis_rad)
-        self.shared.set_lines(len(self._lines))
+        self.common.set_lines(len(self._lines))
         return bool(before or self._lines)
 
     def relax(self, noise: WalkNoise) -> None:
         """Solve from the beginning, and then about that."""
         for unit_id, chain in self.chains.items():
             self.beliefs[unit_id] = Belief.none(len(chain))
-        self.shared.forget()
+        self.common.forget()
         self._axis_rad = None
         self.step(noise)
         self._align()
@@ -102,8 +102,8 @@ class Graph:
         self._normal = self._equations(noise)
         x, moved_m = self._normal.solve(), 0.0
         if self._axis_rad is not None:
-            self._axis_rad += float(x[self.shared.axis])
-        self.shared.take(x)
+            self._axis_rad += float(x[self.common.axis])
+        self.common.take(x)
         for unit_id, columns in self._columns.items():
             belief, now = self.beliefs[unit_id], x[columns].reshape(-1, STATES)
             moved_m = max(moved_m, float(np.abs(now[:, :2] - belief.x[:, :2]).max()))
@@ -111,27 +111,27 @@ class Graph:
         return moved_m
 
     def _equations(self, noise: WalkNoise) -> NormalEquations:
-        equations, shared = Equations(self.shared.end), self.shared
-        shared.add_priors(equations)
+        equations, common = Equations(self.common.end), self.common
+        common.add_priors(equations)
         for unit_id, chain in self.chains.items():
             base, belief = self._columns[unit_id].start, self.beliefs[unit_id]
-            add_path(equations, base, chain, belief, shared, noise)
-            add_receiver(equations, base, chain, belief, shared)
+            add_path(equations, base, chain, belief, common, noise)
+            add_receiver(equations, base, chain, belief, common)
             add_seen(equations, base, chain, self.places[unit_id])
             if self._axis_rad is not None:
-                axis = self._axis_rad, shared.axis
+                axis = self._axis_rad, common.axis
                 add_legs(equations, base, self._legs[unit_id], belief, axis)
             if unit_id in self.shown:
                 add_shown(equations, base, chain, belief, self.shown[unit_id])
             if unit_id in self.words:
-                self.words[unit_id].add(equations, base, shared.plan)
-        column = shared.landmarks
-        for landmark, place_m in zip(self.landmarks, shared.landmarks_m, strict=True):
+                self.words[unit_id].add(equations, base, common.plan)
+        column = common.landmarks
+        for landmark, place_m in zip(self.landmarks, common.landmarks_m, strict=True):
             self.visited.add(equations, landmark, column, place_m)
             column += 2
         if self._axis_rad is not None:
-            axis = self._axis_rad, shared.axis
-            for column, line in enumerate(self._lines, start=shared.lines):
+            axis = self._axis_rad, common.axis
+            for column, line in enumerate(self._lines, start=common.lines):
                 add_line(equations, line, column, axis, self._bases, self.beliefs)
         return equations.normal(self._columns, STATES)
 
@@ -142,7 +142,7 @@ class Graph:
             for unit_id, chain in self.chains.items()
             for segment in chain.segments()
         ]
-        rows = Equations(self.shared.end)
+        rows = Equations(self.common.end)
         for unit_id, _, middle in middles:
             column = np.array([self._columns[unit_id].start + STATES * middle])
             rows.add(1.0, 0.0, (column + 2, 1.0))
@@ -162,7 +162,7 @@ class Graph:
         """What the solution as it is expects of places that it does not know."""
         chain = self.chains[unit_id]
         knot, since = chain.at(np.array([place.t_ns for place in places], dtype=np.int64))
-        rows = Equations(self.shared.end)
+        rows = Equations(self.common.end)
         for one in range(len(places)):
             column = np.array([self._columns[unit_id].start + STATES * knot[one]])
             add_places(rows, column, since[one : one + 1], np.zeros((1, 2)), np.ones(1))
@@ -185,7 +185,7 @@ class Graph:
         """Covariances of all knots (k, 7, 7) by unit; ``on_plan``: of where they lie on the plan,
         which may lie aside itself.
         """
-        plus = self.shared.plan - self.shared.axis if on_plan else None
+        plus = self.common.plan - self.common.axis if on_plan else None
         normal = self._normal
         shared = shared_spreads(normal.leans, normal.shared_covariance, STATES, plus)
         own = self.own_spreads()

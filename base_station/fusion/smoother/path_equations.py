@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise
+from base_station.fusion.smoother.common_errors import CommonErrors, Term
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.port import PlaceSeen
-from base_station.fusion.smoother.shared import Shared, Term
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,10 +23,15 @@ LEAST_WANDER_RADPS = 3e-7  # of the drift from knot to knot: less is an equation
 
 
 def add_path(
-    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
+    equations: Equations,
+    base: int,
+    chain: Chain,
+    belief: Belief,
+    common: CommonErrors,
+    n: WalkNoise,
 ) -> None:
     """The own path from knot to knot, and what is known of it from the beginning."""
-    _add_priors(equations, base, chain, belief, shared, n)
+    _add_priors(equations, base, chain, belief, common, n)
     if len(chain) < 2:
         return
     here = base + STATES * np.arange(len(chain) - 1)
@@ -83,7 +88,12 @@ def add_places(
 
 
 def _add_priors(
-    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared, n: WalkNoise
+    equations: Equations,
+    base: int,
+    chain: Chain,
+    belief: Belief,
+    common: CommonErrors,
+    n: WalkNoise,
 ) -> None:
     start, begin = chain.start, np.array([base])
     add_places(equations, begin, np.zeros((1, 2)), np.zeros((1, 2)), np.array([UNKNOWN_M]))
@@ -91,7 +101,7 @@ def _add_priors(
         knot = chain.start_knot
         column, own = np.array([base + STATES * knot]), chain.own_m[knot : knot + 1]
         place = np.array([(start.north_m, start.east_m)])
-        off, own_var_m2 = shared.start(start)
+        off, own_var_m2 = common.start(start)
         add_places(equations, column, -own, place, np.array([np.sqrt(own_var_m2)]), (off, 1.0))
     for segment in chain.segments():
         first = base + STATES * segment.start

@@ -140,7 +140,7 @@ class _Solving:
         for sweep in range(SWEEPS if graph.words else 0):
             spreads = graph.spreads(on_plan=True)
             for unit_id, words in list(graph.words.items()):
-                words.renew(graph.beliefs[unit_id], graph.shared.plan_m, spreads[unit_id])
+                words.renew(graph.beliefs[unit_id], graph.common.plan_m, spreads[unit_id])
                 if sweep > 0 and words.lost > CONTRADICTED:
                     del graph.words[unit_id]
                 graph.shown.pop(unit_id, None)
@@ -185,7 +185,7 @@ class _Solving:
         least_m = shown_floor_m(chain.path, graph.shown.get(unit_id))
         now, known = belief.x[-1, :WALKED].copy(), spreads[-1, :WALKED, :WALKED]
         if unit_id in graph.words:
-            now[:2] += graph.shared.plan_m
+            now[:2] += graph.common.plan_m
             known = on_plan[-1, :WALKED, :WALKED]
         return trail_of(chain, belief, spreads, least_m, graph.places[unit_id], (now, known))
 

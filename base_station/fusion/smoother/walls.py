@@ -21,7 +21,13 @@ from numpy.typing import NDArray
 from base_station.fusion.path.points import BREAK, RESTART
 from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
 from base_station.fusion.smoother.equations import Equations
-from base_station.fusion.ways import BESIDE_WALL, CLIMBS, OFF_STAIRS, THROUGH_WALL, UNSEEN_M
+from base_station.fusion.wall_likelihood import (
+    BESIDE_WALL,
+    CLIMBS,
+    OFF_STAIRS,
+    THROUGH_WALL,
+    UNSEEN_M,
+)
 from base_station.site.crossing import BESIDE, WALL
 from base_station.site.floor_grid import FloorGrid
 

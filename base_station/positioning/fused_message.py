@@ -12,7 +12,7 @@ from shared.messages import FusedPosition, Header
 ASSUMED_STD_M = 6.0  # a unit may have been switched on upstairs
 
 
-def said(
+def fused_message(
     state: StationState,
     unit: UnitState,
     estimate: Estimate,

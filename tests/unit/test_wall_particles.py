@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from base_station.fusion.plane.state import STATES
-from base_station.fusion.plane.wall_cloud import WallCloud
+from base_station.fusion.plane.wall_particles import WallParticles
 from base_station.site.floor_grid import FloorGrid
 from tests.walled_plan import walled_grid
 
@@ -23,14 +23,14 @@ def corridor() -> FloorGrid:
     return walled_grid(ring, lines)
 
 
-def walked_north(east_m: float, std_m: float) -> WallCloud:
+def walked_north(east_m: float, std_m: float) -> WallParticles:
     """Fifteen metres along the corridor, from where somebody is taken to be."""
     mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
     mean[[0, 1, 2]] = 5.0, east_m, 1.0
     covariance[[0, 1], [0, 1]] = std_m**2
     covariance[2, 2] = SCALE_STD**2
     covariance[[3, 4, 5, 6, 7], [3, 4, 5, 6, 7]] = 0.01**2, 1.0, 1.0, 1.0, 1.0
-    cloud, grid = WallCloud(mean, covariance, 1), corridor()
+    cloud, grid = WallParticles(mean, covariance, 1), corridor()
     for _ in range(30):
         cloud.walk((0.5, 0.0, 0.5, 0.0), NOISE, grid, 0)
     return cloud
@@ -49,7 +49,7 @@ def test_to_be_close_to_a_wall_does_not_speak_against_the_plan() -> None:
 
 def test_who_leaves_the_walls_knows_the_scale_no_better_than_before() -> None:
     cloud = walked_north(1.0, 0.3)
-    for one in (cloud, WallCloud.restore(cloud.save())):
+    for one in (cloud, WallParticles.restore(cloud.save())):
         mean, covariance = one.moments()
         along = mean[2:4] / np.linalg.norm(mean[2:4])
         assert math.sqrt(along @ covariance[2:4, 2:4] @ along) >= SCALE_STD

@@ -26,7 +26,7 @@ class Place:
     lon_deg: Annotated[float, Meta(ge=-180.0, le=180.0)]
 
 
-class Whereabouts:
+class ExpectedField:
     """Says when something new is known of the field: at most twice.
 
     Place and date are rounded, so that a replay, whose times are not quite the same, finds

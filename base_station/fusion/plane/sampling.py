@@ -1,4 +1,4 @@
-"""Guesses of place, heading correction and drift rate, drawn from what a filter has come to."""
+"""Particles of place, heading correction and drift rate, drawn from what a filter has come to."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ Floats = NDArray[np.float64]
 
 
 class Drawn(NamedTuple):
-    guesses: Floats  # (n, 4): north, east, turn and drift
-    slow: Floats  # (n, 4): the fixes' slow errors, given a guess
+    particles: Floats  # (n, 4): north, east, turn and drift
+    slow: Floats  # (n, 4): the fixes' slow errors, given a particle
     slow_covariance: Floats  # (4, 4), of each
 
 

@@ -1,4 +1,4 @@
-"""The last stretch of a path, to ask of any guess how well it fits the walls behind it."""
+"""The last stretch of a path, to ask of any particle how well it fits the walls behind it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.ways import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
+from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Move(msgspec.Struct, frozen=True, array_like=True):
     told: float  # log likelihood of the walls met, by the cloud at the time
 
 
-class Walked:
+class RecentStretch:
     """Moves, the last one last."""
 
     def __init__(self, moves: list[Move]) -> None:
@@ -57,29 +57,29 @@ class Walked:
         part = told / self.told
         self._moves = [msgspec.structs.replace(move, told=part * move.told) for move in self._moves]
 
-    def met_behind(self, guesses: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
-        """Log likelihood (n,) of the walls met on the way to guesses (n, 4) of north, east, turn
+    def met_behind(self, particles: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
+        """Log likelihood (n,) of the walls met on the way to particles (n, 4) of north, east, turn
         and drift; what is once below ``least`` is not followed further back.
         """
-        return self._follow_back(guesses, scale, grid, (math.inf, least, AGAIN))[:, 0]
+        return self._follow_back(particles, scale, grid, (math.inf, least, AGAIN))[:, 0]
 
-    def met_twice(self, guesses: Floats, scale: float, grid: FloorGrid) -> Floats:
+    def met_twice(self, particles: Floats, scale: float, grid: FloorGrid) -> Floats:
         """What more (n,) it would be if a wall that is met again were any wall."""
-        all_met = self._follow_back(guesses, scale, grid, (math.inf, -math.inf, WALLS))[:, 0]
-        return all_met - self.met_behind(guesses, scale, grid, -math.inf)
+        all_met = self._follow_back(particles, scale, grid, (math.inf, -math.inf, WALLS))[:, 0]
+        return all_met - self.met_behind(particles, scale, grid, -math.inf)
 
-    def room_behind(self, guesses: Floats, scale: float, grid: FloorGrid) -> Floats:
+    def room_behind(self, particles: Floats, scale: float, grid: FloorGrid) -> Floats:
         """How much room there was on that way: the logarithm (n,) of the part of ways that would
         have met no wall.
         """
-        return self._follow_back(guesses, scale, grid, (LEG_M, -math.inf, AGAIN))[:, 1]
+        return self._follow_back(particles, scale, grid, (LEG_M, -math.inf, AGAIN))[:, 1]
 
     def _follow_back(
-        self, guesses: Floats, scale: float, grid: FloorGrid, how: tuple[float, float, float]
+        self, particles: Floats, scale: float, grid: FloorGrid, how: tuple[float, float, float]
     ) -> Floats:
         leg_m, least, again = how
-        turn, logs = guesses[:, 2], np.zeros((len(guesses), 2))
-        heads = np.column_stack((guesses[:, :2], np.cos(turn), np.sin(turn), guesses[:, 3]))
+        turn, logs = particles[:, 2], np.zeros((len(particles), 2))
+        heads = np.column_stack((particles[:, :2], np.cos(turn), np.sin(turn), particles[:, 3]))
         for floor, moves in _by_floor(self._moves):
             path = np.array([(m.north_m, m.east_m, m.moving_s, m.climbs) for m in moves])
             path[:, :2] *= scale

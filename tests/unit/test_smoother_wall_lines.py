@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from base_station.bench.rig.said import position
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.port import Start
-from base_station.fusion.smoother.lines import ASIDE_M, HABIT_PART, counts_of, mixture
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import UnitEvidence
+from base_station.fusion.smoother.wall_lines import ASIDE_M, HABIT_PART, counts_of, mixture
 from shared.clock import NS_PER_S
 from shared.messages import Header
 

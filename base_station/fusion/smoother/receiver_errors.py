@@ -1,8 +1,9 @@
 """What satellite receivers say, and what each of them errs by for a while.
 
-A fix errs by what all receivers of a site share (``shared``), by what its receiver's surroundings
-do to it for half a minute, and anew each time.  The second is an unknown of every knot: many fixes
-do not average it away, and a short stretch of them counts for no less than it is worth.
+A fix errs by what all receivers of a site share (``common_errors``), by what its receiver's
+surroundings do to it for half a minute, and anew each time.  The second is an unknown of every
+knot: many fixes do not average it away, and a short stretch of them counts for no less than it is
+worth.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from numpy.typing import NDArray
 from base_station.fusion.fixes.sky import OWN_PART, OWN_S
 from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.chain import NS_TO_S, SLOW, STATES, Belief, Chain, place_of
+from base_station.fusion.smoother.common_errors import CommonErrors, Term
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.path_equations import add_places
-from base_station.fusion.smoother.shared import Shared, Term
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,10 +30,10 @@ AFTER_NS = 1_000_000_000  # behind the last point: still of this path
 
 
 def add_receiver(
-    equations: Equations, base: int, chain: Chain, belief: Belief, shared: Shared
+    equations: Equations, base: int, chain: Chain, belief: Belief, common: CommonErrors
 ) -> None:
     """The fixes of one unit, and its receiver's slow error from knot to knot."""
-    path, own_m2 = chain.path, _own_m2(chain.path, shared)
+    path, own_m2 = chain.path, _own_m2(chain.path, common)
     _add_slow_error(equations, base, chain, np.sqrt(OWN_PART * own_m2))
     inside = path.fix_t_ns <= path.t_ns[-1] + AFTER_NS
     t_ns, place, std_m = path.fix_t_ns[inside], path.fix_m[inside], path.fix_std_m[inside]
@@ -44,19 +45,19 @@ def add_receiver(
     admitted_m2 = EXCESS**2 * (std_m**2 - path.fix_std_m.min() ** 2)
     fresh_m2 = (1.0 - OWN_PART) * own_m2 + admitted_m2 * repeats
     if belief.aligned.any():
-        off = place_of(belief.x[knot], since) + shared.sky_m(t_ns) - place
+        off = place_of(belief.x[knot], since) + common.sky_m(t_ns) - place
         right = _right((off**2).sum(axis=1), own_m2 + admitted_m2)
         fresh_m2 = 1.0 / (right / fresh_m2 + (1.0 - right) / (fresh_m2 + WRONG_M**2 * repeats))
     slow = _slow_error(base, chain, knot, t_ns)
     columns = base + STATES * knot
-    add_places(equations, columns, since, place, np.sqrt(fresh_m2), *slow, *shared.sky(t_ns))
+    add_places(equations, columns, since, place, np.sqrt(fresh_m2), *slow, *common.sky(t_ns))
 
 
-def _own_m2(path: PathArrays, shared: Shared) -> float:
+def _own_m2(path: PathArrays, common: CommonErrors) -> float:
     """What the best fixes err by without what all share, as a variance, each axis."""
     if not len(path.fix_t_ns):
         return 1.0
-    return float(path.fix_std_m.min() ** 2 - shared.sky_std_m**2)
+    return float(path.fix_std_m.min() ** 2 - common.sky_std_m**2)
 
 
 def _add_slow_error(equations: Equations, base: int, chain: Chain, std_m: float) -> None:

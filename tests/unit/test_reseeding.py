@@ -1,4 +1,4 @@
-"""A cloud that walls have confirmed in the wrong rooms is held against guesses from elsewhere."""
+"""A cloud that walls have confirmed in the wrong rooms is held against particles from elsewhere."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from numpy.typing import NDArray
 
 from base_station.fusion.kernels import Placed
-from base_station.fusion.knowledge import quality_of
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.plane.drawing import draw
+from base_station.fusion.plane.recent_stretch import AGAIN, COSTS, KEPT_M, Move, RecentStretch
+from base_station.fusion.plane.sampling import draw
 from base_station.fusion.plane.state import STATES
-from base_station.fusion.plane.walked import AGAIN, COSTS, KEPT_M, Move, Walked
-from base_station.fusion.plane.wall_cloud import TOGETHER_M, SavedCloud, WallCloud
+from base_station.fusion.plane.wall_particles import TOGETHER_M, SavedParticles, WallParticles
+from base_station.fusion.position_quality import quality_of
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
 from shared.quality import Quality
@@ -57,11 +57,13 @@ def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:
     return mean, covariance
 
 
-def walked(grid: FloorGrid, off_east_m: float, *, looks: bool = True) -> tuple[WallCloud, Floats]:
+def walked(
+    grid: FloorGrid, off_east_m: float, *, looks: bool = True
+) -> tuple[WallParticles, Floats]:
     """The walk from where it is taken to begin this far off, and where it has truly led."""
     place_m = np.array(BEGIN_M)
     taken_m = place_m + np.array((0.0, off_east_m))
-    cloud = WallCloud(*known(taken_m, 0.4), 1)
+    cloud = WallParticles(*known(taken_m, 0.4), 1)
     for direction in WALK:
         step_m = STEP_M * np.array(direction)
         place_m, taken_m = place_m + step_m, taken_m + step_m
@@ -71,11 +73,11 @@ def walked(grid: FloorGrid, off_east_m: float, *, looks: bool = True) -> tuple[W
     return cloud, place_m
 
 
-def off_m(cloud: WallCloud, place_m: Floats) -> float:
+def off_m(cloud: WallParticles, place_m: Floats) -> float:
     return math.dist(cloud.moments()[0][:2], place_m)
 
 
-def std_m(cloud: WallCloud) -> float:
+def std_m(cloud: WallParticles) -> float:
     _, covariance = cloud.moments()
     return math.sqrt(covariance[0, 0] + covariance[1, 1])
 
@@ -91,7 +93,7 @@ def test_whoever_is_held_beside_the_door_comes_to_the_right_room(off_east_m: flo
 def test_while_two_places_are_open_it_says_so_and_where() -> None:
     """Two rooms alike, and what is known without walls lies between them."""
     grid, place_m = building(3.5, 12.5), np.array((6.0, 8.0))
-    cloud, taken_m, opened = WallCloud(*known(place_m, 0.15), 1), place_m, False
+    cloud, taken_m, opened = WallParticles(*known(place_m, 0.15), 1), place_m, False
     for direction in [(1.0, 0.0)] * 7 + [(-1.0, 0.0)] * 7 + [(1.0, 0.0)] * 7:
         step_m = STEP_M * np.array(direction)
         taken_m = taken_m + step_m
@@ -123,19 +125,19 @@ def test_whoever_is_right_is_left_alone(drawn_m: tuple[float, ...]) -> None:
 
 def test_the_way_back_meets_what_the_way_there_met() -> None:
     grid, rng = building(*DOOR_M), np.random.default_rng(3)
-    begin = draw(*known(np.array(BEGIN_M), 1.0), rng, np.ones(50)).guesses
-    guesses, last, logs = begin.copy(), Walked([]), np.zeros(50)
+    begin = draw(*known(np.array(BEGIN_M), 1.0), rng, np.ones(50)).particles
+    particles, last, logs = begin.copy(), RecentStretch([]), np.zeros(50)
     for direction in WALK[:50]:
         step_m = STEP_M * np.array(direction)
-        guesses[:, 2] += guesses[:, 3] * 0.5
-        cosine, sine = np.cos(guesses[:, 2]), np.sin(guesses[:, 2])
-        from_m = guesses[:, :2].copy()
-        guesses[:, 0] += cosine * step_m[0] - sine * step_m[1]
-        guesses[:, 1] += sine * step_m[0] + cosine * step_m[1]
-        logs += np.array(COSTS)[grid.met(0, from_m, guesses[:, :2])]
+        particles[:, 2] += particles[:, 3] * 0.5
+        cosine, sine = np.cos(particles[:, 2]), np.sin(particles[:, 2])
+        from_m = particles[:, :2].copy()
+        particles[:, 0] += cosine * step_m[0] - sine * step_m[1]
+        particles[:, 1] += sine * step_m[0] + cosine * step_m[1]
+        logs += np.array(COSTS)[grid.met(0, from_m, particles[:, :2])]
         north_m, east_m = step_m.tolist()
         last.note(Move(north_m, east_m, 0.5, False, 0, 0.0))
-    back = last.met_behind(guesses, 1.0, grid, -math.inf) + last.met_twice(guesses, 1.0, grid)
+    back = last.met_behind(particles, 1.0, grid, -math.inf) + last.met_twice(particles, 1.0, grid)
     assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # but for squares that a rounding misses
     assert (logs < COSTS[WALL]).any()
     assert (logs > COSTS[WALL]).any()
@@ -143,41 +145,43 @@ def test_the_way_back_meets_what_the_way_there_met() -> None:
 
 def test_a_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
     in_and_out = [(1.0, 0.0)] * 6 + [(-1.0, 0.0)] * 6
-    last = Walked([Move(STEP_M * n, STEP_M * e, 0.5, False, 0, 0.0) for n, e in in_and_out])
-    guesses, grid = np.array([[6.2, 15.0, 0.0, 0.0]]), building()
-    once = last.met_behind(guesses, 1.0, grid, -math.inf)[0]
-    twice = last.met_twice(guesses, 1.0, grid)[0]
+    last = RecentStretch([Move(STEP_M * n, STEP_M * e, 0.5, False, 0, 0.0) for n, e in in_and_out])
+    particles, grid = np.array([[6.2, 15.0, 0.0, 0.0]]), building()
+    once = last.met_behind(particles, 1.0, grid, -math.inf)[0]
+    twice = last.met_twice(particles, 1.0, grid)[0]
     assert twice == pytest.approx(COSTS[WALL] - AGAIN)
     assert COSTS[WALL] > once > 2.0 * COSTS[WALL]
 
 
 def test_where_there_is_little_room_a_way_that_fits_says_more() -> None:
-    last = Walked([Move(0.0, STEP_M, 0.5, False, 0, 0.0)] * 20)
+    last = RecentStretch([Move(0.0, STEP_M, 0.5, False, 0, 0.0)] * 20)
     narrow, wide = [6.0, 12.0, 0.0, 0.0], [9.5, 20.0, 0.0, 0.0]
     in_corridor, in_room = last.room_behind(np.array([narrow, wide]), 1.0, building())
     assert in_corridor < in_room - 1.0 < 0.0
 
 
 def test_only_the_last_stretch_is_kept() -> None:
-    last = Walked([])
+    last = RecentStretch([])
     for _ in range(400):
         last.note(Move(0.5, 0.0, 0.5, False, 0, -0.1))
     assert sum(move.north_m for move in last.save()) <= KEPT_M
     assert last.told == pytest.approx(-0.1 * len(last.save()))
-    assert Walked(last.save()).save() == last.save()
+    assert RecentStretch(last.save()).save() == last.save()
 
 
 def test_an_unknown_floor_has_no_walls() -> None:
-    last = Walked([Move(0.0, 6.0, 6.0, False, None, 0.0), Move(6.0, 0.0, 6.0, False, 7, 0.0)])
-    guesses = np.array([[6.0, 9.0, 0.0, 0.0]])
-    assert last.met_behind(guesses, 1.0, building(), -math.inf) == pytest.approx([0.0])
+    last = RecentStretch(
+        [Move(0.0, 6.0, 6.0, False, None, 0.0), Move(6.0, 0.0, 6.0, False, 7, 0.0)]
+    )
+    particles = np.array([[6.0, 9.0, 0.0, 0.0]])
+    assert last.met_behind(particles, 1.0, building(), -math.inf) == pytest.approx([0.0])
 
 
 def test_saved_while_both_are_open_it_goes_on_with_the_very_same_numbers() -> None:
     grid = building(*DOOR_M)
     cloud, place_m = walked(grid, 4.0)
     saved = msgspec.msgpack.encode(cloud.save())
-    again = WallCloud.restore(msgspec.msgpack.decode(saved, type=SavedCloud))
+    again = WallParticles.restore(msgspec.msgpack.decode(saved, type=SavedParticles))
     for one in (cloud, again):
         for _ in range(8):
             one.walk((0.0, STEP_M, 0.5, 0.0), NOISE, grid, 0)

@@ -28,7 +28,7 @@ from shared.mcap_log import SegmentPolicy
 
 
 @dataclass(frozen=True)
-class Opened:
+class Resources:
     """None of them knows what the station does with it."""
 
     config: StationConfig
@@ -46,7 +46,7 @@ class Opened:
     recordings: RecordingDesk
 
 
-def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Opened:
+def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Resources:
     """Raises MusterError, before anything is made where the settings cannot work."""
     joining, pki = station_endpoint(config.data, config.bus.listen), PkiFolder(config.data)
     if joining.tls is not None:
@@ -66,7 +66,7 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
     closing.callback(bus.close)
     recordings = RecordingDesk(ask_over(bus), folder.recordings, disk.clock)
     closing.enter_context(recordings)
-    return Opened(
+    return Resources(
         config=config,
         clock=clock,
         recorder=recorder,

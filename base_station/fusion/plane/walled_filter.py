@@ -1,6 +1,6 @@
 """North and east of one unit where a plan may say what stands in the way.
 
-Away from the building ``HorizontalFilter`` is all there is.  Near it and in it a ``WallCloud``
+Away from the building ``HorizontalFilter`` is all there is.  Near it and in it a ``WallParticles``
 goes beside it and leads; when it comes away from the building again the filter goes on from what
 the cloud came to.  A cloud that the walls contradict move after move is given up: then the filter,
 which never heard of walls, is what is left, as wide as it is.
@@ -14,13 +14,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.conditioning import jeffrey_update
 from base_station.fusion.kernels import Placed, placed_before
-from base_station.fusion.plane.compassed import CompassedFilter, SavedCompassed
+from base_station.fusion.plane.compassed_filter import CompassedFilter, SavedCompassed
 from base_station.fusion.plane.heading_bank import Sighting
 from base_station.fusion.plane.state import DRIFT, place_then, turn_of
-from base_station.fusion.plane.wall_cloud import SavedCloud, WallCloud
+from base_station.fusion.plane.wall_particles import SavedParticles, WallParticles
 from base_station.fusion.port import Bearing
-from base_station.fusion.told import told
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ REPENT_M = 25.0  # walked after a cloud was given up until another begins
 
 class SavedWalled(msgspec.Struct, frozen=True):
     plain: SavedCompassed
-    cloud: SavedCloud | None
+    cloud: SavedParticles | None
     clouds: int
     to_walk_m: float
     floor: int | None
@@ -45,7 +45,7 @@ class WalledFilter:
 
     def __init__(self, plain: CompassedFilter) -> None:
         self._plain = plain
-        self._cloud: WallCloud | None = None
+        self._cloud: WallParticles | None = None
         self._clouds = 0  # begun so far: the seed of the next
         self._to_walk_m = 0.0
         self._floor: int | None = None
@@ -57,7 +57,7 @@ class WalledFilter:
 
     def load(self, saved: SavedWalled) -> None:
         self._plain.load(saved.plain)
-        self._cloud = None if saved.cloud is None else WallCloud.restore(saved.cloud)
+        self._cloud = None if saved.cloud is None else WallParticles.restore(saved.cloud)
         self._clouds, self._to_walk_m = saved.clouds, saved.to_walk_m
         self._floor = saved.floor
 
@@ -125,7 +125,7 @@ class WalledFilter:
         this; only where the filter is plain.
         """
         observe = place_then(north_m, east_m)
-        self._plain.adopt(*told(*self._plain.moments(), observe, place, covariance))
+        self._plain.adopt(*jeffrey_update(*self._plain.moments(), observe, place, covariance))
 
     def face(self, turn_rad: float, variance: float) -> None:
         """The own frame's turn has come to be known as this; only where the filter is plain."""
@@ -197,7 +197,7 @@ class WalledFilter:
         if self._cloud is None:
             if outside_m < NEAR_M and self._is_known():
                 self._clouds += 1
-                self._cloud = WallCloud(*self._plain.moments(), self._clouds)
+                self._cloud = WallParticles(*self._plain.moments(), self._clouds)
         elif self._cloud.is_contradicted:
             self._cloud = None
             self._to_walk_m = REPENT_M

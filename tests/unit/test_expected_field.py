@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from edge.config import EdgeConfig
+from edge.expected_field import ExpectedField, Place
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import GpsSample, ImuBatch, SensorBatch, SensorDescription
 from edge.tracker.none import NoTracker
-from edge.whereabouts import Place, Whereabouts
 from shared.clock import NS_PER_S, ManualClock
 from shared.config import load_config
 from shared.earth_field import EarthField
@@ -45,7 +45,7 @@ def declination_deg(learned: tuple[EarthField, int] | None) -> float:
 
 
 def test_the_settings_say_it_from_the_first_sample_on_and_once():
-    where = Whereabouts(REYKJAVIK)
+    where = ExpectedField(REYKJAVIK)
     learned = where.take(samples(7.0), utc_ns_of)
     assert declination_deg(learned) == pytest.approx(-11.13, abs=0.02)
     assert learned is not None
@@ -54,7 +54,7 @@ def test_the_settings_say_it_from_the_first_sample_on_and_once():
 
 
 def test_a_fix_knows_better_than_the_settings_and_is_the_last_word():
-    where = Whereabouts(REYKJAVIK)
+    where = ExpectedField(REYKJAVIK)
     where.take(samples(), utc_ns_of)
     learned = where.take(samples(1.0, (fix(SYDNEY, 1.05),)), utc_ns_of)
     assert declination_deg(learned) == pytest.approx(12.82, abs=0.02)
@@ -67,22 +67,24 @@ def test_a_fix_knows_better_than_the_settings_and_is_the_last_word():
     "useless", [fix(Place(nan, 0.0)), fix(SYDNEY, fix_type=0), fix(SYDNEY, std_m=1e4)]
 )
 def test_a_useless_fix_says_nothing(useless: GpsSample):
-    assert Whereabouts(None).take(samples(0.0, (useless,)), utc_ns_of) is None
+    assert ExpectedField(None).take(samples(0.0, (useless,)), utc_ns_of) is None
 
 
 def test_without_settings_and_fixes_nothing_is_said():
-    assert Whereabouts(None).take(samples(), utc_ns_of) is None
+    assert ExpectedField(None).take(samples(), utc_ns_of) is None
 
 
 def test_while_the_clock_is_not_set_it_waits():
-    where = Whereabouts(REYKJAVIK)
+    where = ExpectedField(REYKJAVIK)
     assert where.take(samples(0.0, (fix(SYDNEY),)), lambda t_ns: t_ns) is None
     assert declination_deg(where.take(samples(1.0), utc_ns_of)) == pytest.approx(-11.13, abs=0.02)
 
 
 def test_a_replay_seconds_later_finds_the_very_same():
-    live = Whereabouts(None).take(samples(0.0, (fix(SYDNEY),)), utc_ns_of)
-    again = Whereabouts(None).take(samples(0.0, (fix(SYDNEY),)), lambda t: utc_ns_of(t) + NS_PER_S)
+    live = ExpectedField(None).take(samples(0.0, (fix(SYDNEY),)), utc_ns_of)
+    again = ExpectedField(None).take(
+        samples(0.0, (fix(SYDNEY),)), lambda t: utc_ns_of(t) + NS_PER_S
+    )
     assert live == again
 
 

@@ -1,4 +1,4 @@
-"""A cloud of guesses that is told where the past leads keeps what walls have told it."""
+"""A cloud of particles that is told where the past leads keeps what walls have told it."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.plane.wall_cloud import GUESSES, WallCloud
+from base_station.fusion.plane.wall_particles import PARTICLES, WallParticles
 
 MEAN = np.eye(9)[2]
 SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, *[1e-6] * 4, 1e-10])
 
 
 @pytest.fixture
-def cloud() -> WallCloud:
+def cloud() -> WallParticles:
     """On both sides of a wall along north 0, and nobody within a metre of it."""
-    begun = WallCloud(MEAN, SPREAD, 5).save()
-    guesses = np.frombuffer(begun.guesses).reshape(GUESSES, 4).copy()
-    guesses[:, 0] += np.where(guesses[:, 0] > 0.0, 1.0, -1.0)
-    return WallCloud.restore(msgspec.structs.replace(begun, guesses=guesses.tobytes()))
+    begun = WallParticles(MEAN, SPREAD, 5).save()
+    particles = np.frombuffer(begun.particles).reshape(PARTICLES, 4).copy()
+    particles[:, 0] += np.where(particles[:, 0] > 0.0, 1.0, -1.0)
+    return WallParticles.restore(msgspec.structs.replace(begun, particles=particles.tobytes()))
 
 
-def told(cloud: WallCloud, north_m: float, std_m: float) -> bool:
+def told(cloud: WallParticles, north_m: float, std_m: float) -> bool:
     mean, covariance = cloud.moments()
     known = [0, 1, 2, 3, 8]
     mean, covariance = mean[known], covariance[np.ix_(known, known)]
@@ -30,11 +30,11 @@ def told(cloud: WallCloud, north_m: float, std_m: float) -> bool:
     return cloud.agree(mean, covariance)
 
 
-def norths(cloud: WallCloud) -> np.ndarray:
-    return np.frombuffer(cloud.save().guesses).reshape(GUESSES, 4)[:, 0]
+def norths(cloud: WallParticles) -> np.ndarray:
+    return np.frombuffer(cloud.save().particles).reshape(PARTICLES, 4)[:, 0]
 
 
-def test_told_what_it_knows_it_stays_as_it_is(cloud: WallCloud) -> None:
+def test_told_what_it_knows_it_stays_as_it_is(cloud: WallParticles) -> None:
     (before, spread), std_m = cloud.moments(), float(np.sqrt(cloud.moments()[1][0, 0]))
     assert told(cloud, float(before[0]), std_m)
     after, again = cloud.moments()
@@ -42,14 +42,14 @@ def test_told_what_it_knows_it_stays_as_it_is(cloud: WallCloud) -> None:
     assert again[0, 0] == pytest.approx(spread[0, 0], rel=0.1)
 
 
-def test_told_one_side_it_stays_off_the_wall_there(cloud: WallCloud) -> None:
+def test_told_one_side_it_stays_off_the_wall_there(cloud: WallParticles) -> None:
     """A normal distribution would put a third of itself into the wall."""
     assert told(cloud, 1.2, 1.0)
     assert np.mean(norths(cloud) > 0.8) > 0.95
     assert cloud.moments()[0][0] > 1.0
 
 
-def test_told_of_another_place_it_says_so_and_changes_nothing(cloud: WallCloud) -> None:
+def test_told_of_another_place_it_says_so_and_changes_nothing(cloud: WallParticles) -> None:
     before = cloud.save()
     assert not told(cloud, 40.0, 0.5)
     assert cloud.save() == before

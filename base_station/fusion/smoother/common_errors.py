@@ -28,7 +28,7 @@ PLAN_STD_M = 0.25  # by which plans lie aside, each axis
 SKY_S = 600.0  # from one knot of the common error to the next
 
 
-class Shared:
+class CommonErrors:
     """Columns behind those of the chains: what has to be added to the building's axis, and pairs
     of north and east: how far off each place is where units begin, the receivers' common error at
     knots of time, how far off the plan lies, and landmarks.  At the end, how far across each line

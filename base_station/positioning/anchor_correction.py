@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from base_station.fusion.port import Fuser
 from base_station.live_state import StationState, UnitState
-from base_station.pins.late import note_late
+from base_station.pins.late_history import note_late
 from base_station.pins.pinning import Past, trail_of
-from base_station.positioning.begun import unlearn
+from base_station.positioning.unit_starts import unlearn
 
 
 def move_fixes(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:

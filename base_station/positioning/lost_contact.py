@@ -11,7 +11,7 @@ from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
 
 
-class Silent:
+class LostContact:
     """Goes on from what was walked a second before, for whoever is still not heard."""
 
     def __init__(self, grid: FloorGrid | None) -> None:

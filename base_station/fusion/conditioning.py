@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 LEAST = 1e-12  # variance: what is known without any doubt hangs on nothing
 
 
-def told(
+def jeffrey_update(
     mean: Floats, covariance: Floats, observe: Floats, to: Floats, to_covariance: Floats
 ) -> tuple[Floats, Floats]:
     """A normal distribution (n,), (n, n) after ``observe @ state`` (k,) has come to be known as
@@ -24,7 +24,7 @@ def told(
     return moved, 0.5 * (left + left.T)
 
 
-def taken_over(
+def conservative_fusion(
     mean: Floats, covariance: Floats, known: Floats, known_covariance: Floats, noise: Floats
 ) -> tuple[Floats, Floats]:
     """One's own word (k,) for a place, or the like, after it was seen to be one that was ``known``
