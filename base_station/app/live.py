@@ -202,7 +202,9 @@ class _LiveStation:
             hub=resources.hub,
             gate=self._gate,
             settle=disk.projection.flush,
-            replays=Replays(replay_starter(disk.archive, disk.roster, disk.clock)),
+            replays=Replays(
+                replay_starter(disk.archive, disk.roster, disk.clock, disk.clock.utc_ns)
+            ),
             forgettings=self._forgettings,
             clock=disk.clock,
             secure=resources.config.http.certificate is not None,

@@ -40,9 +40,13 @@ def past_pipeline(checkpoint: Checkpoint | None) -> StationPipeline:
     return PastPipeline(ALARMS, FUSERS[0], checkpoint)
 
 
-def replay_starter(archive: Archive, roster: Roster, clock: Clock) -> StartReplay:
+def replay_starter(
+    archive: Archive, roster: Roster, clock: Clock, recorded_until_ns: Callable[[], int]
+) -> StartReplay:
+    """``recorded_until_ns``, in station time, is where an incident ends that is open."""
+
     def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
-        end_ns = incident.closed_ns or clock.utc_ns()
+        end_ns = incident.closed_ns or max(recorded_until_ns(), incident.opened_ns)
         window = Window(incident.incident_id, incident.opened_ns, end_ns)
         return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -60,7 +61,8 @@ def run_replay_station(
         announce_first_login(accounts, scratch / "first-login.txt", announce)
 
         archive = _archive(folder, scratch)
-        replays = Replays(replay_starter(archive, roster, clock))
+        recorded_until_ns = partial(_recorded_until_ns, folder)
+        replays = Replays(replay_starter(archive, roster, clock, recorded_until_ns))
         services = Services(
             accounts=accounts,
             roster=roster,
@@ -86,6 +88,11 @@ def _archive(folder: DataFolder, scratch: Path) -> Archive:
     """Begins at what the station saved, where it did; nothing is saved beside it."""
     saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
     return Archive(LogFeed(folder.log).records, Checkpoints(saved), past_pipeline)
+
+
+def _recorded_until_ns(folder: DataFolder) -> int:
+    """In station time: the station's clock may be another than this machine's, or have stopped."""
+    return max((segment.end_ns for segment in folder.segments()), default=0)
 
 
 def _ignore(_: object) -> None:

@@ -6,12 +6,19 @@ import json
 import shutil
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from websockets.sync.client import ClientConnection
 
+from base_station.db.accounts import Accounts
+from base_station.db.principals import Role
+from base_station.db.store import Store
+from shared.clock import NS_PER_MS, SystemClock
+from shared.mcap_log import SegmentWriter
 from shared.messages import EventKind, UnitEvent
+from shared.messages.station import OpenIncident
 from tests.served_station import (
     MakePosition,
     greet,
@@ -21,6 +28,7 @@ from tests.served_station import (
     watch,
 )
 from tests.station_command import Browser, Command, Unit
+from tests.station_script import START_NS, Script
 from tests.waiting import until
 
 
@@ -120,6 +128,27 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
     ) as replaying:
         assert replaying.wait() == 2
         assert incident_id in replaying.said()
+
+
+def test_an_incident_that_is_open_is_replayed_to_what_was_recorded_last(tmp_path: Path) -> None:
+    """The station died in it, or its clock is another than that of the machine that replays."""
+    script, data = Script(), tmp_path / "station"
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.wait(30.0)
+    with closing(SegmentWriter(data / "log")) as log:
+        for record in script.records:
+            log.write(*record)
+    password = "correct horse battery"
+    with Store(data / "station.sqlite") as store:
+        Accounts(store, SystemClock()).add_user("admin", password, Role.ADMINISTRATOR)
+    (data / "first-login.txt").write_text(f"username: admin\npassword: {password}\n")
+    flags = ("--data", str(data), "--http", "127.0.0.1:0")
+    with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
+        with Browser(replaying.wait_ready(), data) as browser:
+            (replay,) = browser.call("GET", "/replays")
+        assert replaying.stop() == 0
+    assert replay["start_ms"] == START_NS // NS_PER_MS
+    assert replay["end_ms"] == script.t_ns // NS_PER_MS
 
 
 def test_rebuilding_gives_the_same_tables(
