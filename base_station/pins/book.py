@@ -116,18 +116,20 @@ def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
 
 
 def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin]:
+    """Who was switched on after that time begins there."""
     if not action.unit_ids:
         raise UserError("nobody to place: name at least one unit")
-    for unit_id in action.unit_ids:
-        _check_unit(state, unit_id)
-        _check_time(state, unit_id, action.t_ns)
     _check_place(state, action)
     common = msgspec.structs.asdict(action)
-    del common["pin_id"], common["unit_ids"]
-    return [
-        Pin(f"{action.pin_id}:{unit_id}", "start", unit_id, set_ns=state.t_ns, by=by, **common)
-        for unit_id in dict.fromkeys(action.unit_ids)
-    ]
+    del common["pin_id"], common["unit_ids"], common["t_ns"]
+    pins = []
+    for unit_id in dict.fromkeys(action.unit_ids):
+        _check_unit(state, unit_id)
+        t_ns = 0 if _early_s(state, unit_id, action.t_ns) else action.t_ns
+        _check_time(state, unit_id, t_ns)
+        pin_id = f"{action.pin_id}:{unit_id}"
+        pins.append(Pin(pin_id, "start", unit_id, t_ns, set_ns=state.t_ns, by=by, **common))
+    return pins
 
 
 def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
@@ -196,14 +198,20 @@ def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
     if t_ns > state.t_ns + FUTURE_NS:
         ahead_s = (t_ns - state.t_ns) / NS_PER_S
         raise UserError(f"the pin's time is {ahead_s:.0f} s in the future; say when it was")
-    history = state.paths.get(unit_id)
-    begin_ns = None if history is None else history.begin_ns
-    if t_ns and begin_ns is not None and t_ns < begin_ns - BEFORE_NS:
-        early_s = (begin_ns - t_ns) / NS_PER_S
+    if early_s := _early_s(state, unit_id, t_ns):
         raise UserError(
             f"the pin's time is {early_s:.0f} s before the path of {unit_id} begins; there is "
             "nothing to pin there"
         )
+
+
+def _early_s(state: StationState, unit_id: str, t_ns: int) -> float:
+    """How long before its path begins; 0 where it is not before that."""
+    history = state.paths.get(unit_id)
+    begin_ns = None if history is None else history.begin_ns
+    if t_ns == 0 or begin_ns is None or t_ns >= begin_ns - BEFORE_NS:
+        return 0.0
+    return (begin_ns - t_ns) / NS_PER_S
 
 
 def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeacon) -> None:

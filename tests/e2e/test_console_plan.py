@@ -84,6 +84,23 @@ def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -
     expect(form).to_have_count(0)
 
 
+def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Locator) -> None:
+    for when, is_now in (("where the path begins", False), ("now", True)):
+        page.get_by_role("button", name="All start here").click()
+        form = page.get_by_role("form", name="All start here")
+        click_plan(page, -150, -80)
+        form.get_by_label("When").select_option(label=when)
+        form.get_by_role("button", name="Set start").click()
+        expect(form).to_have_count(0)
+        (pin,) = pins(page)
+        assert pin["kind"] == "start"
+        assert (abs(pin["set_ms"] - pin["t_ms"]) < 60_000) == is_now
+        page.get_by_role("button", name="Pins 1").click()
+        page.get_by_role("button", name=f"{NAME} here").click()
+        confirm(page.get_by_role("form", name=f"Pin: {NAME}"), "Remove pin")
+        expect(page.get_by_text("Pins 1")).to_have_count(0)
+
+
 def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator) -> None:
     for _ in range(2):
         page.get_by_role("button", name="Zoom out").click()

@@ -185,6 +185,28 @@ def test_all_start_at_the_engine_looking_the_same_way() -> None:
     assert walk.script.pipeline.state.pins == {}
 
 
+def test_all_are_at_the_engine_now_though_they_were_switched_on_long_before() -> None:
+    """The ride there is in their paths: where those begin is nobody's business."""
+    walk = Walk("FF-01", "FF-02", turn_rad=1.0)
+    walk.go(100)
+    here, t_ns = truth(walk.walked_s), walk.script.t_ns
+    walk.script.act(StartTogether("s", walk.units, t_ns, *here, 0.5, None, -1.0, 0.05, ""))
+    walk.go(30)
+    for unit_id in walk.units:
+        assert walk.state(f"s:{unit_id}") == "used"
+        assert walk.now_off_m(unit_id) < 4.0
+
+
+def test_who_was_switched_on_after_all_were_at_the_engine_begins_there() -> None:
+    walk = Walk("FF-01", "FF-02")
+    walk.go(60, silent=("FF-02",))
+    then_ns = walk.script.t_ns - 30 * 10**9
+    walk.go(20)
+    walk.script.act(StartTogether("s", walk.units, then_ns, 0.0, 0.0, 0.5, None, None, 0.3, ""))
+    pins = walk.script.pipeline.state.pins
+    assert (pins["s:FF-01"].t_ns, pins["s:FF-02"].t_ns) == (then_ns, 0)
+
+
 def test_who_meets_somebody_well_known_is_well_known() -> None:
     walk = Walk("FF-01", "FF-02")
     for unit_id in walk.units:

@@ -90,7 +90,7 @@ def set_pin(form: PinForm, station: Station, who: Commander) -> PinView:
 
 @router.post("/pins/start", status_code=201)
 def start_together(form: StartForm, station: Station, who: Commander) -> list[PinView]:
-    """These units were together here then: all start at the engine."""
+    """These units were together here: where their paths begin, or then."""
     pin_id = uuid.uuid4().hex
     said = form.model_dump(exclude={"t_ms", "unit_ids"})
     action = StartTogether(pin_id, tuple(form.unit_ids), form.t_ms * NS_PER_MS, **said)

@@ -88,7 +88,10 @@ function Verdict({ pin }: { pin: PinView }) {
   );
 }
 
-/** Where everybody who is on duty began, for instance at the engine. */
+/**
+ * Where everybody who is on duty was together, for instance at the engine: where their paths begin,
+ * or at a time, as those need whose units were switched on long before.
+ */
 export function StartPanel({ picture }: { picture: Picture }) {
   const units = onDuty(picture);
   const send = (event: SubmitEvent) => {
@@ -97,6 +100,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
     const start = {
       unit_ids: units.map((unit) => unit.unit_id),
       ...placeOf(given),
+      t_ms: given["when"] === "" ? 0 : (timeOf(given, picture) ?? Math.round(picture.nowMs.peek())),
       heading_rad: facing === "" ? null : (Number(facing) * Math.PI) / 180,
       note: "",
     };
@@ -104,10 +108,11 @@ export function StartPanel({ picture }: { picture: Picture }) {
   };
   return (
     <form class="tool-panel" aria-label="All start here" onSubmit={send}>
-      <h3>All began here</h3>
+      <h3>All were here</h3>
       <p>{units.map(displayName).join(", ") || "Nobody wears a unit yet."}</p>
       <PlaceFields />
       <WithinField startM={4} />
+      <WhenField set={0} />
       <label>
         They looked towards
         <select name="facing">
