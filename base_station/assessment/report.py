@@ -27,6 +27,7 @@ from shared.clock import NS_PER_S
 AWAY_M = 15.0  # somebody who was so far from the beginning
 BACK_M = 3.0  # and came so near to it again has closed a loop
 GAP_NS = 60 * NS_PER_S  # without a fix, after which the next one is a re-entry
+NEAR_NS = 5 * NS_PER_S  # half of what lies between two points of a trail, at most
 SETTLING_NS = 20 * NS_PER_S  # about a re-entry
 
 Tracks = Mapping[str, Sequence[TrackSample]]
@@ -253,12 +254,13 @@ def _reentry_jumps(
 
 
 def _at(samples: Sequence[TrackSample], t_ns: int) -> TrackSample | None:
-    """What was shown then, within a few seconds; of time 0 the first."""
-    if not samples:
+    """What was shown nearest to then, within a few seconds; of time 0 the first."""
+    row = bisect_left(samples, t_ns, key=lambda one: one.t_ns)
+    near = samples[max(row - 1, 0) : row + 1]
+    nearest = min(near, key=lambda one: abs(one.t_ns - t_ns), default=None)
+    if nearest is None or (t_ns != 0 and abs(nearest.t_ns - t_ns) > NEAR_NS):
         return None
-    row = min(bisect_left(samples, t_ns, key=lambda one: one.t_ns), len(samples) - 1)
-    near = t_ns == 0 or abs(samples[row].t_ns - t_ns) < 5 * NS_PER_S
-    return samples[row] if near else None
+    return nearest
 
 
 def _length_m(samples: Sequence[TrackSample]) -> float:

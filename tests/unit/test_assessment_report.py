@@ -1,0 +1,81 @@
+"""An incident's assessment: what was shown, held against pins and against what is known since."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from base_station.assessment.report import UnitReport, assess
+from base_station.db.records import TrackSample
+from base_station.fusion.smoother.port import Verdict
+from base_station.live_state import StationState
+from base_station.pins.pin import Pin
+from shared.clock import NS_PER_S
+
+
+def shown(t_s: float, north_m: float = 0.0, east_m: float = 0.0, floor: int = 0) -> TrackSample:
+    t_ns = round(t_s * NS_PER_S)
+    return TrackSample(t_ns, north_m, east_m, 0.0, 1.0, 1.0, 1.0, 0.0, floor, "good")
+
+
+def assessed(
+    live: Sequence[TrackSample], smoothed: Sequence[TrackSample] = (), *pins: Pin
+) -> UnitReport:
+    state = StationState()
+    state.pins.update({pin.pin_id: pin for pin in pins})
+    verdicts = {pin.pin_id: Verdict(True, 0.5, 0.4) for pin in pins}
+    raw = {"FF-01": smoothed}
+    (unit,) = assess(
+        "i1", "path-graph", 0, state, verdicts, {"FF-01": live}, {"FF-01": smoothed}, raw
+    ).units
+    return unit
+
+
+def pin(t_s: float, north_m: float) -> Pin:
+    t_ns = round(t_s * NS_PER_S)
+    return Pin("p1", "place", "FF-01", t_ns, 0.5, 0, "chief", "", north_m, 0.0, 1)
+
+
+@pytest.mark.parametrize(("t_s", "north_m"), [(12.0, 10.0), (97.0, 50.0), (9.2, 9.0), (0.0, 0.0)])
+def test_a_pin_is_held_against_what_was_shown_nearest_to_its_time(
+    t_s: float, north_m: float
+) -> None:
+    """Somebody who is not heard is shown where they were last."""
+    live = [shown(float(second), float(second)) for second in range(11)]
+    (residual,) = assessed(
+        [*live, shown(100.0, 50.0, floor=1)], (), pin(t_s, north_m)
+    ).pin_residuals
+    assert residual.shown_m == 0.0
+    assert residual.floor_right is (t_s > 50.0)
+
+
+def test_a_pin_of_a_time_at_which_nothing_was_shown_tells_nothing_of_it() -> None:
+    (residual,) = assessed([shown(10.0), shown(100.0)], (), pin(50.0, 0.0)).pin_residuals
+    assert (residual.shown_m, residual.floor_right) == (None, None)
+
+
+def test_the_floor_of_somebody_at_rest_is_held_against_what_is_known_of_that_time() -> None:
+    """A trail has a point in ten seconds there."""
+    smoothed = [shown(float(second), floor=0) for second in range(0, 101, 10)]
+    live = [shown(float(second), floor=1 if second % 10 < 5 else 0) for second in range(100)]
+    assert assessed(live, smoothed).floor_right == pytest.approx(0.5)
+
+
+def test_nothing_shown_is_nothing_known() -> None:
+    unit = assessed(())
+    assert (unit.seconds, unit.walked_m, unit.stated, unit.floor_right) == (0.0, 0.0, None, None)
+
+
+def test_a_loop_closes_where_somebody_came_back_last() -> None:
+    way_m = [*range(21), *range(20, -1, -1)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    state = StationState()
+    raw = [
+        shown(one.t_ns / NS_PER_S, 1.1 * one.north_m, 0.1 * row) for row, one in enumerate(smoothed)
+    ]
+    tracks = {"FF-01": smoothed}
+    report = assess("i1", "path-graph", 0, state, {}, tracks, tracks, {"FF-01": raw})
+    (unit,) = report.units
+    assert unit.loop_closure_m == pytest.approx(4.1)
+    assert unit.loop_closure_percent == pytest.approx(100.0 * 4.1 / unit.walked_m, abs=0.02)
