@@ -14,9 +14,11 @@ def at(t_s: float, north_m: float, boot_id: int = 1, **changes: object) -> Posit
     return said.position(header, north_m=north_m, **changes)
 
 
-def walked(seconds: int, mps: float = 1.0) -> PathHistory:
-    """Straight to the north, at five positions a second."""
+def walked(seconds: int, mps: float = 1.0, east_mps: float = 0.0) -> PathHistory:
+    """Straight on, to the north unless said otherwise, at five positions a second."""
     history = PathHistory()
     for fifth in range(seconds * 5):
-        history.note(at(fifth / 5, mps * fifth / 5), round(fifth / 5 * NS_PER_S), jumped=False)
+        t_s = fifth / 5
+        position = at(t_s, mps * t_s, east_m=east_mps * t_s)
+        history.note(position, position.header.t_mono_ns, jumped=False)
     return history
