@@ -37,7 +37,7 @@ from shared.codec import encode
 from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.messages import STATION_ID, OperatorAction, Tick
-from shared.messages.station import Action, SendCommand
+from shared.messages.station import Action, ForgetWearers, SendCommand
 
 TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
@@ -203,10 +203,11 @@ class StationDrive:
             self._keeping.keep(event, key, payload, urgent=heard is Heard.URGENT)
 
     def _take_actions(self) -> None:
-        if self._inbox:
-            self._saving.finish()  # else it could bring back what is to be forgotten now
-        while self._inbox:
+        for _ in range(len(self._inbox)):
             by, action, future = self._inbox.popleft()
+            if isinstance(action, ForgetWearers) and self._saving.is_under_way:
+                self._inbox.append((by, action, future))  # what is being saved has them in it
+                continue
             done = self._do(by, action)
             self._settle()
             if isinstance(action, SendCommand):

@@ -33,8 +33,10 @@ logger = logging.getLogger(__name__)
 LOG_FOLDER = "log"
 _TURN_S = 0.05
 _LONGEST_WAIT_S = 2.0  # for the disk, by whoever writes something urgent
+_HUNG_WAIT_S = 0.2  # as long as a disk takes that has just come back
 _LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
-_STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk hangs
+_STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, or hangs
+_HANGS_NS = 5 * NS_PER_S  # it hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
 
 SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
@@ -103,7 +105,7 @@ class Recorder:
         """Keep a record with station time ``t_ns``; False: it is refused, and not in the log.
 
         Returns at once, or, where it is urgent, when it is on the disk; a disk that hangs is not
-        waited for longer than two seconds.
+        waited for longer than two seconds, and hardly at all once it is known to.
         """
         with self._taking:  # the condition's own lock, without what a condition costs
             waiting_bytes = self._queued_bytes + self._unwritten_bytes
@@ -123,7 +125,8 @@ class Recorder:
             mine = self._flushes_asked
             self._news.notify_all()
             done = self._news.wait_for(
-                lambda: self._flushes_done >= mine or bool(self._failure), _LONGEST_WAIT_S
+                lambda: self._flushes_done >= mine or bool(self._failure),
+                _HUNG_WAIT_S if self.hangs else _LONGEST_WAIT_S,
             )
         return done and not self._failure and not self._writer.problem
 
@@ -150,12 +153,12 @@ class Recorder:
         """What is wrong with the log, as a sentence for a person; empty: nothing."""
         if self._failure:
             return self._failure
-        if self._writer.problem and not self.lost:
-            return self._writer.problem
+        missing = ""
         if self.lost:  # said until the station starts anew
             missing = f"the disk did not keep up: {self.lost} records are missing in the log"
-            return f"{missing}; {self._writer.problem}" if self._writer.problem else missing
-        return ""
+        hangs = f"{self.folder} cannot be written: its disk does not answer; check it"
+        problems = (missing, hangs if self.hangs else self._writer.problem)
+        return "; ".join(filter(None, problems))
 
     @property
     def little_room(self) -> str:
@@ -168,8 +171,13 @@ class Recorder:
     @property
     def is_behind(self) -> bool:
         """Whether records of a second ago may not be on the disk yet."""
-        stuck = self._clock.monotonic_ns() - self._turned_ns > _STUCK_NS
+        stuck = self._turn_ns > _STUCK_NS
         return stuck or bool(self._failure or self._writer.problem)
+
+    @property
+    def hangs(self) -> bool:
+        """Whether the disk does not answer at all: records wait in memory for it."""
+        return self._turn_ns > _HANGS_NS and not self._failure
 
     @property
     def lost(self) -> int:
@@ -196,6 +204,11 @@ class Recorder:
             self._news.notify_all()
         self._thread.join()
         self._lock.close()
+
+    @property
+    def _turn_ns(self) -> int:
+        """How long the thread has been at its present turn."""
+        return self._clock.monotonic_ns() - self._turned_ns
 
     # ---- in the thread
 

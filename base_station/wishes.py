@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from threading import RLock
+from threading import Lock
 from typing import Generic, Protocol, TypeVar
 
 import msgspec
@@ -37,7 +37,8 @@ class Wishes(Generic[W]):
     def __init__(self, path: Path, kind: type[W]) -> None:
         """What is no list of wishes is taken for an empty one."""
         self._path = path
-        self._lock = RLock()
+        self._lock = Lock()  # never held while the disk is waited for
+        self._saving = Lock()  # taken before the other one
         self._all: list[W] = []
         with suppress(OSError, msgspec.DecodeError):
             self._all = msgspec.json.decode(path.read_bytes(), type=list[kind])  # type: ignore[valid-type]
@@ -50,7 +51,7 @@ class Wishes(Generic[W]):
     def under_way(self) -> list[W]:
         """Themselves: change them with ``note``."""
         with self._lock:
-            return [one for one in self._all if not one.state.is_over]
+            return self._under_way()
 
     def add(self, make: Callable[[list[W]], W]) -> W:
         """A copy of what ``make`` gives, which is on the disk when this returns.  It is told what
@@ -58,20 +59,24 @@ class Wishes(Generic[W]):
 
         Raises StoreError where the disk does not take it.
         """
-        with self._lock:
-            under_way = self.under_way()
-            wish = make(under_way)
-            if not any(wish is one for one in under_way):
+        with self._saving:
+            with self._lock:
+                under_way = self._under_way()
+                wish = make(under_way)
+                is_new = not any(wish is one for one in under_way)
                 over = [one for one in self._all if one.state.is_over]
-                before, self._all = self._all, [*over[1 - _KEPT :], *under_way, wish]
+                wanted = [*over[1 - _KEPT :], *under_way, wish] if is_new else self._all
+                said = msgspec.json.encode(wanted)
+            if is_new:
                 try:
-                    self._save()
+                    write_atomically(self._path, said)
                 except ConfigError as error:
-                    self._all = before
                     raise StoreError(
                         f"the wish cannot be kept, so nothing is done: {error}"
                     ) from error
-            return _copy(wish)
+            with self._lock:
+                self._all = wanted
+                return _copy(wish)
 
     def note(self, wish: W, *, save: bool, **now: object) -> bool:
         """How it stands now; False where it was over before, and stays as it is.
@@ -83,9 +88,9 @@ class Wishes(Generic[W]):
                 return False
             for name, value in now.items():
                 setattr(wish, name, value)
-            if save:
-                self._try_to_save()
-            return True
+        if save:
+            self._save()
+        return True
 
     def note_each(self, which: Callable[[W], bool], **now: object) -> None:
         """Of those that are over, too."""
@@ -93,14 +98,18 @@ class Wishes(Generic[W]):
             for wish in filter(which, self._all):
                 for name, value in now.items():
                     setattr(wish, name, value)
-            self._try_to_save()
+        self._save()
 
-    def _try_to_save(self) -> None:
-        with suppress(ConfigError):
-            self._save()
+    def _under_way(self) -> list[W]:
+        return [one for one in self._all if not one.state.is_over]
 
     def _save(self) -> None:
-        write_atomically(self._path, msgspec.json.encode(self._all))
+        """Where the disk takes it."""
+        with self._saving:
+            with self._lock:
+                said = msgspec.json.encode(self._all)
+            with suppress(ConfigError):
+                write_atomically(self._path, said)
 
 
 def _copy(wish: W) -> W:

@@ -101,7 +101,7 @@ def open_disk(
 
     Raises StoreError where the database cannot be used, or is of another log.
     """
-    store = closing.enter_context(Store(folder.database))
+    store = closing.enter_context(Store(folder.database, lambda: recorder.hangs))
     if _lacks_log(store, recorder):
         announce("the database lacks what the log knows: it is made again from the log")
         project_whole_log(store, folder.log, lambda _: None)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sqlite3
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -22,6 +22,7 @@ from base_station.db.migrate import migrate
 from shared.errors import StoreError
 
 BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
+_LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
 _BEGIN = "muster_begin"
 _PRAGMAS = (
     "journal_mode = WAL",
@@ -41,7 +42,11 @@ class Store:
     written by a newer program.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, hangs: Callable[[], bool] = lambda: False) -> None:
+        """``hangs``: whether the disk does not answer just now.  Nothing more is asked of it then:
+        whoever does would wait for it, whatever else there is to do, and could not be ended.
+        """
+        self._hangs = hangs
         self._engine = _engine(path)
         self._write_engine = self._engine.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
         self._writing = threading.Lock()
@@ -63,6 +68,7 @@ class Store:
     @contextmanager
     def read(self) -> Iterator[Session]:
         """A consistent view for one reader.  Raises StoreError where the file cannot be read."""
+        self._require_disk()
         try:
             with Session(self._engine, expire_on_commit=False) as session:
                 yield session
@@ -75,7 +81,7 @@ class Store:
 
         Raises StoreError where the database cannot take it (a full disk, a locked file).
         """
-        with self._writing:
+        with self._alone():
             try:
                 with Session(self._write_engine, expire_on_commit=False) as session:
                     yield session
@@ -86,7 +92,7 @@ class Store:
 
     def compact(self) -> None:
         """Leave no byte in the file of what was deleted or replaced."""
-        with self._writing:
+        with self._alone():
             connection = self._engine.raw_connection()
             try:
                 for statement in ("VACUUM", "PRAGMA wal_checkpoint(TRUNCATE)"):
@@ -98,6 +104,24 @@ class Store:
 
     def close(self) -> None:
         self._engine.dispose()
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Nobody else changes anything."""
+        self._require_disk()
+        while not self._writing.acquire(timeout=_LOOK_S):
+            self._require_disk()
+        try:
+            yield
+        finally:
+            self._writing.release()
+
+    def _require_disk(self) -> None:
+        if self._hangs():
+            raise StoreError(
+                "the station's disk does not answer: until it does nothing can be looked up or "
+                "changed, and who is on the screen is shown as before; check the disk"
+            )
 
     def _cause(self, error: SQLAlchemyError) -> str:
         cause = getattr(error, "orig", None) or error

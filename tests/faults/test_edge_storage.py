@@ -21,6 +21,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import parse_key
 from shared.codec import decode
 from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
+from tests.hanging_disk import disk_that_can_hang, freeze, thaw
 from tests.waiting import until
 
 
@@ -148,33 +149,8 @@ def disk(tmp_path: Path) -> Iterator[Path]:
 
 @pytest.fixture
 def freezing_disk(tmp_path: Path) -> Iterator[Path]:
-    """A disk of its own that can be made to hang: frozen, it lets who writes to it wait."""
-    image, place = tmp_path / "image", tmp_path / "disk"
-    place.mkdir()
-    with image.open("wb") as file:
-        file.truncate(64 * 1024 * 1024)
-    try:
-        subprocess.run(["mkfs.ext4", "-q", str(image)], check=True, capture_output=True)
-        subprocess.run(
-            ["mount", "-o", "loop", str(image), str(place)], check=True, capture_output=True
-        )
-        freeze(place)
-    except (OSError, subprocess.CalledProcessError) as error:
-        subprocess.run(["umount", str(place)], check=False, capture_output=True)
-        pytest.skip(f"no disk can be frozen here: {error}")
-    thaw(place)
-    yield place
-    with suppress(subprocess.CalledProcessError):  # it was thawed by the test
-        thaw(place)
-    subprocess.run(["umount", "--lazy", str(place)], check=True)
-
-
-def freeze(disk: Path) -> None:
-    subprocess.run(["fsfreeze", "--freeze", str(disk)], check=True, capture_output=True)
-
-
-def thaw(disk: Path) -> None:
-    subprocess.run(["fsfreeze", "--unfreeze", str(disk)], check=True, capture_output=True)
+    with disk_that_can_hang(tmp_path, size_mb=64) as place:
+        yield place
 
 
 def remount(disk: Path, how: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +16,7 @@ from base_station.data_folder import DataFolder
 from base_station.feed import LogFeed
 from base_station.recorder import LOG_FOLDER, Recorder
 from shared.channels import POSITION
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import DataFolderInUseError
 from shared.mcap_log import (
     SegmentInfo,
@@ -170,6 +171,34 @@ def test_a_recorder_that_fails_says_so_and_counts_what_it_refuses(tmp_path: Path
     assert not recorder.write(T0_NS, KEY, b"")
     assert recorder.lost >= 1
     recorder.close()
+
+
+def test_a_disk_that_hangs_is_said_and_hardly_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock, answers, fsync = ManualClock(), Event(), os.fsync
+    recorder = Recorder(tmp_path, clock)
+
+    def hang(descriptor: int) -> None:
+        answers.wait()
+        fsync(descriptor)
+
+    monkeypatch.setattr("shared.mcap_log.durable_file.os.fsync", hang)
+    monkeypatch.setattr("base_station.recorder._LONGEST_WAIT_S", 0.1)
+    assert recorder.write(T0_NS, KEY, b"1", urgent=True)
+    clock.advance(4.0)
+    assert (recorder.is_behind, recorder.hangs, recorder.problem) == (True, False, "")
+    clock.advance(2.0)
+    assert recorder.hangs
+    assert "does not answer" in recorder.problem
+    monkeypatch.setattr("base_station.recorder._LONGEST_WAIT_S", 3600.0)
+    assert recorder.write(T0_NS, KEY, b"2", urgent=True)
+    answers.set()
+    until(lambda: not recorder.hangs)
+    assert recorder.flush()
+    assert recorder.problem == ""
+    recorder.close()
+    assert payloads(tmp_path) == [b"1", b"2"]
 
 
 def test_little_room_on_the_disk_is_said_and_is_no_failure(

@@ -10,8 +10,9 @@ import pytest
 from base_station.live.saving import PART, Saving
 from base_station.live.self_watch import SelfWatch
 from base_station.past.checkpoints import Checkpoints
-from tests.live_station import make_pipeline
-from tests.waiting import until
+from shared.messages.station import ForgetWearers, RegisterUnit
+from tests.live_station import LiveStation, make_pipeline
+from tests.waiting import PATIENCE_S, until
 
 STATE = make_pipeline().checkpoint()
 
@@ -90,3 +91,25 @@ def test_one_is_saved_after_the_other(tmp_path: Path) -> None:
     saved = checkpoints.latest()
     assert saved is not None
     assert saved.t_ns == 200
+
+
+def test_people_are_not_held_up_by_a_disk_that_does_not_take_what_is_saved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for who is to be forgotten: what is being saved has them in it."""
+    begun, answers = Event(), Event()
+
+    def hang(*_: object) -> None:
+        begun.set()
+        answers.wait()
+
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit("FF-01", "one"))
+        monkeypatch.setattr(station.checkpoints, "save", hang)
+        station.drive.save_soon()
+        assert begun.wait(PATIENCE_S)
+        forgotten = station.drive.submit("chief", ForgetWearers("FF-01"))
+        station.act(RegisterUnit("FF-02", "two"))
+        assert not forgotten.done()
+        answers.set()
+        assert forgotten.result(PATIENCE_S).refused is None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from concurrent.futures import ThreadPoolExecutor
 
 import msgspec
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -25,6 +26,9 @@ NOT_UNDERSTOOD = 4400
 SEND_TIMEOUT_S = 20.0  # one message takes longer: the console is gone
 MOST_LAPSES = 30  # how often a console may fall behind
 CHECK_LOGIN_S = 2.0  # half a millisecond each
+CHECKED_WITHIN_S = 10.0  # else the disk hangs
+# Consoles that look on take no thread from whoever asks for something.
+_CHECKING = ThreadPoolExecutor(4, thread_name_prefix="check-login")
 
 _log = logging.getLogger(__name__)
 
@@ -124,7 +128,13 @@ async def _keep_checking(socket: WebSocket, services: Services) -> None:
 
 
 async def _check_login(socket: WebSocket, services: Services) -> None:
-    principal = await run_in_threadpool(principal_of, socket, services)
+    loop = asyncio.get_running_loop()
+    checking = loop.run_in_executor(_CHECKING, principal_of, socket, services)
+    try:
+        async with asyncio.timeout(CHECKED_WITHIN_S):
+            principal = await checking
+    except TimeoutError:
+        raise StoreError("the station's disk does not answer; check it") from None
     if principal is None:
         raise Closing(NOT_LOGGED_IN, "log in first")
     if not covers(principal, (Scope.LIVE,)):

@@ -1,0 +1,126 @@
+"""A station whose disk hangs shows people and alarms all the same, says so, and loses nothing."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from base_station.bench.rig import said
+from base_station.bench.rig.station import free_port
+from base_station.events import Received, event_of
+from shared.mcap_log import read_log
+from shared.messages import EventKind, Header, UnitEvent
+from tests.hanging_disk import disk_that_can_hang, frozen
+from tests.served_station import MakePosition, greet, prepare, watch
+from tests.station_command import Browser, Command, Unit
+from tests.waiting import PATIENCE_S, until
+
+HANGS = "does not answer"
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Iterator[Path]:
+    with disk_that_can_hang(tmp_path, size_mb=128) as place:
+        yield place
+
+
+class Walk:
+    """Somebody walks, and a console looks on."""
+
+    def __init__(self, browser: Browser, unit: Unit, closing: ExitStack) -> None:
+        self._unit = unit
+        self._socket = closing.enter_context(watch(browser))
+        self._ending = threading.Event()
+        self.said: set[int] = set()  # sequence numbers
+        self.shown = 0  # deltas with the unit in it
+        self.problems: list[str] = []
+        self.alarms: dict[str, str] = {}  # state by kind
+        for work in (self._walk, self._look):
+            thread = threading.Thread(target=work, daemon=True)
+            thread.start()
+            closing.callback(thread.join)
+        closing.callback(self._ending.set)
+
+    def press_mayday(self) -> None:
+        self._unit.say(UnitEvent(self._header(), EventKind.MAYDAY))
+
+    def _header(self) -> Header:
+        header = self._unit.stamper.header()
+        self.said.add(header.seq)
+        return header
+
+    def _walk(self) -> None:
+        while not self._ending.wait(0.1):
+            header = self._header()
+            self._unit.say(said.position(header, north_m=0.1 * header.seq))
+
+    def _look(self) -> None:
+        while not self._ending.is_set():
+            try:
+                message = json.loads(self._socket.recv(1.0))
+            except TimeoutError:
+                continue
+            except ConnectionClosed:
+                return
+            self.shown += bool(message.get("units"))
+            if message.get("health"):
+                self.problems = message["health"]["problems"]
+            for alarm in message.get("alarms", ()):
+                self.alarms[alarm["rule"]] = alarm["state"]
+
+
+def logged(log: Path) -> list[int]:
+    """Sequence numbers of what the unit said, as often as they stand there."""
+    events = (event_of(*record) for record in read_log(log))
+    headers = (event.message.header for event in events if isinstance(event, Received))
+    return [header.seq for header in headers if header.unit_id == "FF-01"]
+
+
+def login(browser: Browser, data: Path) -> httpx.Response:
+    lines = (data / "first-login.txt").read_text().splitlines()
+    return httpx.post(
+        f"{browser.address}/api/v1/login",
+        headers={"Origin": browser.address},
+        json=dict(line.split(": ", 1) for line in lines),
+        timeout=PATIENCE_S,
+    )
+
+
+def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
+    disk: Path, tmp_path: Path, make_position: MakePosition
+) -> None:
+    data, port = disk / "station", free_port()
+    flags = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
+    with ExitStack() as closing:
+        station = Command(tmp_path / "output.txt", "serve", "--data", str(data), *flags)
+        closing.callback(station.kill)
+        browser = closing.enter_context(Browser(station.wait_ready(), data))
+        unit = Unit(port, "FF-01")
+        closing.callback(unit.close)
+        prepare(browser)
+        greet(browser, unit, make_position)
+        with ExitStack() as walking:
+            walk = Walk(browser, unit, walking)
+            until(lambda: walk.shown > 5)
+            with frozen(disk):
+                until(lambda: any(HANGS in one for one in walk.problems), "it is told")
+                refused = login(browser, data)
+                assert (refused.status_code, HANGS in refused.json()["detail"]) == (503, True)
+                assert httpx.get(browser.address, timeout=PATIENCE_S).is_success
+                walk.press_mayday()
+                until(lambda: walk.alarms.get("mayday") == "raised", "mayday is raised")
+                shown = walk.shown
+                until(lambda: walk.shown > shown + 20, "the picture goes on")
+            until(lambda: not any(HANGS in one for one in walk.problems), "it is over")
+            assert login(browser, data).is_success
+        assert station.stop() == 0
+    there = logged(data / "log")
+    assert len(there) == len(set(there))
+    assert walk.said <= set(there)
