@@ -4,59 +4,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Iterator
-from contextlib import closing
 from pathlib import Path
 
 import msgspec
 import pytest
 
 from base_station.api.wire import Snapshot, TrailPoint
-from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.bench.rig import said
-from base_station.db.records import Records
-from base_station.db.store import Store
-from base_station.events import Output, Received, StationEvent
 from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
-from base_station.past.playback import Archive, Playback, Record
+from base_station.past.playback import Archive
 from base_station.past.replay import ReplaySession, Window
-from base_station.pipeline import StationPipeline
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
 from shared.errors import StoreError, UserError
-from shared.mcap_log import SegmentWriter
-from shared.messages import EventKind, UnitEvent
-from shared.messages.station import Assign, CloseIncident, OpenIncident, ReportProblem
+from shared.messages.station import CloseIncident, OpenIncident, ReportProblem
 from tests.live_station import Screen, make_pipeline
-from tests.station_script import START_NS, Script
+from tests.logged_walk import DURATION_S, MAYDAY_S, archive, walk_with_mayday
+from tests.station_script import START_NS, Record, Script
 from tests.waiting import until
-
-DURATION_S = 120
-MAYDAY_S = 60
-
-
-@pytest.fixture(scope="module")
-def records() -> list[Record]:
-    """Two minutes' walk to the north at 1 m/s, with a mayday after one."""
-    script = Script()
-    script.register("FF-01")
-    script.act(Assign("FF-01", "p1", "Ada", "red", "leader"))
-    script.act(OpenIncident("i1", "Mill Lane"))
-    for second in range(DURATION_S):
-        script.now_s += 1.0
-        script.position("FF-01", 1.0 * second, 0.0)
-        if second == MAYDAY_S:
-            script.event("FF-01", EventKind.MAYDAY)
-        script.tick()
-    return script.records
-
-
-def archive(records: list[Record], folder: Path) -> Archive:
-    def from_time(t_ns: int) -> Iterable[Record]:
-        return (record for record in records if record[0] >= t_ns)
-
-    return Archive(from_time, Checkpoints(folder), make_pipeline)
 
 
 @pytest.fixture
@@ -65,10 +32,10 @@ def screen() -> Screen:
 
 
 @pytest.fixture
-def session(records: list[Record], tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
+def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
     window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
-        archive(records, tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
     )
     yield session
     session.close()
@@ -227,13 +194,13 @@ def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
 
 
 def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
-    records: list[Record], tmp_path: Path, screen: Screen
+    tmp_path: Path, screen: Screen
 ) -> None:
     """Who goes to the next alarm sees it happen, however long the station reads to get there."""
     clock = ManualClock()
 
     def slowly(t_ns: int) -> Iterable[Record]:
-        for record in records:
+        for record in walk_with_mayday():
             if record[0] >= t_ns:
                 clock.advance(0.1)
                 yield record
@@ -251,12 +218,12 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     assert sought_s == MAYDAY_S
 
 
-def test_played_on_it_goes_on_from_where_it_was_paused(
-    records: list[Record], tmp_path: Path, screen: Screen
-) -> None:
+def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: Screen) -> None:
     clock = ManualClock()
     window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
-    session = ReplaySession(archive(records, tmp_path), window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(
+        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, clock
+    )
     session.pause()
     picture(session)
     clock.advance(30.0)
@@ -286,137 +253,11 @@ def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> Non
     session.close()
 
 
-def test_a_checkpoint_on_the_way_gives_the_same_picture(
-    records: list[Record], tmp_path: Path
-) -> None:
-    plain = Playback(archive(records, tmp_path / "none"))
-    source = archive(records, tmp_path / "some")
-    saving = Playback(source)
-    for second in (40, 80):
-        for _ in saving.seek(START_NS + second * NS_PER_S):
-            pass
-        at_ns = saving.pipeline.state.t_ns
-        events = sum(record[0] == at_ns for record in records)
-        source.checkpoints.save(at_ns, events, saving.pipeline.checkpoint())
-    opened: list[int] = []
-
-    def counting(t_ns: int) -> Iterable[Record]:
-        opened.append(t_ns)
-        return source.open_log(t_ns)
-
-    quick = Playback(Archive(counting, source.checkpoints, make_pipeline))
-    for second in (100, 60, 20, 110):
-        target_ns = START_NS + second * NS_PER_S
-        for playback in (plain, quick):
-            for _ in playback.seek(target_ns):
-                pass
-        assert quick.pipeline.checkpoint() == plain.pipeline.checkpoint()
-    assert max(opened) == START_NS + 80 * NS_PER_S
-
-
-def test_a_damaged_checkpoint_only_costs_time(records: list[Record], tmp_path: Path) -> None:
-    source = archive(records, tmp_path)
-    for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
-        pass
-    source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, saving.pipeline.checkpoint())
-    (path,) = tmp_path.iterdir()
-    for damaged in (path.read_bytes()[:-10], b"", path.read_bytes()[::-1]):
-        path.write_bytes(damaged)
-        assert source.checkpoints.latest() is None
-        again = Playback(source)
-        for _ in again.seek(START_NS + 60 * NS_PER_S):
-            pass
-        assert again.pipeline.state.units["FF-01"].position is not None
-
-
-def test_a_checkpoint_of_another_log_is_left_out(records: list[Record], tmp_path: Path) -> None:
-    source = archive(records, tmp_path)
-    for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
-        pass
-    state = saving.pipeline.checkpoint()
-    source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, state)
-    mine = source.latest()
-    assert mine is not None
-    source.checkpoints.save(START_NS + 50 * NS_PER_S, 3, state)  # of a log with an event more there
-    source.checkpoints.save(START_NS + 60 * NS_PER_S + 1, 1, state)
-    source.checkpoints.save(START_NS + 900 * NS_PER_S, 1, state)  # the log was put back
-    assert source.latest() == mine
-    assert source.latest(START_NS + 60 * NS_PER_S + 1) == mine
-    assert source.latest(after_ns=START_NS + 40 * NS_PER_S) is None
-    for _ in (again := Playback(source)).seek(START_NS + 100 * NS_PER_S):
-        pass
-    assert again.pipeline.state.t_ns == START_NS + 100 * NS_PER_S
-
-
-def test_checkpoints_of_another_program_do_not_send_a_seek_back(
-    records: list[Record], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    source = archive(records, tmp_path)
-    for _ in (saving := Playback(source)).seek(START_NS + 80 * NS_PER_S):
-        pass
-    source.checkpoints.save(START_NS + 80 * NS_PER_S, 2, saving.pipeline.checkpoint())
-    monkeypatch.setattr("base_station.past.checkpoints._program", lambda: 7)
-    opened: list[int] = []
-
-    def counting(t_ns: int) -> Iterable[Record]:
-        opened.append(t_ns)
-        return source.open_log(t_ns)
-
-    again = Playback(Archive(counting, Checkpoints(tmp_path), make_pipeline))
-    for second in (40, 90, 100):
-        for _ in again.seek(START_NS + second * NS_PER_S):
-            pass
-    assert opened == [0]
-
-
-@pytest.fixture
-def mistaken(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program has a mistake in what it does about what units tell of themselves."""
-    right = StationPipeline.step
-
-    def step(self: StationPipeline, event: StationEvent) -> list[Output]:
-        if isinstance(event, Received) and isinstance(event.message, UnitEvent):
-            raise ZeroDivisionError("a mistake")
-        return right(self, event)
-
-    monkeypatch.setattr(StationPipeline, "step", step)
-
-
-@pytest.mark.usefixtures("mistaken")
-def test_a_mistake_in_the_program_costs_one_event_of_the_past_as_it_did_live(
-    records: list[Record], tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    source = archive(records, tmp_path)
-    playback = Playback(Archive(source.open_log, source.checkpoints, past_pipeline))
-    for _ in playback.seek(START_NS + 100 * NS_PER_S):
-        pass
-    state = playback.pipeline.state
-    assert state.t_ns == START_NS + 100 * NS_PER_S
-    assert state.alarms == {}
-    assert "a mistake" in caplog.text
-
-
-@pytest.mark.usefixtures("mistaken")
-def test_a_database_is_made_of_a_log_in_which_the_program_makes_a_mistake(
-    records: list[Record], tmp_path: Path
-) -> None:
-    """A station whose database is lost makes it anew before it starts."""
-    with closing(SegmentWriter(tmp_path / "log")) as log:
-        for record in records:
-            log.write(*record)
-    with Store(tmp_path / "station.sqlite") as store:
-        count = project_whole_log(store, tmp_path / "log", lambda _: None)
-        incident = Records(store, ManualClock()).require_incident("i1")
-        tracks = Records(store, ManualClock()).tracks_of(incident)
-    assert count == len(records)
-    assert tracks["FF-01"][-1].t_ns > START_NS + 100 * NS_PER_S
-
-
 def test_one_that_breaks_off_is_over(
-    records: list[Record], tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
+    tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
 ) -> None:
     def torn(_t_ns: int) -> Iterable[Record]:
-        yield from records[:20]
+        yield from walk_with_mayday()[:20]
         raise StoreError("the log cannot be read")
 
     window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
