@@ -35,7 +35,7 @@ class Erasure(msgspec.Struct, frozen=True):
     incident_id: str = ""
     from_ns: int = 0  # when the names are to be forgotten
     until_ns: int = FOREVER_NS
-    worn_before: tuple[str, ...] = ()  # the units that were worn when the incident was opened
+    handed_back: tuple[str, ...] = ()  # when the incident is opened: every unit of it
     worn_after: tuple[Assign, ...] = ()  # what was worn when it was closed
     opening_id: str = ""  # of the action that opened it
     closing_id: str = ""
@@ -50,14 +50,14 @@ class Erasure(msgspec.Struct, frozen=True):
 
     def without_put_in(self, records: Iterable[Record]) -> Erasure:
         """What is still to be put into a part of the log with these operators' actions."""
-        if not (self.worn_before or self.worn_after):
+        if not (self.handed_back or self.worn_after):
             return self
         there = {action.action_id for _, action in _actions(records)}
         return msgspec.structs.replace(
             self,
-            worn_before=tuple(
+            handed_back=tuple(
                 unit_id
-                for unit_id in self.worn_before
+                for unit_id in self.handed_back
                 if id_put_in(self.opening_id, unit_id) not in there
             ),
             worn_after=tuple(
@@ -113,7 +113,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     still open.
     """
     worn: dict[str, Assign] = {}  # by unit
-    before: tuple[str, ...] = ()
+    handed_back: dict[str, str] = {}  # units, by the action
     units: set[str] = set()
     names: set[str] = set()
     opened_ns = closed_ns = None
@@ -122,8 +122,12 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         done = action.action
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
             opened_ns, opening_id = t_ns, action.action_id
-            before = tuple(sorted(worn))
-            units, names = set(worn), {one.person_name for one in worn.values()}
+            before = {  # that it was forgotten: the log tells of its units no other way
+                unit_id
+                for action_id, unit_id in handed_back.items()
+                if action_id == id_put_in(opening_id, unit_id)
+            }
+            units, names = before | set(worn), {one.person_name for one in worn.values()}
         elif isinstance(done, CloseIncident) and done.incident_id == incident_id:
             closed_ns, closing_id = t_ns, action.action_id
             break
@@ -135,6 +139,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
             names.add(done.person_name)
         elif isinstance(done, Unassign):
             worn.pop(done.unit_id, None)
+            handed_back[action.action_id] = done.unit_id
     if opened_ns is None:
         raise UserError(f"the log knows no incident {incident_id}")
     if closed_ns is None:
@@ -145,7 +150,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         incident_id=incident_id,
         from_ns=opened_ns,
         until_ns=closed_ns,
-        worn_before=before,
+        handed_back=tuple(sorted(units)),
         worn_after=tuple(worn.values()),
         opening_id=opening_id,
         closing_id=closing_id,

@@ -214,7 +214,7 @@ def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[O
     """While it was open nobody wears anything; afterwards they wear what they did."""
     match message.action:
         case OpenIncident(incident_id=erasure.incident_id):
-            handed_back = [Unassign(unit_id) for unit_id in erasure.worn_before]
+            handed_back = [Unassign(unit_id) for unit_id in erasure.handed_back]
             return [*_instead(message, handed_back), message]
         case CloseIncident(incident_id=erasure.incident_id):
             return [message, *_instead(message, erasure.worn_after)]

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import msgspec
 import pytest
 
 from base_station.app import folder as station_app
+from base_station.bench.rig import said
 from base_station.db.records import EVER, FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import event_of
 from base_station.live_state import FORGOTTEN
-from shared.channels import Direction, channel_of
+from shared.channels import STATUS, Direction, backfilled_key, channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.errors import UserError
@@ -31,6 +33,7 @@ from shared.messages.station import (
 )
 from tests.forgetting_story import ANA, BO, CEM, Story, forget, names_in
 from tests.live_station import LiveStation, make_pipeline
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -161,6 +164,22 @@ def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
         assert list(during) == []
         texts = [one.text for one in records.alarms(window) if one.unit_id]
     assert set(texts) == {FORGOTTEN}
+
+
+def test_an_incident_is_forgotten_again_when_a_unit_brings_more_of_it(story: Story) -> None:
+    """Out of its journal, with the next link."""
+    forget(story, "i1")
+    headers = [one.message.header for one in story.events()]
+    for unit_id in ("FF-01", "FF-02"):
+        last = max((one for one in headers if one.unit_id == unit_id), key=lambda one: one.seq)
+        late = encode(said.status(msgspec.structs.replace(last, seq=10_000)))
+        with LiveStation(story.folder) as station:
+            heard = station.pipeline.state.units[unit_id]
+            station.feed.offer(backfilled_key(unit_id, STATUS.suffix), late)
+            until(partial(heard.has, last.boot_id, 10_000))
+        assert late in story.stored()
+        forget(story, "i1")
+        assert late not in story.stored()
 
 
 def test_an_open_incident_and_a_stranger_are_refused(story: Story) -> None:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import pytest
 
 from base_station.forgetting.erasure import (
+    Clocks,
+    Erasure,
     Record,
     Wearing,
     erasure_of_incident,
     erasure_of_person,
     id_put_in,
 )
+from base_station.forgetting.redaction import Redactor
 from shared.channels import OPERATOR
 from shared.codec import encode
 from shared.errors import UserError
@@ -85,9 +88,27 @@ def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
     assert erasure.wearings == tuple(Wearing(one, 20, 40) for one in "ABD")
     assert erasure.names == ("Bo Lind", "Ana")
     assert (erasure.from_ns, erasure.until_ns) == (20, 40)
-    assert erasure.worn_before == ("A",)
+    assert erasure.handed_back == ("A", "B", "D")
     assert erasure.worn_after == (ana("D"),), "who changes for another unit wears one"
     assert not erasure.covers("A", 40)
+
+
+def test_of_an_incident_that_was_forgotten_the_log_tells_the_units_all_the_same() -> None:
+    """Their journals may bring more of it."""
+    records = done(
+        (5, bo("C")), (6, Unassign("C")),  # before
+        (10, ana("A")), (20, OPEN), (30, bo("B")), (36, Unassign("B")), (40, CLOSE),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    forgotten = redacted(records, erasure)
+    again = erasure_of_incident(forgotten, "i1")
+    assert again.wearings == erasure.wearings == (Wearing("A", 20, 40), Wearing("B", 20, 40))
+    assert redacted(forgotten, again) == forgotten
+
+
+def redacted(records: list[Record], erasure: Erasure) -> list[Record]:
+    redactor = Redactor(erasure.without_put_in(records), Clocks())
+    return [one for record in records for one in redactor(record)]
 
 
 def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
@@ -120,7 +141,7 @@ def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
         )
     ]
     left = erasure.without_put_in(there)
-    assert (left.worn_before, left.worn_after) == (("B",), (ana("A"),))
+    assert (left.handed_back, left.worn_after) == (("B",), (ana("A"),))
     assert erasure.is_put_in("a20-A")
     assert erasure.is_put_in("a40-B")
     assert not erasure.is_put_in("a20")
