@@ -48,9 +48,15 @@ class LogCheck:
         except LogError as error:
             damage = str(error)
         if damage:
+            self.note_damaged(path, damage)
+
+    def note_damaged(self, path: Path, damage: str) -> None:
+        """Not all of this segment can be read."""
+        with self._lock:
+            known = path in self._damaged
+            self._damaged[path] = damage
+        if not known:
             _log.error("the log is damaged: %s", damage)
-            with self._lock:
-                self._damaged[path] = damage
 
     def suspect(self, what: str) -> None:
         """Somebody who reads the log has met this damage."""

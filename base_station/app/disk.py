@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from pathlib import Path
 
 from base_station.app.parts import Announce, past_pipeline, project_whole_log
 from base_station.data_folder import DataFolder
@@ -28,6 +30,7 @@ from shared.clock import Clock, SystemClock
 from shared.errors import StoreError
 
 _RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
+MENDED_WITHIN = 12  # tries to forget: two minutes for what takes some seconds
 _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
 
 
@@ -56,20 +59,17 @@ class Disk:
     def hindsight(self) -> Hindsight:
         return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
 
-    def forgetter(self, pulls: Pulls, act: Act = lambda _by, _action: None) -> Forgetter:
-        """``act`` has the running station forget what it holds in memory."""
-        return Forgetter(
-            self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act
-        )
-
     def forgetting_desk(
         self,
         pulls: Pulls,
         act: Act,
         save_soon: Callable[[], None],
         leads: Callable[[], bool],
+        other_there: Callable[[], bool],
     ) -> ForgettingDesk:
-        """``save_soon`` has the running station save its state, which forgetting has removed."""
+        """``act`` has the running station forget what it holds in memory, ``save_soon`` save its
+        state, which forgetting has removed.  ``other_there``: the other one of two is heard.
+        """
 
         def note_done(done: Forgetting) -> None:
             if done.kind == "person":
@@ -83,7 +83,19 @@ class Disk:
             is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
             return "an incident is open; it is done when that is closed" if is_open else ""
 
-        forgetter = self.forgetter(pulls, act)
+        waited: Counter[Path] = Counter()
+
+        def mended_first(path: Path, damage: str) -> bool:
+            waited[path] += 1
+            if not other_there() or waited[path] > MENDED_WITHIN:
+                return False
+            self.check.note_damaged(path, damage)
+            return True
+
+        forgetter = Forgetter(
+            self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
+            mended_first,
+        )  # fmt: skip
         return ForgettingDesk(forgetter, self.folder.forgettings, obstacle, note_done)
 
 

@@ -113,7 +113,7 @@ class _LiveStation:
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
         self._downlink = Downlink(bus, stamper, steady)
         self._forgettings = self._disk.forgetting_desk(
-            resources.recordings, self._act, self._save_soon, self._leads
+            resources.recordings, self._act, self._save_soon, self._leads, self._other_there
         )
         saved = self._disk.archive.latest()
         self._stepped_from_ns = saved.t_ns if saved else 0
@@ -264,6 +264,10 @@ class _LiveStation:
 
     def _leads(self) -> bool:
         return self._side.leads
+
+    def _other_there(self) -> bool:
+        standing = self._side.standing
+        return standing is not None and standing.view().other_role != ""
 
     def _start_again(self, cut: Place | None) -> None:
         self._again = self._again or _Again(cut, self._lacking.is_so)

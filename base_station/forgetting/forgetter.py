@@ -56,6 +56,7 @@ _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
 _BEGUN = "forgetting-begun.json"  # beside the wishes; what it holds, no wish does
 Progress = Callable[[float], None]  # hears the fraction done
+MendedFirst = Callable[[Path, str], bool]  # hears what is damaged in a segment of the log
 Act = Callable[[str, Action], Future[ActionDone] | None]  # None: no station that leads does it
 
 
@@ -146,8 +147,11 @@ class Forgetter:
         clock: Clock,
         pulls: Pulls,
         act: Act = lambda _by, _action: None,
+        mended_first: MendedFirst = lambda _path, _damage: False,
     ) -> None:
-        """``act`` has the running station forget what it holds in memory."""
+        """``act`` has the running station forget what it holds in memory.  ``mended_first`` tells
+        whether what is lost of a segment is about to be fetched from the other station.
+        """
         self._log = log
         self._store = store
         self._checkpoints = checkpoints
@@ -155,6 +159,7 @@ class Forgetter:
         self._clock = clock
         self._pulls = pulls
         self._act = act
+        self._mended_first = mended_first
         self._begun = Begun(DataFolder(log.folder.parent).forgettings.with_name(_BEGUN))
 
     def person(
@@ -228,7 +233,7 @@ class Forgetter:
             redactor = Redactor(erasure.without_put_in(_actions_in(path)), clocks)
             damage: list[str] = []
             with self._log.rewriting:
-                changed = rewrite_segment(path, redactor, on_damage=damage.append)
+                changed = rewrite_segment(path, redactor, on_damage=self._noting(path, damage))
             for part in damage:
                 tally.note_damage(part, written_anew=changed > 0)
             tally.records += changed
@@ -236,6 +241,18 @@ class Forgetter:
                 tally.files += 1
                 self._log.note_rewritten(path)
         on_progress(1.0)
+
+    def _noting(self, path: Path, damage: list[str]) -> Callable[[str], None]:
+        """Written anew without it, a segment would look whole, and nobody would mend it.  Raises
+        StoreError where it is about to be mended.
+        """
+
+        def note(part: str) -> None:
+            if path.parent == self._log.folder and self._mended_first(path, part):
+                raise StoreError(f"{part}; what is lost is fetched from the other station first")
+            damage.append(part)
+
+        return note
 
     def _set_aside(self) -> list[Path]:
         """Parts of logs that stand beside the log in the station's folder."""

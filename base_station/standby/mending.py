@@ -6,8 +6,10 @@ Only events are fetched: what was decided from them a replay decides again.
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from itertools import pairwise
 from pathlib import Path
 from threading import Event
 from typing import Protocol
@@ -71,18 +73,26 @@ class Mending:
         self._files = files
         self._check = check
         self._other = other
+        self._tries: Counter[Path] = Counter()
         self._without_events: set[Path] = set()  # nothing that the other one has is missing in them
 
     def look(self, stop: Event) -> None:
         """One round; ``stop`` ends it early.  Raises MusterError where that cannot be done."""
-        damaged = (one for one in self._check.damaged if one not in self._without_events)
-        path, station = next(damaged, None), self._other()
-        if path is None or station is None:
+        damaged = {one for one in self._check.damaged if one not in self._without_events}
+        station = self._other()
+        if not damaged or station is None:
             return
         paths = segment_paths(self._files.folder)
+        # Where one begins is known by the one before it.  One that cannot be mended keeps no other
+        # from it.
+        known = {one for before, one in pairwise([None, *paths]) if before not in damaged}
+        path = min(damaged & known, key=lambda one: (self._tries[one], one), default=None)
+        if path is None:
+            return  # somebody has moved it away
         behind = _first_event(paths[paths.index(path) + 1 :])
         if behind is None:
             return  # nobody can tell yet where it ends
+        self._tries[path] += 1
         before = _last_place(paths[: paths.index(path)])
         filling = Filling(self._events(station, before, stop), behind)
         with self._files.rewriting:
@@ -92,6 +102,7 @@ class Mending:
             return
         self._files.note_rewritten(path)
         self._check.note_mended(path)
+        del self._tries[path]
         logger.warning("%s is mended: what was lost came from %s", path.name, station)
         with SegmentReader(path) as reader:
             self._on_mended(reader.info().end_ns)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from shared.errors import LogError
@@ -23,7 +24,8 @@ def rewrite_segment(
     """Give the number of records that changed; where none did, the file is left as it is.
 
     ``rest`` gives what is to stand behind the last record.  ``on_damage`` hears in words of each
-    part that could not be read, and so is not in a new file.
+    part that could not be read, and so is not in a new file; where one of the three raises, the
+    file stays, too.
 
     The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
     Nobody may be writing to it.  Raises LogError when the disk refuses.
@@ -35,13 +37,13 @@ def rewrite_segment(
         if changed:
             making.rename(path)
             sync_folder(path.parent)
-        else:
-            making.unlink(missing_ok=True)
     except OSError as error:
-        making.unlink(missing_ok=True)  # the room is for what is being recorded
         raise LogError(
             f"{path} cannot be written ({error.strerror}): free or mend the disk"
         ) from error
+    finally:
+        with suppress(OSError):  # it is removed at the next start
+            making.unlink(missing_ok=True)  # the room is for what is being recorded
     return changed
 
 

@@ -14,7 +14,7 @@ import pytest
 from base_station.app.disk import open_disk
 from base_station.data_folder import DataFolder
 from base_station.db.models import Incident
-from base_station.db.records import Records
+from base_station.db.records import EVER, Records
 from base_station.db.store import Store
 from base_station.forgetting import forgetter as forgetter_module
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
@@ -26,7 +26,9 @@ from base_station.recordings.fetch import FetchState, Wanted
 from shared.clock import SystemClock
 from shared.errors import StoreError
 from shared.mcap_log import (
+    SegmentReader,
     read_log,
+    segment_paths,
 )
 from shared.messages.recording import RecordedFile, RecordingIndex, RecordingPiece
 from shared.messages.station import (
@@ -36,7 +38,7 @@ from shared.messages.station import (
     Unassign,
 )
 from tests.forgetting_folders import NoPulls
-from tests.forgetting_story import ANA, BO, Walker
+from tests.forgetting_story import ANA, BO, Walker, names_in, stored_in
 from tests.live_station import LiveStation
 from tests.waiting import until
 
@@ -92,12 +94,47 @@ def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: P
                 )
             )  # fmt: skip
         desk = disk.forgetting_desk(
-            NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True
-        )
+            NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True,
+            lambda: False,
+        )  # fmt: skip
         with desk:
             desk.add("ada", "person", "p-77")
             until(lambda: "an incident is open" in desk.all()[0].problem)
         assert acted == []
+
+
+@pytest.mark.parametrize("comes", [True, False])
+def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
+    tmp_path: Path, told: Path, monkeypatch: pytest.MonkeyPatch, comes: bool
+) -> None:
+    """Written anew without it the segment would look whole.  Nobody waits for it in vain."""
+    monkeypatch.setattr("base_station.forgetting.desk._AGAIN_S", 0.05)
+    monkeypatch.setattr("base_station.app.disk.MENDED_WITHIN", 10**9 if comes else 2)
+    folder, clock = DataFolder(shutil.copytree(told, tmp_path / "station")), SystemClock()
+    damaged = segment_paths(folder.log)[1]
+    whole = damaged.read_bytes()
+    with SegmentReader(damaged) as reader:
+        place = reader._contents.chunks[1].offset + 100
+    damaged.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+    with ExitStack() as closing:
+        recorder = Recorder(folder.path, clock)
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, lambda _: None, closing, alone=False)
+        desk = disk.forgetting_desk(
+            NoPulls(), lambda _by, _action: None, lambda: None, lambda: True, lambda: True
+        )
+        with desk:
+            desk.add("ada", "person", "p-77")
+            if comes:
+                until(lambda: "fetched from the other station first" in desk.all()[0].problem)
+                with recorder.rewriting:
+                    assert damaged.read_bytes() != whole
+                    damaged.write_bytes(whole)
+            until(lambda: desk.all()[0].state.is_over)
+        assert disk.check.damaged == (damaged,), "it is told, and mended by who mends"
+        (entry,) = [one for one in disk.records.audit_entries(EVER) if one.by == "ada"]
+    assert ("Damaged" in entry.detail) != comes
+    assert names_in(stored_in(folder.path), ANA) == []
 
 
 def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(

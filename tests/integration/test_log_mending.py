@@ -116,6 +116,36 @@ def test_a_log_is_not_filled_with_another_one_s(pair: Pair) -> None:
     assert len(pair.check.problems()) == 1
 
 
+def test_one_that_cannot_be_mended_keeps_no_other_from_it(pair: Pair) -> None:
+    written = records()
+    others = [(t_ns, key, b"another") if t_ns < T0 + 10**9 else (t_ns, key, payload)
+              for t_ns, key, payload in written]  # fmt: skip
+    pair.write(written, others)
+    pair.damage(0, 0.3)
+    pair.damage(2, 0.3)
+    pair.look_at_all()
+    whole = [one for one in written if is_event(one[1]) and one[0] >= T0 + 10**9]
+    with pytest.raises(LogError, match="not the same"):
+        pair.mending.look(Event())
+    assert not list(pair.mine.folder.glob("*.recovering")), "the room is for the log"
+    pair.mending.look(Event())
+    assert [one for one in pair.events() if one[0] >= T0 + 10**9] == whole
+    assert pair.check.damaged == (pair.mine.segments()[0].path,)
+
+
+def test_of_two_that_follow_on_each_other_every_event_is_there_once(pair: Pair) -> None:
+    written = records()
+    pair.write(written, written)
+    for number in (1, 2):
+        pair.damage(number, 0.6, 3000)
+    pair.look_at_all()
+    assert len(pair.check.damaged) == 2
+    for _ in range(2):
+        pair.mending.look(Event())
+    assert pair.events() == [one for one in written if is_event(one[1])]
+    assert pair.check.problems() == ()
+
+
 def test_nothing_is_done_while_the_other_one_is_away(tmp_path: Path) -> None:
     with closing(Recorder(tmp_path, SystemClock(), POLICY)) as recorder:
         bus, check, mended_ns = MemoryRouter().attach_station(), LogCheck(""), list[int]()
