@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from base_station.bench.rig import said
 from base_station.fusion.path.history import PathHistory
+from base_station.fusion.port import Estimate
 from shared.clock import NS_PER_S
 from shared.messages import Header, Position
+from shared.quality import Quality
 
 
 def at(t_s: float, north_m: float, boot_id: int = 1, **changes: object) -> Position:
@@ -22,3 +24,12 @@ def walked(seconds: int, mps: float = 1.0, east_mps: float = 0.0) -> PathHistory
         position = at(t_s, mps * t_s, east_m=east_mps * t_s)
         history.note(position, position.header.t_mono_ns, jumped=False)
     return history
+
+
+def fill(history: PathHistory, position: Position) -> None:
+    """A position comes late; the wearer climbed a metre a second."""
+    t_ns = position.header.t_mono_ns
+    down_m = -t_ns / NS_PER_S
+    place = position.north_m, position.east_m, down_m, 0.5, 0.5, 0.5
+    estimate = Estimate(t_ns, *place, 0.0, 0.0, 0.1, Quality.GOOD, "", None)
+    history.fill(position, t_ns, estimate, 0)

@@ -9,7 +9,7 @@ from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.moved import Moved
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
-from tests.walked_path import walked
+from tests.walked_path import at, fill, walked
 
 
 def taken(history: PathHistory, t_s: float) -> None:
@@ -59,6 +59,31 @@ def test_late_ones_fill_a_gap_whichever_comes_first() -> None:
     for late_s in (0.0, 2.0, 20.0, 22.0, 18.0, 19.0, 3.0, 4.0, 10.0):
         taken(history, late_s)
     assert kept_s(history) == [0.0, 2.0, 4.0, 10.0, 18.0, 20.0, 22.0]
+
+
+def test_fixes_of_before_the_path_tell_nothing_of_where_it_begins() -> None:
+    """A tracker was started late, or a journal brings what was before the incident."""
+    history = PathHistory()
+    for second in range(0, 200, 2):
+        taken(history, float(second))
+    for second in range(61, 120):
+        history.note(at(second, second - 61.0), second * NS_PER_S, jumped=False)
+    assert kept_s(history)[0] == 60.0
+    fill(history, at(31.0, -30.0))
+    assert kept_s(history)[0] == 30.0
+
+
+@pytest.mark.parametrize(("boot_id", "jumped"), [(2, False), (1, True)], ids=["restart", "jump"])
+def test_fixes_of_where_the_path_breaks_are_of_neither_end(boot_id: int, jumped: bool) -> None:
+    history = PathHistory()
+    for second in range(20):
+        history.note(at(second, float(second)), second * NS_PER_S, jumped=False)
+    for second in range(0, 60, 2):
+        taken(history, second + 0.5)
+    for second in range(50, 60):
+        is_first = second == 50
+        history.note(at(second, 0.0, boot_id), second * NS_PER_S, jumped and is_first)
+    assert [t_s for t_s in kept_s(history) if 18.0 < t_s < 54.0] == [18.5, 50.5, 52.5]
 
 
 def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:

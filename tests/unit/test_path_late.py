@@ -8,11 +8,10 @@ import pytest
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.packed import CHUNK
 from base_station.fusion.path.points import DOUBTFUL, RESTART
-from base_station.fusion.port import Estimate, Start
+from base_station.fusion.port import Start
 from shared.clock import NS_PER_S
-from shared.messages import Position
 from shared.quality import Quality
-from tests.walked_path import at
+from tests.walked_path import at, fill
 
 
 def test_what_comes_late_fills_a_gap() -> None:
@@ -31,15 +30,6 @@ def test_what_comes_late_fills_a_gap() -> None:
     assert after.down_m[row] == -12.0, "as it was estimated for that time"
     assert after.moving_s[row] == pytest.approx(10.0), "half of the way"
     assert after.moving_s.sum() == pytest.approx(before.moving_s.sum())
-
-
-def fill(history: PathHistory, position: Position) -> None:
-    """The wearer climbed a metre a second."""
-    t_ns = position.header.t_mono_ns
-    down_m = -t_ns / NS_PER_S
-    place = position.north_m, position.east_m, down_m, 0.5, 0.5, 0.5
-    estimate = Estimate(t_ns, *place, 0.0, 0.0, 0.1, Quality.GOOD, "", None)
-    history.fill(position, t_ns, estimate, 0)
 
 
 def test_a_run_of_which_the_end_was_heard_first_begins_where_it_began() -> None:

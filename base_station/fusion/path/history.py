@@ -41,6 +41,7 @@ STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bend
 MOVING_M = 0.05  # between two positions: the wearer moved
 FILL_NS = 2 * NS_PER_S  # a position that came late is wanted where none is nearer
 FILLED_NS = 30 * NS_PER_S  # a journal is being read: what is packed cannot be filled
+FIX_NEAR_MS = 1000  # a fix so near to where a path begins or breaks was taken there
 MOST_LOOSE = 32 * CHUNK
 _SHOWN = "shown_north_cm", "shown_east_cm", "shown_down_cm"
 
@@ -202,7 +203,7 @@ class PathHistory(msgspec.Struct):
         """Those of packed points are to a centimetre and a millisecond."""
         shown = self.moved.of(self.packed.rows(POINT_ROW), *_SHOWN)
         rows = np.concatenate((shown, rows_of(self.points)))
-        return arrays_of(rows, self.fixes.rows(self.moved))
+        return arrays_of(rows, _taken_along(rows, self.fixes.rows(self.moved)))
 
     def _begin_run(self, boot_id: int, t_ns: int) -> None:
         """The unit's program was started; in an incident, runs that were over before go."""
@@ -287,6 +288,20 @@ class PathHistory(msgspec.Struct):
             self.packed.add(self.moved.undone().of(rows, *_SHOWN), thinned)
             del self.points[:CHUNK]
         return begun
+
+
+def _taken_along(rows: Records, fixes: Records) -> Records:
+    """Fixes of times at which the own path is known.  Others are of before it, whose beginning a
+    journal may still bring, or of where it breaks.
+    """
+    if not len(rows):
+        return fixes
+    after = np.searchsorted(rows["t_ms"], fixes["t_ms"], side="right")
+    near_ms = fixes["t_ms"] - rows["t_ms"][np.maximum(after - 1, 0)]
+    breaks = np.append(rows["flags"] & (BREAK | RESTART), 0) != 0
+    breaks[0] = True
+    along: Records = fixes[~breaks[after] | (np.abs(near_ms) <= FIX_NEAR_MS)]
+    return along
 
 
 def _unsaid(rows: Records) -> Records:
