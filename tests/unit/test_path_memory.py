@@ -7,7 +7,14 @@ from collections.abc import Callable
 import msgspec
 import pytest
 
-from base_station.fusion.path.memory import COARSE_NS, KEPT_NS, MOST_POINTS, PathMemory
+from base_station.fusion.path.memory import (
+    COARSE_NS,
+    KEPT_NS,
+    MOST_POINTS,
+    PLACE_ROW,
+    OwnPlace,
+    PathMemory,
+)
 from shared.clock import NS_PER_S
 from shared.messages import Header, Position
 
@@ -18,7 +25,7 @@ At = Callable[..., Position]
 
 @pytest.fixture
 def at(make_position: Callable[[], Position]) -> At:
-    """On a walk to the north at a metre a second, or elsewhere."""
+    """On a walk to the north at a metre a second, a little to the west, or elsewhere."""
 
     def make(t_ns: int, north_m: float | None = None) -> Position:
         way_m = t_ns / NS_PER_S
@@ -26,6 +33,7 @@ def at(make_position: Callable[[], Position]) -> At:
             make_position(),
             header=Header("FF-01", 1, 1, t_ns),
             north_m=way_m if north_m is None else north_m,
+            east_m=-0.1 * way_m,
             distance_m=1.4 * way_m,
         )
 
@@ -49,6 +57,7 @@ def test_half_an_hour_is_known_everywhere(hour: PathMemory) -> None:
         assert not isinstance(then, str)
         assert then.t_ns == t_ns
         assert then.north_m == pytest.approx(t_ns / NS_PER_S)
+        assert then.east_m == pytest.approx(-0.1 * t_ns / NS_PER_S)
         assert then.distance_m == pytest.approx(1.4 * t_ns / NS_PER_S)
 
 
@@ -60,6 +69,21 @@ def test_it_stays_small(hour: PathMemory) -> None:
     assert len(hour.points) < MOST_POINTS
     size = len(hour.loose) + sum(len(chunk.columns) for chunk in hour.packed.chunks)
     assert size < 8 * (KEPT_NS // COARSE_NS)
+    old = len(hour.loose) // PLACE_ROW.itemsize + len(hour.packed.rows(PLACE_ROW))
+    assert old == pytest.approx(KEPT_NS // COARSE_NS, rel=0.15), "one in two seconds"
+
+
+def test_after_a_long_silence_what_was_before_it_is_too_old(at: At) -> None:
+    memory, again_s = PathMemory(), 7200
+    for begin_s in (0, again_s):
+        for t_ns in range(begin_s * NS_PER_S, (begin_s + 300) * NS_PER_S, FIFTH_NS):
+            memory.note(at(t_ns))
+    assert memory.at(100 * NS_PER_S) == "too old"
+    assert not isinstance(memory.at((again_s + 100) * NS_PER_S), str)
+
+
+def test_before_anything_is_known_a_wearer_is_where_the_own_frame_begins() -> None:
+    assert PathMemory().at(7 * NS_PER_S) == OwnPlace(7 * NS_PER_S, 0.0, 0.0, 0.0)
 
 
 def test_the_newest_counts_for_what_is_to_come(hour: PathMemory) -> None:
