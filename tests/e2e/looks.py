@@ -6,10 +6,11 @@ from playwright.sync_api import Page
 
 SMALLEST_TEXT_PX = 12
 SMALLEST_TARGET_PX = 24  # WCAG 2.2, 2.5.8
+SMALLEST_SENTENCE_PX = 60  # of what may be cut: two words
 SETTLED_MS = 200
 
 _FIND = """
-([smallestText, smallestTarget]) => {
+([smallestText, smallestTarget, smallestSentence]) => {
   const found = [];
   const said = (element) => {
     const words = element.getAttribute("aria-label") || element.textContent || element.className;
@@ -69,6 +70,10 @@ _FIND = """
       found.push(`sticks out of its card: ${said(one)}`);
   }
 
+  for (const one of root.querySelectorAll(".incident h1, .light .sentence"))
+    if (isShown(one) && one.clientWidth < Math.min(smallestSentence, one.scrollWidth))
+      found.push(`nearly nothing is left of ${said(one)}`);
+
   const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const { parentElement: one, textContent } = texts.currentNode;
@@ -92,5 +97,6 @@ _FIND = """
 
 def flaws(page: Page) -> list[str]:
     page.wait_for_timeout(SETTLED_MS)
-    found: list[str] = page.evaluate(_FIND, [SMALLEST_TEXT_PX, SMALLEST_TARGET_PX])
+    smallest = [SMALLEST_TEXT_PX, SMALLEST_TARGET_PX, SMALLEST_SENTENCE_PX]
+    found: list[str] = page.evaluate(_FIND, smallest)
     return found

@@ -33,6 +33,7 @@ class PlayedStation:
         self._answers = answers
         self._sockets: list[WebSocketRoute] = []
         self._page = page
+        self._hangs = False
         page.route("**/*", self._answer)
         page.route_web_socket("**/*", self._speak)
 
@@ -51,6 +52,10 @@ class PlayedStation:
         self._picture = msgspec.structs.replace(self._picture, **said)
         for socket in self._sockets:
             socket.send(msgspec.json.encode(delta).decode())
+
+    def hang(self) -> None:
+        """It says no more, and its connections stay."""
+        self._hangs = True
 
     def end_logins(self) -> None:
         for socket in self._sockets:
@@ -71,6 +76,8 @@ class PlayedStation:
         self._show(socket)
 
     def _show(self, socket: WebSocketRoute) -> None:
+        if self._hangs:
+            return
         for message in (self._picture, *map(scenes.trail, self._picture.units)):
             socket.send(msgspec.json.encode(message).decode())
 

@@ -1,4 +1,4 @@
-"""Pictures that a commander may meet: quiet, a bad minute, forty people, the past, nobody."""
+"""Pictures that a commander may meet: quiet, a bad minute, forty people, long names, the past."""
 
 from __future__ import annotations
 
@@ -240,6 +240,29 @@ def taken(one: wire.AlarmView) -> wire.AlarmView:
 def crowd() -> wire.Snapshot:
     """Forty people, four of whom need somebody."""
     return bad_minute(40)
+
+
+def long_names() -> wire.Snapshot:
+    """At one of two stations, with an incident that is called by its whole address."""
+    shown = bad_minute()
+    name = "Apartment fire, Lindenstrasse 14 rear building, third alarm"
+    standby = wire.StandbyView(
+        "command-vehicle-1", "active", "", "engine-2", "standby", "http://b.test", in_step=True
+    )
+    units = tuple(
+        one
+        if one.duty is None
+        else msgspec.structs.replace(
+            one, duty=msgspec.structs.replace(one.duty, due_ms=NOW_MS - 15 * MINUTE_MS)
+        )
+        for one in shown.units
+    )
+    return msgspec.structs.replace(
+        shown,
+        units=units,
+        incident=msgspec.structs.replace(INCIDENT, name=name),
+        health=msgspec.structs.replace(shown.health, standby=standby),
+    )
 
 
 def nobody() -> wire.Snapshot:

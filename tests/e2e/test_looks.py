@@ -25,7 +25,15 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
 
 @pytest.mark.parametrize(
     "scene",
-    [scenes.quiet, scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past, scenes.stored],
+    [
+        scenes.quiet,
+        scenes.bad_minute,
+        scenes.crowd,
+        scenes.long_names,
+        scenes.nobody,
+        scenes.past,
+        scenes.stored,
+    ],
 )
 def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
     page, _ = stage.open(scene())

@@ -78,12 +78,16 @@ const SURE_OF_FLOOR = 0.95;
 /** Less probable than this, no floor is said: a number would be believed. */
 const LIKELY_FLOOR = 0.5;
 
+export function isFloorLikely({ floor_probability: sure }: PositionView): boolean {
+  return sure === null || sure >= LIKELY_FLOOR;
+}
+
 /** The floor, and how sure that is where there is a doubt. */
 export function floorOf(position: PositionView): string {
   const { floor, floor_probability: sure } = position;
   const name = floorName(floor);
   if (floor === null || sure === null || sure >= SURE_OF_FLOOR) return name;
-  if (sure < LIKELY_FLOOR) return `floor unknown, perhaps ${name}`;
+  if (!isFloorLikely(position)) return `floor unknown, perhaps ${name}`;
   return `${name} (${Math.round(100 * sure)} % sure)`;
 }
 

@@ -1,6 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
-import { firstFloor, floorsOf } from "../src/plan/floors";
+import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
+import type { Colours } from "../src/plan/colours";
+import { labelStyle, type Mark } from "../src/plan/marks";
 import { trailLines } from "../src/plan/trail";
 import type { Plan, TrailPoint } from "../src/wire";
 import { alarm, position, unit } from "./fixtures";
@@ -80,6 +82,50 @@ describe("floorsOf", () => {
   });
 });
 
+describe("floorRemark", () => {
+  it("is empty where the floor that is shown says it all", () => {
+    expect(floorRemark(position({ floor: 1 }), 1)).toBe("");
+    expect(floorRemark(position({ floor: 1, floor_probability: 0.5 }), 1)).toBe("");
+    expect(floorRemark(position({ floor: 1 }), "all")).toBe("");
+  });
+
+  it("says who is on another floor, or on one that nobody knows", () => {
+    expect(floorRemark(position({ floor: 1 }), 0)).toBe("floor 1");
+    expect(floorRemark(position({ floor: null }), 0)).toBe("floor unknown");
+    expect(floorRemark(position({ floor: 0, floor_probability: 0.49 }), 0)).toBe(
+      "floor unknown, perhaps ground floor",
+    );
+    expect(floorRemark(position({ floor: null }), "all")).toBe("");
+  });
+});
+
+describe("the name of somebody on the plan", () => {
+  const mark = {
+    name: "Ana",
+    initials: "A",
+    urgency: "normal",
+    chosen: false,
+    old: false,
+    ageMs: 72_000,
+    floor: "",
+    headingRad: 0,
+    headingKnown: false,
+  } as const;
+  const colours = { text: "#000000", halo: "#ffffff" } as Colours;
+  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours).getText();
+
+  it("gives way to others, but not where somebody is in danger or chosen", () => {
+    expect(nameOf({})?.getDeclutterMode()).toBe("declutter");
+    expect(nameOf({ urgency: "immediate" })?.getDeclutterMode()).toBe("obstacle");
+    expect(nameOf({ chosen: true })?.getDeclutterMode()).toBe("obstacle");
+  });
+
+  it("says which floor and how old", () => {
+    expect(nameOf({})?.getText()).toBe("Ana");
+    expect(nameOf({ floor: "floor 1", old: true })?.getText()).toBe("Ana, floor 1, 1 min old");
+  });
+});
+
 describe("trailLines", () => {
   const walk: TrailPoint[] = [
     [0, 0, 0, 0],
@@ -113,5 +159,19 @@ describe("trailLines", () => {
       ],
     ]);
     expect(trailLines(walk, 3_600_000, "all")).toEqual([]);
+  });
+
+  it("does not join two ways on a floor of who was on another meanwhile", () => {
+    const back: TrailPoint[] = [...walk.slice(0, 4), [4_000, 9, 0, 0], [5_000, 9, 1, 0]];
+    expect(trailLines(back, 5_000, 0)).toEqual([
+      [
+        [0, 0],
+        [0, 1],
+      ],
+      [
+        [0, 9],
+        [1, 9],
+      ],
+    ]);
   });
 });

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { apply, TRAIL_POINTS, type State } from "../src/live/state";
-import type { Trail, TrailPoint } from "../src/wire";
+import type { Plan, Trail, TrailPoint } from "../src/wire";
 import { alarm, command, delta, position, snapshot, unit } from "./fixtures";
 
 function after(...messages: Parameters<typeof apply>[1][]): State {
@@ -43,6 +43,19 @@ describe("apply", () => {
   it("goes on from the snapshot that closes a gap", () => {
     const state = after(snapshot(), snapshot({ seq: 40 }), delta(41, { units: [unit("a")] }));
     expect(state.seq).toBe(41);
+  });
+
+  it("keeps the plan as the same object while it is the same, so that nobody loses a part of it", () => {
+    const plan = (name: string): Plan => ({
+      type: "FeatureCollection",
+      muster: { frame: "site-m", name },
+      features: [],
+    });
+    const before = after(snapshot({ plan: plan("Mill") }));
+    const again = apply(before, snapshot({ plan: plan("Mill") })).state;
+    expect(again?.plan).toBe(before.plan);
+    expect(apply(before, snapshot({ plan: plan("Yard") })).state?.plan).toEqual(plan("Yard"));
+    expect(apply(before, snapshot({ plan: null })).state?.plan).toBeNull();
   });
 
   it("forgets a unit that a snapshot no longer has", () => {
@@ -96,6 +109,16 @@ describe("trails", () => {
   it("say seldom that somebody stands still", () => {
     const state = after(snapshot(), walk(11, 1000, 0), walk(12, 9000, 0), walk(13, 16000, 0));
     expect(trail(state)).toEqual([1000, 16000]);
+  });
+
+  it("say at once that somebody came to another floor", () => {
+    const lift = (seq: number, t_ms: number, floor: number) =>
+      delta(seq, { units: [unit("a", { position: position({ t_ms, floor }) })] });
+    const state = after(snapshot(), lift(11, 1000, 0), lift(12, 1500, 1), lift(13, 2000, 1));
+    expect(state.trails.get("a")?.map((point) => [point[0], point[3]])).toEqual([
+      [1000, 0],
+      [2000, 1],
+    ]);
   });
 
   it("do not go back for a position from before", () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { openAlarms } from "../src/live/alarms";
-import { arrange, isJump, urgencyOf, type Place } from "../src/live/urgency";
+import { arrange, isJump, nameAmong, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
 
@@ -9,6 +9,14 @@ const ALARMS: ReadonlyMap<string, AlarmView> = new Map([
   ["two", alarm("two", { priority: 2 })],
   ["three", alarm("three", { priority: 3 })],
 ]);
+
+describe("nameAmong", () => {
+  it("tells namesakes apart", () => {
+    const [ana, other] = [unit("1", { label: "Ana" }), unit("2", { label: "Ana" })];
+    const units = [ana, other, unit("3", { label: "Bo" })];
+    expect(units.map((one) => nameAmong(one, units))).toEqual(["Ana (1)", "Ana (2)", "Bo"]);
+  });
+});
 
 describe("urgencyOf", () => {
   it.each<[string, Partial<UnitView>]>([

@@ -26,6 +26,8 @@ export class Picture {
   readonly ready = signal(false);
   /** Now, in station time; goes on by itself when the station is silent. */
   readonly nowMs = signal(0);
+  /** The time that the station said last. */
+  readonly heardMs = signal(0);
   /** For how long the station has been silent; 0 while it speaks as it should, and in the past, where
    * nobody has gone on since. */
   readonly silentMs: ReadonlySignal<number> = computed(() => {
@@ -51,7 +53,6 @@ export class Picture {
     openAlarms(this.alarms.value.values()),
   );
 
-  private readonly heardMs = signal(0);
   private readonly units = new Map<string, Signal<UnitView>>();
 
   /** The signal of one unit; it exists for every id in `unitIds`. */

@@ -38,7 +38,7 @@ export interface Applied {
   missed: boolean; // something did not arrive: ask for a snapshot
 }
 
-// As the station thins its own trails out (base_station/live_state.py).
+// As the station thins its own trails out (base_station/trail.py).
 const TRAIL_STEP_MS = 1000;
 const TRAIL_STEP_M = 0.5;
 const TRAIL_REST_MS = 15_000;
@@ -48,14 +48,14 @@ const CLOSED_KEPT = 10;
 
 /** The state after a message.  A delta that does not follow leaves the state as it was. */
 export function apply(state: State | null, message: Message): Applied {
-  if (message.type === "snapshot") return { state: fromSnapshot(message), missed: false };
+  if (message.type === "snapshot") return { state: fromSnapshot(message, state), missed: false };
   if (state === null) return { state, missed: true };
   if (message.type === "trail") return { state: withPast(state, message), missed: false };
   if (message.seq !== state.seq + 1) return { state, missed: true };
   return { state: withDelta(state, message), missed: false };
 }
 
-function fromSnapshot(message: Snapshot): State {
+function fromSnapshot(message: Snapshot, before: State | null): State {
   return {
     seq: message.seq,
     now_ms: message.now_ms,
@@ -66,11 +66,17 @@ function fromSnapshot(message: Snapshot): State {
     trails: new Map(),
     pins: message.pins,
     beacons: message.beacons,
-    plan: message.plan,
+    plan: planOf(message, before),
     anchor: message.anchor,
     health: message.health,
     replay: message.replay,
   };
+}
+
+/** The same object while it is the same plan: whoever looks at a part of it goes on looking there. */
+function planOf({ plan }: Snapshot, before: State | null): Plan | null {
+  const shown = before?.plan ?? null;
+  return JSON.stringify(plan) === JSON.stringify(shown) ? shown : plan;
 }
 
 function withDelta(state: State, delta: Delta): State {
@@ -124,13 +130,13 @@ function withPositions(trails: State["trails"], changed: readonly UnitView[]): S
   return next ?? trails;
 }
 
-/** Whether a trail goes on to this point: somebody walked, or rested for long. */
+/** Whether a trail goes on to this point: somebody walked, came to another floor, or rested for long. */
 function isStep(last: TrailPoint | undefined, point: TrailPoint): boolean {
   if (last === undefined) return true;
   const passedMs = point[0] - last[0];
   const movedM = Math.hypot(point[1] - last[1], point[2] - last[2]);
-  const walked = passedMs >= TRAIL_STEP_MS && movedM >= TRAIL_STEP_M;
-  return walked || passedMs >= TRAIL_REST_MS;
+  const moved = movedM >= TRAIL_STEP_M || point[3] !== last[3];
+  return passedMs >= (moved ? TRAIL_STEP_MS : TRAIL_REST_MS);
 }
 
 function withAlarms(alarms: State["alarms"], changed: readonly AlarmView[]): State["alarms"] {

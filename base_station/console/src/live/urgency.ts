@@ -19,6 +19,13 @@ export function displayName(unit: UnitView): string {
   return unit.person?.name ?? (unit.label || unit.unit_id);
 }
 
+/** Where one of several is chosen: who has a namesake among them is told apart by the unit. */
+export function nameAmong(unit: UnitView, units: readonly UnitView[]): string {
+  const name = displayName(unit);
+  const namesakes = units.filter((one) => displayName(one) === name);
+  return namesakes.length > 1 ? `${name} (${unit.unit_id})` : name;
+}
+
 /** Where a unit stands in the list, and since when it could stand lower. */
 export interface Place {
   unitId: string;

@@ -9,9 +9,10 @@ import VectorSource from "ol/source/Vector";
 import { displayName, urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../view";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
-import { floorName, initials } from "../words";
+import { initials } from "../words";
 import type { Colours } from "./colours";
 import { isOld, outline, regionAt } from "./ellipse";
+import { floorRemark } from "./floors";
 import { labelStyle, markStyle, regionStyle, trailStyle, type Mark } from "./marks";
 import { siteCoordinate } from "./site";
 import { trailLines } from "./trail";
@@ -145,7 +146,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     chosen: unit.unit_id === scene.chosen,
     old: isOld(position, scene.nowMs) || position.reach.length > 0,
     ageMs: scene.nowMs - position.t_ms,
-    elsewhere: isHere(position, scene) ? "" : floorName(position.floor),
+    floor: floorRemark(position, scene.floor),
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
   };

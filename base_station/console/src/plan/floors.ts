@@ -1,6 +1,8 @@
 /** Which floors there are and who is on each.  Pure. */
 import { urgencyOf, type Urgency } from "../live/urgency";
-import type { AlarmView, Plan, UnitView } from "../wire";
+import type { FloorChoice } from "../view";
+import type { AlarmView, Plan, PositionView, UnitView } from "../wire";
+import { floorOf, isFloorLikely } from "../words";
 
 export interface Floor {
   floor: number;
@@ -39,6 +41,12 @@ export function firstFloor(floors: readonly Floor[]): number | null {
     if (best === null || floor.people >= best.people) best = floor;
   }
   return best?.floor ?? null;
+}
+
+/** What a floor that is shown does not say of somebody on it: another floor, or one that nobody knows. */
+export function floorRemark(position: PositionView, shown: FloorChoice): string {
+  const there = position.floor === shown && isFloorLikely(position);
+  return shown === "all" || there ? "" : floorOf(position);
 }
 
 export function shortName(floor: number): string {

@@ -21,9 +21,11 @@ import type { Place } from "./tools";
 const TAP_PX = 26;
 const CLOSE_M_PER_PX = 0.06;
 const MARGIN_PX = 40;
+const LOWER_MARGIN_PX = 60; // names and the scale
 const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
 const AROUND_M = 2;
+const EDGE_PX = 25; // nearer to it a mark or its name is cut
 
 /** What a person does on the plan. */
 export interface PlanEvents {
@@ -153,7 +155,8 @@ export class PlanMap {
   private showsEverybody(): boolean {
     const crowd = this.crowd.extent();
     if (crowd === null || !crowd.every(Number.isFinite)) return true;
-    return containsExtent(this.view.calculateExtent(this.map.getSize()), crowd);
+    const edgeM = EDGE_PX * (this.view.getResolution() ?? 0);
+    return containsExtent(this.view.calculateExtent(this.map.getSize()), buffer(crowd, edgeM));
   }
 
   /** Show everything there is; false where there is nothing yet. */
@@ -165,7 +168,7 @@ export class PlanMap {
     if (!all.every(Number.isFinite)) return false;
     this.chosen = false;
     this.view.fit(buffer(all, AROUND_M), {
-      padding: [MARGIN_PX, RIGHT_MARGIN_PX, MARGIN_PX, MARGIN_PX],
+      padding: [MARGIN_PX, RIGHT_MARGIN_PX, LOWER_MARGIN_PX, MARGIN_PX],
       ...(smoothly ? moving() : {}),
     });
     return true;

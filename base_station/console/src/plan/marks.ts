@@ -13,7 +13,7 @@ export interface Mark {
   chosen: boolean;
   old: boolean;
   ageMs: number;
-  elsewhere: string; // the floor, where it is not the one shown
+  floor: string; // where it is not simply the one shown
   headingRad: number;
   headingKnown: boolean;
 }
@@ -49,9 +49,10 @@ export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Styl
   });
 }
 
-/** Names keep clear of each other; the plan leaves out what does not fit. */
+/** Names keep clear of each other; the plan leaves out what does not fit, but never who is in danger or
+ * chosen. */
 export function labelStyle(mark: Mark, colours: Colours): Style {
-  const words = [mark.name, mark.elsewhere, mark.old ? `${age(mark.ageMs)} old` : ""];
+  const words = [mark.name, mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
   const strong = mark.chosen || mark.urgency === "immediate";
   return new Style({
     zIndex: strong ? 2 : 1,
@@ -62,6 +63,7 @@ export function labelStyle(mark: Mark, colours: Colours): Style {
       fill: new Fill({ color: colours.text }),
       stroke: new Stroke({ color: colours.halo, width: 4 }),
       padding: [1, 3, 1, 3],
+      declutterMode: strong ? "obstacle" : "declutter",
     }),
   });
 }

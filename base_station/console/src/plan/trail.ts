@@ -18,7 +18,10 @@ export function trailLines(
   let lastMs = -Infinity;
   for (const [tMs, northM, eastM, on] of points) {
     const shown = tMs >= nowMs - spanMs && (floor === "all" || on === null || on === floor);
-    if (!shown) continue;
+    if (!shown) {
+      lastMs = -Infinity;
+      continue;
+    }
     if (tMs - lastMs > BREAK_MS) {
       line = [];
       lines.push(line);

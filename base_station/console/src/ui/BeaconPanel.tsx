@@ -60,7 +60,7 @@ export function BeaconPanel({ picture, beacon }: Props) {
           defaultValue={beacon?.reach_m ?? 3}
         />
       </label>
-      <FloorField picture={picture} start={beacon?.floor ?? null} />
+      <FloorField picture={picture} start={beacon?.floor} />
       <Ends label={beacon === null ? "Place beacon" : "Change beacon"}>
         {beacon !== null && (
           <ConfirmButton

@@ -3,7 +3,7 @@ import { dialogUnit } from "../view";
 import * as api from "../api";
 import { commandWord, crewsOf, kindWord, newestFirst, type Target } from "../live/commands";
 import type { Picture } from "../live/picture";
-import { displayName } from "../live/urgency";
+import { nameAmong } from "../live/urgency";
 import type { CommandView, DeliveryView } from "../wire";
 import { clockTime } from "../words";
 import { CommandState } from "./CommandState";
@@ -35,7 +35,8 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
   const about = dialogUnit.value;
   const units = picture.unitIds.value
     .map((unitId) => picture.unit(unitId)?.value)
-    .filter((unit) => unit?.registered);
+    .filter((unit) => unit !== undefined)
+    .filter((unit) => unit.registered);
   return (
     <form
       class="row command-form"
@@ -51,19 +52,16 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
         To
         <select name="target" defaultValue={about === null ? "everyone" : `unit:${about}`}>
           <option value="everyone">Everyone</option>
-          {crewsOf(units.filter((unit) => unit !== undefined)).map((crew) => (
+          {crewsOf(units).map((crew) => (
             <option key={crew} value={`crew:${crew}`}>
               {crew}
             </option>
           ))}
-          {units.map(
-            (unit) =>
-              unit && (
-                <option key={unit.unit_id} value={`unit:${unit.unit_id}`}>
-                  {displayName(unit)}
-                </option>
-              ),
-          )}
+          {units.map((unit) => (
+            <option key={unit.unit_id} value={`unit:${unit.unit_id}`}>
+              {nameAmong(unit, units)}
+            </option>
+          ))}
         </select>
       </label>
       {kind === "text" && (
@@ -117,7 +115,7 @@ function Deliveries({ command, picture }: { command: CommandView; picture: Pictu
 
 function nameOf(unitId: string, picture: Picture): string {
   const unit = picture.unit(unitId)?.value;
-  return unit === undefined ? unitId : displayName(unit);
+  return unit === undefined ? unitId : nameAmong(unit, picture.allUnits());
 }
 
 function Answer({ command, delivery }: { command: CommandView; delivery: DeliveryView }) {

@@ -31,7 +31,7 @@ function IncidentTitle({ picture }: { picture: Picture }) {
   const until = incident.closed_ms ?? picture.nowMs.value;
   return (
     <div class="incident">
-      <h1>{incident.name}</h1>
+      <h1 title={incident.name}>{incident.name}</h1>
       <span class="quiet">
         {incident.closed_ms === null ? "open for " : "closed after "}
         {minutes(until - incident.opened_ms)}

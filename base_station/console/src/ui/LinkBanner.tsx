@@ -20,7 +20,7 @@ export function LinkBanner({ picture }: { picture: Picture }) {
   if (sinceMs === null) return null;
   const standby = picture.health.peek()?.standby;
   const shown = picture.ready.value
-    ? `This picture is from ${clockTime(pictureMs(picture, sinceMs))} and is not being updated.`
+    ? `This picture is from ${clockTime(picture.heardMs.peek())} and is not being updated.`
     : "";
   return (
     <div class="link-banner" role="alert">
@@ -32,8 +32,4 @@ export function LinkBanner({ picture }: { picture: Picture }) {
       {standby && <OtherConsole standby={standby} />}
     </div>
   );
-}
-
-function pictureMs(picture: Picture, sinceMs: number): number {
-  return picture.nowMs.peek() - (performance.now() - sinceMs);
 }

@@ -1,7 +1,7 @@
 import { attempt } from "../sessions";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
-import { displayName } from "../live/urgency";
+import { displayName, nameAmong } from "../live/urgency";
 import { putDown } from "../plan/tools";
 import type { PinView, UnitView } from "../wire";
 import { clockTime } from "../words";
@@ -48,7 +48,7 @@ export function PinPanel({ picture, unitId, pin }: Props) {
           <PlaceFields {...(at === undefined ? {} : { start: at })} />
           <WithinField startM={2 * (pin?.std_m ?? 1)} />
           <WhenField set={pin === null ? null : pin.t_ms} />
-          <FloorField picture={picture} start={pin?.floor ?? null} />
+          <FloorField picture={picture} start={pin?.floor} />
           <label>
             Note
             <input name="note" maxLength={200} defaultValue={pin?.note ?? ""} />
@@ -124,7 +124,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
           ))}
         </select>
       </label>
-      <FloorField picture={picture} start={null} />
+      <FloorField picture={picture} start={undefined} />
       <Ends label="Set start" />
     </form>
   );
@@ -164,7 +164,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
         <select name="other" required>
           {others.map((unit) => (
             <option key={unit.unit_id} value={unit.unit_id}>
-              {displayName(unit)}
+              {nameAmong(unit, others)}
             </option>
           ))}
         </select>

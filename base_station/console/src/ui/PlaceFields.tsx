@@ -30,22 +30,25 @@ function Metres({ name, label, value }: { name: string; label: string; value?: n
 
 interface FloorFieldProps {
   picture: Picture;
-  start: number | null;
+  start: number | null | undefined; // undefined: nobody has said yet
 }
 
 /** On which floor; to begin with the one that is shown. */
 export function FloorField({ picture, start }: FloorFieldProps) {
-  const floors = floorsOf(picture.plan.value, picture.allUnits(), new Map());
+  const known = floorsOf(picture.plan.value, picture.allUnits(), new Map()).map((one) => one.floor);
+  const isAnother = typeof start === "number" && !known.includes(start);
+  const floors = isAnother ? [...known, start].sort((a, b) => b - a) : known;
   if (floors.length === 0) return null;
-  const first = start ?? (floor.value === "all" ? "" : floor.value);
+  const shown = floor.value === "all" ? null : floor.value;
+  const first = start === undefined ? shown : start;
   return (
     <label>
       Floor
-      <select name="floor" defaultValue={String(first)}>
+      <select name="floor" defaultValue={String(first ?? "")}>
         <option value="">not known</option>
         {floors.map((one) => (
-          <option key={one.floor} value={one.floor}>
-            {floorName(one.floor)}
+          <option key={one} value={String(one)}>
+            {floorName(one)}
           </option>
         ))}
       </select>

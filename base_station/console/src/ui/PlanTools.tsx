@@ -1,4 +1,4 @@
-import type { ComponentChildren } from "preact";
+import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
@@ -59,20 +59,25 @@ function ToolButton({ tool: mine, alarmed = false, children }: ButtonProps) {
 /** Below the plan: the panel of what is being done, until it is done or Escape is pressed. */
 export function ToolPanel({ picture }: { picture: Picture }) {
   const now = tool.value;
+  const panel = now === null ? null : panelOf(now, picture);
+  const held = panel !== null;
   useLayoutEffect(() => {
     if (now === null) return undefined;
+    if (!held) putDown(); // what it was for is gone, or nobody may do it now: it must take no clicks
     const leave = (event: KeyboardEvent) => {
       if (event.key === "Escape") putDown();
     };
     document.addEventListener("keydown", leave);
     return () => document.removeEventListener("keydown", leave);
-  }, [now]);
-  if (now?.kind === "trails") return <TrailsPanel />;
-  if (now?.kind === "pins") return <PinList picture={picture} />;
-  return now !== null && mayAct.value ? <Panel now={now} picture={picture} /> : null;
+  }, [now, held]);
+  return panel;
 }
 
-function Panel({ now, picture }: { now: Tool; picture: Picture }) {
+/** Null where there is nothing to do with it. */
+function panelOf(now: Tool, picture: Picture): JSX.Element | null {
+  if (now.kind === "trails") return <TrailsPanel />;
+  if (now.kind === "pins") return <PinList picture={picture} />;
+  if (!mayAct.value) return null;
   switch (now.kind) {
     case "pin":
       return <PinPanel key={now.unitId} picture={picture} unitId={now.unitId} pin={null} />;
@@ -94,7 +99,5 @@ function Panel({ now, picture }: { now: Tool; picture: Picture }) {
     }
     case "anchor":
       return <AnchorPanel picture={picture} />;
-    default:
-      return null;
   }
 }
