@@ -31,6 +31,13 @@ def close(dialog: Locator) -> None:
     dialog.get_by_role("button", name="Close", exact=True).click()
 
 
+def press(button: Locator) -> None:
+    """In a list: once it has stood there for so long that no other can have been meant."""
+    button.wait_for()
+    button.page.wait_for_timeout(600)
+    button.click()
+
+
 def confirm(where: Locator, name: str) -> None:
     """Press what asks first, and say yes; two presses in haste would be one."""
     where.get_by_role("button", name=name).click()

@@ -7,10 +7,12 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from urllib.parse import quote
 
+import msgspec
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, confirm, menu
+from tests.e2e.console_page import barriers, confirm, menu, press
 from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
@@ -56,7 +58,7 @@ def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
     """The button to acknowledge is followed at its place by the one to resolve."""
     page, station = stage.open(scenes.bad_minute())
     fall = scenes.bad_minute().alarms[0]
-    strip(page).get_by_role("button", name=f"Acknowledge: {fall.text}").click()
+    press(strip(page).get_by_role("button", name=f"Acknowledge: {fall.text}"))
     station.change(alarms=(scenes.taken(fall),))
     row = strip(page).get_by_role("listitem").filter(has_text=fall.text)
     page.clock.pause_at(datetime.now(UTC) + timedelta(seconds=1))  # no haste is as slow as a test
@@ -149,6 +151,20 @@ def test_what_is_old_looks_old_when_the_station_is_gone(stage: Stage) -> None:
     assert barriers(page) == []
 
 
+def test_a_picture_of_before_a_sleep_says_when_it_was(stage: Stage) -> None:
+    """Whatever time has gone by unheard."""
+    page, station = stage.open(scenes.quiet())
+    page.clock.pause_at(datetime.now(UTC) + timedelta(seconds=1))
+    station.change()
+    station.hang()
+    page.clock.fast_forward(30 * scenes.MINUTE_MS)
+    page.wait_for_timeout(600)  # the page's own clock has gone on
+    page.clock.run_for(3_000)
+    banner = page.get_by_role("alert").filter(has_text="Connection to the station lost")
+    heard = page.evaluate(f"new Date({scenes.NOW_MS}).toTimeString().slice(0, 8)")
+    expect(banner).to_contain_text(f"This picture is from {heard} ")
+
+
 def test_whose_login_has_ended_is_told_so(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     station.end_logins()
@@ -164,8 +180,10 @@ def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
           window.tones = 0;
           const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
           window.AudioContext = class {
+            state = "running";
             constructor() { window.tones += 1; }
             createOscillator() { return { ...silent }; }
+            close() {}
           };
         }"""
     )
@@ -179,6 +197,60 @@ def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
     station.change(alarms=(scenes.bad_minute().alarms[1],))
     page.wait_for_timeout(700)
     assert page.evaluate("window.tones") == 1
+
+
+@pytest.mark.parametrize("key", [None, "Enter", "Space"])
+def test_the_button_that_says_no_sound_yet_switches_it_on(stage: Stage, key: str | None) -> None:
+    """It is the first press on the page, which alone lets the browser play."""
+    page, _ = stage.open(scenes.quiet())
+    button = page.get_by_role("button", name="No sound yet")
+    if key is None:
+        button.click()
+    else:
+        button.press(key)
+    expect(page.get_by_role("button", name="Sound on")).to_be_visible()
+    page.get_by_role("button", name="Sound on").click()
+    expect(page.get_by_role("button", name="Sound off")).to_be_visible()
+
+
+def test_sound_that_the_browser_keeps_silent_is_not_said_to_be_on(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    page.evaluate(
+        """() => {
+          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          window.AudioContext = class {
+            state = "suspended";
+            createOscillator() { return { ...silent }; }
+            close() {}
+          };
+        }"""
+    )
+    page.get_by_role("button", name="No sound yet").click()
+    expect(page.get_by_role("button", name="Sound on")).to_be_visible()
+    expect(page.get_by_role("button", name="No sound yet")).to_be_visible()
+
+
+def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    page.get_by_role("button", name="Pins 2").click()
+    page.get_by_role("button", name="Astrid Lindqvist here").click()
+    expect(page.locator(".map.placing")).to_have_count(1)
+    station.change(pins=())  # somebody else has removed it
+    expect(page.get_by_role("form")).to_have_count(0)
+    expect(page.locator(".map.placing")).to_have_count(0)
+
+
+def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
+    """Whichever floor is shown, and where nobody is on its own."""
+    pins = tuple(
+        msgspec.structs.replace(scenes.pin(str(index), index, "used", 3.0, ""), floor=floor)
+        for index, floor in enumerate((None, 4))
+    )
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), pins=pins))
+    for name, floor in (("Astrid Lindqvist", ""), ("Jonas Bergman", "4")):
+        page.get_by_role("button", name="Pins 2").click()
+        page.get_by_role("button", name=f"{name} here").click()
+        expect(page.get_by_role("combobox", name="Floor")).to_have_value(floor)
 
 
 def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:

@@ -15,6 +15,7 @@ from tests.e2e.console_page import (
     confirm,
     menu,
     metres_north,
+    press,
 )
 from tests.e2e.enlisting import INCIDENT, NAME
 from tests.e2e.station_process import StationProcess
@@ -57,7 +58,7 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
     alarm = strip.get_by_role("listitem").filter(has_text=f"Mayday from {NAME}")
     expect(alarm).to_contain_text("Immediate", ignore_case=True)
     expect(card).to_contain_text("Mayday")
-    alarm.get_by_role("button", name="Acknowledge").click()
+    press(alarm.get_by_role("button", name="Acknowledge"))
     expect(alarm).to_contain_text("acknowledged by admin")
     wearable.cancel_mayday()
     confirm(alarm, "Resolve")

@@ -13,6 +13,7 @@ from tests.e2e.console_page import (
     barriers,
     close,
     command,
+    press,
 )
 from tests.e2e.enlisting import NAME
 from tests.e2e.wearable import Wearable
@@ -43,7 +44,7 @@ def test_people_are_ticked_off_at_the_roll_call(page: Page, card: Locator) -> No
     clock.click()
     dialog = page.get_by_role("dialog")
     row = dialog.get_by_role("listitem").filter(has_text=NAME)
-    row.get_by_role("button", name=f"Heard {NAME}").click()
+    press(row.get_by_role("button", name=f"Heard {NAME}"))
     expect(row).to_contain_text("by admin")
     close(dialog)
     expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"))

@@ -6,11 +6,15 @@ import { NOTHING_YET, toneOf, type Tone } from "./live/sounding";
 const KEPT_AS = "muster-sound";
 
 export const soundOn = signal(localStorage.getItem(KEPT_AS) !== "off");
-/** Browsers play nothing before the person has pressed anything on the page. */
+/** Browsers play nothing before the person has pressed anything on the page; to them a swipe is no
+ * press. */
 export const soundBlocked = signal(!navigator.userActivation.hasBeenActive);
 
-for (const kind of ["pointerdown", "keydown"]) {
-  document.addEventListener(kind, () => (soundBlocked.value = false), { once: true });
+// Only when the press has done its work: on the button that says "No sound yet" it means "on".
+for (const kind of ["click", "keyup"]) {
+  document.addEventListener(kind, () => {
+    setTimeout(() => (soundBlocked.value &&= !navigator.userActivation.hasBeenActive));
+  });
 }
 
 /** Switching on is heard. */
@@ -47,6 +51,7 @@ const PITCHES: Record<Tone, readonly number[]> = {
 };
 const TONE_S = 0.18;
 const STEP_S = 0.3;
+const OVER_MS = 2_000; // for the longest tone
 
 function play(tone: Tone): void {
   const context = new AudioContext();
@@ -57,6 +62,9 @@ function play(tone: Tone): void {
     one.connect(context.destination);
     one.start(context.currentTime + i * STEP_S);
     one.stop(context.currentTime + i * STEP_S + TONE_S);
-    if (i === pitches.length - 1) one.onended = () => void context.close();
   });
+  setTimeout(() => {
+    soundBlocked.value = context.state !== "running"; // the browser has kept it silent
+    void context.close();
+  }, OVER_MS);
 }

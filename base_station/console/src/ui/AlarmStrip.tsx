@@ -5,6 +5,7 @@ import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
+import { useSteady } from "./haste";
 import { Icon } from "./Icon";
 import { SoundButton } from "./SoundButton";
 
@@ -19,8 +20,8 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
         {!isPast.value && <SoundButton />}
       </div>
       <ul aria-live="assertive" aria-relevant="additions">
-        {alarms.map((alarm) => (
-          <AlarmRow key={alarm.alarm_id} alarm={alarm} picture={picture} />
+        {alarms.map((alarm, place) => (
+          <AlarmRow key={alarm.alarm_id} alarm={alarm} place={place} picture={picture} />
         ))}
       </ul>
     </section>
@@ -29,10 +30,11 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
 
 interface RowProps {
   alarm: AlarmView;
+  place: number; // in the list
   picture: Picture;
 }
 
-function AlarmRow({ alarm, picture }: RowProps) {
+function AlarmRow({ alarm, place, picture }: RowProps) {
   const taken = alarm.state === "acknowledged";
   const unit = picture.unit(alarm.unit_id);
   return (
@@ -52,7 +54,7 @@ function AlarmRow({ alarm, picture }: RowProps) {
         {duration(picture.nowMs.value - alarm.raised_ms)} ago
       </span>
       <span class="state">{stateOf(alarm, mayAct.value)}</span>
-      {mayAct.value && <AlarmAction alarm={alarm} />}
+      {mayAct.value && <AlarmAction alarm={alarm} place={place} />}
     </li>
   );
 }
@@ -64,14 +66,15 @@ function stateOf(alarm: AlarmView, hasButton: boolean): string {
 }
 
 /** To resolve asks first: it stands where the button to acknowledge was a moment ago. */
-function AlarmAction({ alarm }: { alarm: AlarmView }) {
+function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
+  const steady = useSteady(place);
   if (alarm.state === "acknowledged") {
     return (
       <ConfirmButton
         label="Resolve"
         about={alarm.text}
         question="Is it over?"
-        onConfirm={() => void attempt(api.resolve(alarm.alarm_id))}
+        onConfirm={steady(() => void attempt(api.resolve(alarm.alarm_id)))}
       />
     );
   }
@@ -80,7 +83,7 @@ function AlarmAction({ alarm }: { alarm: AlarmView }) {
       type="button"
       class="act"
       aria-label={`Acknowledge: ${alarm.text}`}
-      onClick={() => void attempt(api.acknowledge(alarm.alarm_id))}
+      onClick={steady(() => void attempt(api.acknowledge(alarm.alarm_id)))}
     >
       Acknowledge
     </button>

@@ -1,19 +1,17 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { HASTE_MS } from "./haste";
 
 interface Props {
   label: string;
   about?: string; // what it would be done to, where the label alone could be any of several
   question: string;
-  onConfirm: () => void;
+  onConfirm: (press: MouseEvent) => void;
 }
-
-/** Two presses in haste are one. */
-const HASTE_MS = 500;
 
 /** A button for what cannot be taken back: the first press only asks. */
 export function ConfirmButton({ label, about = "", question, onConfirm }: Props) {
-  const state = useSignal<"at rest" | "asked" | "refused">("at rest");
+  const state = useSignal<"at rest" | "asked" | "answered">("at rest");
   const askedMs = useRef(0);
   const next = useRef<HTMLButtonElement>(null);
   useEffect(() => {
@@ -36,8 +34,10 @@ export function ConfirmButton({ label, about = "", question, onConfirm }: Props)
       </button>
     );
   }
-  const confirm = () => {
-    if (performance.now() - askedMs.current > HASTE_MS) onConfirm();
+  const confirm = (press: MouseEvent) => {
+    if (performance.now() - askedMs.current <= HASTE_MS) return;
+    state.value = "answered";
+    onConfirm(press);
   };
   return (
     <span class="confirm" role="group" aria-label={question}>
@@ -45,7 +45,7 @@ export function ConfirmButton({ label, about = "", question, onConfirm }: Props)
       <button type="button" class="danger" onClick={confirm}>
         Yes, {label.toLowerCase()}
       </button>
-      <button type="button" ref={next} onClick={() => (state.value = "refused")}>
+      <button type="button" ref={next} onClick={() => (state.value = "answered")}>
         No
       </button>
     </span>

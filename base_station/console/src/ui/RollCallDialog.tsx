@@ -7,6 +7,7 @@ import { displayName } from "../live/urgency";
 import { clockTime, minutes } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
+import { useSteady } from "./haste";
 import { ParMark } from "./ParClock";
 
 /** Ticking people off: one press for each, or for a crew, or for everyone. */
@@ -34,8 +35,8 @@ export function RollCallDialog() {
           />
         </p>
       )}
-      {crews.map((crew) => (
-        <Crew key={crew.crew} crew={crew} picture={picture} />
+      {crews.map((crew, i) => (
+        <Crew key={crew.crew} crew={crew} place={peopleIn(crews.slice(0, i))} picture={picture} />
       ))}
     </Dialog>
   );
@@ -43,7 +44,14 @@ export function RollCallDialog() {
 
 type Shown = NonNullable<(typeof shown)["value"]>;
 
-function Crew({ crew, picture }: { crew: CrewOnDuty; picture: Shown }) {
+interface CrewProps {
+  crew: CrewOnDuty;
+  place: number; // how many people stand above
+  picture: Shown;
+}
+
+function Crew({ crew, place, picture }: CrewProps) {
+  const steady = useSteady(place);
   const name = crew.crew === "" ? "Without a crew" : crew.crew;
   return (
     <section class={`roll-crew ${crew.par.state}`} aria-label={name}>
@@ -52,21 +60,22 @@ function Crew({ crew, picture }: { crew: CrewOnDuty; picture: Shown }) {
           {name} <span class="quiet">{crew.people.length} on duty</span>
         </h3>
         {mayAct.value && crew.crew !== "" && crew.people.length > 1 && (
-          <button type="button" onClick={() => tick({ crew: crew.crew })}>
+          <button type="button" onClick={steady(() => tick({ crew: crew.crew }))}>
             {name}: all heard
           </button>
         )}
       </header>
       <ul>
-        {crew.people.map((one) => (
-          <Row key={one.unit.unit_id} one={one} picture={picture} />
+        {crew.people.map((one, i) => (
+          <Row key={one.unit.unit_id} one={one} place={place + i} picture={picture} />
         ))}
       </ul>
     </section>
   );
 }
 
-function Row({ one, picture }: { one: OnDuty; picture: Shown }) {
+function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Shown }) {
+  const steady = useSteady(place);
   const { unit, duty } = one;
   const name = displayName(unit);
   return (
@@ -85,13 +94,17 @@ function Row({ one, picture }: { one: OnDuty; picture: Shown }) {
           type="button"
           class="primary tick"
           aria-label={`Heard ${name}`}
-          onClick={() => tick({ unit_id: unit.unit_id })}
+          onClick={steady(() => tick({ unit_id: unit.unit_id }))}
         >
           Heard
         </button>
       )}
     </li>
   );
+}
+
+function peopleIn(crews: readonly CrewOnDuty[]): number {
+  return crews.reduce((sum, crew) => sum + crew.people.length, 0);
 }
 
 function tick(target: Target): void {

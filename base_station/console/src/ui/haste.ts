@@ -1,0 +1,15 @@
+import { useRef } from "preact/hooks";
+
+/** Two presses in haste are one. */
+export const HASTE_MS = 500;
+
+/** For a row of a list that others move in: a press in haste on what has only just come to this place
+ * was meant for what stood here before.  Keys press what has the focus, which moves along. */
+export function useSteady(place: number): (act: () => void) => (press: MouseEvent) => void {
+  const here = useRef({ place, sinceMs: performance.now() });
+  if (here.current.place !== place) here.current = { place, sinceMs: performance.now() };
+  return (act) => (press) => {
+    const byKey = press.detail === 0;
+    if (byKey || performance.now() - here.current.sinceMs > HASTE_MS) act();
+  };
+}

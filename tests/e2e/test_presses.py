@@ -1,0 +1,90 @@
+"""Lists whose rows move while somebody presses in them: what one press meant hits no other."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from urllib.parse import quote
+
+import msgspec
+from playwright.sync_api import Locator, Page, expect
+
+from base_station.api.wire import UnitView
+from tests.e2e import scenes
+from tests.e2e.stage import Stage
+
+
+def stop_time(page: Page) -> None:
+    """No haste is as slow as a test."""
+    page.clock.pause_at(datetime.now(UTC) + timedelta(seconds=1))
+
+
+def press_twice(page: Page, button: Locator, between: object) -> None:
+    """At one place, whatever has come there by then."""
+    button.scroll_into_view_if_needed()
+    box = button.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.click(x, y)
+    assert callable(between)
+    between()
+    page.mouse.click(x, y)
+
+
+def heard(one: UnitView) -> UnitView:
+    """The same person once somebody has heard from them."""
+    assert one.duty is not None
+    due_ms = scenes.NOW_MS + 20 * scenes.MINUTE_MS
+    return msgspec.structs.replace(one, duty=msgspec.structs.replace(one.duty, due_ms=due_ms))
+
+
+def test_two_presses_tick_off_one_person(stage: Stage) -> None:
+    """Who was ticked off goes down, and the next one comes to that place."""
+    first, second, third = (scenes.person(index).name for index in (0, 10, 5))
+    crew = [scenes.unit(index) for index in (0, 5, 10)]
+    page, station = stage.open(scenes.picture(crew))
+    page.locator(".par-clock").click()
+    names = page.locator(".roll-crew strong")
+    expect(names).to_have_text([first, second, third])
+    stop_time(page)
+
+    def heard_of() -> None:
+        station.change(units=(heard(crew[0]),))
+        expect(names).to_have_text([second, third, first])
+
+    press_twice(page, page.get_by_role("dialog").get_by_text("Heard", exact=True).first, heard_of)
+    assert station.changes() == ["/check-ins"]
+    page.clock.run_for(600)
+    page.get_by_role("button", name=f"Heard {second}").click()
+    assert station.changes() == ["/check-ins"] * 2
+
+
+def test_two_presses_acknowledge_one_alarm(stage: Stage) -> None:
+    """What was acknowledged goes down, and the next alarm would never be seen."""
+    page, station = stage.open(scenes.bad_minute())
+    fall, still, *_ = scenes.bad_minute().alarms
+    rows = page.get_by_role("region", name="Open alarms").get_by_role("listitem")
+    expect(rows.first).to_contain_text(fall.text)
+    stop_time(page)
+
+    def taken() -> None:
+        station.change(alarms=(scenes.taken(fall),))
+        expect(rows.first).to_contain_text(still.text)
+
+    press_twice(page, rows.first.get_by_role("button", name="Acknowledge"), taken)
+    first = f"/alarms/{quote(fall.alarm_id)}/acknowledge"
+    assert station.changes() == [first]
+    rows.first.get_by_role("button", name="Acknowledge").press("Enter")
+    assert station.changes() == [first, f"/alarms/{quote(still.alarm_id)}/acknowledge"]
+
+
+def test_everybody_is_ticked_off_once(stage: Stage) -> None:
+    """A question that was answered does not stand there for the next press."""
+    page, station = stage.open(scenes.quiet())
+    page.locator(".par-clock").click()
+    everybody = page.get_by_role("dialog").get_by_role("button", name="All heard", exact=True)
+    stop_time(page)
+    everybody.click()
+    page.clock.run_for(600)
+    page.get_by_role("button", name="Yes, all heard").click()
+    expect(everybody).to_be_visible()
+    assert station.changes() == ["/check-ins"]
