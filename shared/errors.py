@@ -11,6 +11,7 @@
       ├─ LogError           a log segment or folder cannot be read or written
       │    └─ DataFolderInUseError  another station writes to this folder
       ├─ StoreError         the database cannot do what was asked
+      │    └─ DiskHangsError        its disk does not answer
       └─ UserError          a person asked for something impossible
 
 Each message says what happened and what to do about it.
@@ -61,6 +62,10 @@ class DataFolderInUseError(LogError):
 
 class StoreError(MusterError):
     """The database cannot do what was asked."""
+
+
+class DiskHangsError(StoreError):
+    """The database's disk does not answer: nothing is asked of it until it does."""
 
 
 class UserError(MusterError):

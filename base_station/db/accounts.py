@@ -18,6 +18,7 @@ from pwdlib import PasswordHash
 from sqlalchemy import ColumnElement, and_, delete, func, select
 from sqlalchemy.orm import Session
 
+from base_station.db.let_in import LetIn
 from base_station.db.models import ApiToken, HandOver, LoginSession, User
 from base_station.db.passwords import Passwords
 from base_station.db.principals import Principal, Role
@@ -37,6 +38,7 @@ class Accounts:
         self._store = store
         self._clock = clock
         self._passwords = Passwords(hasher)
+        self._let_in = LetIn()
 
     # ---- users
 
@@ -59,6 +61,7 @@ class Accounts:
 
     def change_user(self, username: str, password: str | None, role: Role | None) -> None:
         """Another role ends the user's sessions, a new password the tokens, too."""
+        self._let_in.forget_all()
         password_hash = "" if password is None else self._passwords.hash(password)
         with self._store.write() as session:
             user = _user(session, username)
@@ -74,6 +77,7 @@ class Accounts:
                 session.execute(delete(ApiToken).where(ApiToken.username == username))
 
     def remove_user(self, username: str) -> None:
+        self._let_in.forget_all()
         with self._store.write() as session:
             user = _user(session, username)
             _keep_an_administrator(session, user)
@@ -97,6 +101,7 @@ class Accounts:
 
     def end_sessions(self, username: str) -> None:
         """Everybody who is logged in as this user has to log in again."""
+        self._let_in.forget_all()
         with self._store.write() as session:
             _end_sessions(session, _user(session, username))
 
@@ -136,10 +141,14 @@ class Accounts:
         return secret
 
     def log_out(self, secret: str) -> None:
+        self._let_in.forget_all()
         with self._store.write() as session:
             session.execute(delete(LoginSession).where(LoginSession.token_hash == _sha256(secret)))
 
     def of_session(self, secret: str) -> Principal | None:
+        return self._let_in.who(secret, self._of_session)
+
+    def _of_session(self, secret: str) -> Principal | None:
         with self._store.read() as session:
             found = session.execute(
                 select(User.username, User.role)
@@ -228,6 +237,7 @@ class Accounts:
         return token_id, secret
 
     def remove_token(self, username: str, token_id: str) -> bool:
+        self._let_in.forget_all()
         with self._store.write() as session:
             token = session.get(ApiToken, token_id)
             if token is None or token.username != username:
@@ -241,6 +251,9 @@ class Accounts:
             return session.scalars(mine.order_by(ApiToken.created_ns)).all()
 
     def of_token(self, secret: str) -> Principal | None:
+        return self._let_in.who(secret, self._of_token)
+
+    def _of_token(self, secret: str) -> Principal | None:
         with self._store.read() as session:
             found = session.execute(
                 select(ApiToken, User.role)

@@ -65,6 +65,8 @@ class SqlProjection:
         """Wait until all that was projected before this call is in the tables; False where the
         store does not take it.
         """
+        if self._store.hangs():
+            return False
         with self._changed:
             goal = self._taken
             # A try that is under way may have begun before this call: two tell.

@@ -19,7 +19,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from base_station.db.migrate import migrate
-from shared.errors import StoreError
+from shared.errors import DiskHangsError, StoreError
 
 BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
 _LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
@@ -46,7 +46,7 @@ class Store:
         """``hangs``: whether the disk does not answer just now.  Nothing more is asked of it then:
         whoever does would wait for it, whatever else there is to do, and could not be ended.
         """
-        self._hangs = hangs
+        self.hangs = hangs
         self._engine = _engine(path)
         self._write_engine = self._engine.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
         self._writing = threading.Lock()
@@ -117,10 +117,10 @@ class Store:
             self._writing.release()
 
     def _require_disk(self) -> None:
-        if self._hangs():
-            raise StoreError(
+        if self.hangs():
+            raise DiskHangsError(
                 "the station's disk does not answer: until it does nothing can be looked up or "
-                "changed, and who is on the screen is shown as before; check the disk"
+                "kept in the database; people are shown and commanded as before; check the disk"
             )
 
     def _cause(self, error: SQLAlchemyError) -> str:

@@ -10,7 +10,9 @@ from threading import Event, Thread
 import pytest
 from sqlalchemy.orm import Session
 
+from base_station.db.projection import SqlProjection
 from base_station.db.store import Store
+from base_station.live.sinks import Projection
 from shared.errors import StoreError
 from tests.waiting import PATIENCE_S
 
@@ -62,3 +64,15 @@ def test_who_waits_for_one_whom_the_disk_holds_up_is_told(store: Store, hangs: E
     hangs.clear()
     change()
     assert told[1:] == ["done"]
+
+
+def test_nobody_waits_for_what_a_disk_that_hangs_does_not_take(store: Store, hangs: Event) -> None:
+    projection = SqlProjection(store)
+    try:
+        hangs.set()
+        projection.project(Projection(t_ns=1))
+        assert not projection.flush(timeout_s=3600.0)
+        hangs.clear()
+        assert projection.flush(PATIENCE_S)
+    finally:
+        projection.close()

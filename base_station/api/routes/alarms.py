@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Annotated
 
 import msgspec
@@ -16,6 +17,7 @@ from base_station.api.wire import AlarmView
 from base_station.db import models
 from base_station.db.records import Window
 from base_station.views import alarm_view
+from shared.errors import DiskHangsError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 router = APIRouter(tags=["alarms"])
@@ -59,13 +61,13 @@ def get_alarm(alarm_id: Id, station: Station, _: Viewer) -> AlarmWithLife:
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)
 def acknowledge(alarm_id: Id, station: Station, who: Commander) -> None:
-    _alarm_or_404(station, alarm_id)
+    _require_alarm(station, alarm_id)
     station.act(who.username, AcknowledgeAlarm(alarm_id))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
 def resolve(alarm_id: Id, resolution: Resolution, station: Station, who: Commander) -> None:
-    _alarm_or_404(station, alarm_id)
+    _require_alarm(station, alarm_id)
     station.act(who.username, ResolveAlarm(alarm_id, resolution.note))
 
 
@@ -75,3 +77,8 @@ def _alarm_or_404(station: Services, alarm_id: str) -> models.Alarm:
     if alarm is None:
         raise Problem(404, "There is no such alarm.")
     return alarm
+
+
+def _require_alarm(station: Services, alarm_id: str) -> None:
+    with suppress(DiskHangsError):  # the drive knows, too
+        _alarm_or_404(station, alarm_id)
