@@ -158,7 +158,9 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
 
 
 class Clocks:
-    """When a message was captured, by the station's clock; the least delayed one tells."""
+    """When a message was captured, by the station's clock.  The least delayed one tells; of a run of
+    which nothing came live the unit itself, if it knew the station's time.
+    """
 
     def __init__(self) -> None:
         self._offsets_ns: dict[tuple[str, int], int] = {}
@@ -169,9 +171,11 @@ class Clocks:
         self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
 
     def captured_ns(self, header: Header) -> int | None:
-        """None of a run of which nothing came live."""
+        """None where nobody can tell."""
         offset_ns = self._offsets_ns.get((header.unit_id, header.boot_id))
-        return None if offset_ns is None else header.t_mono_ns + offset_ns
+        if offset_ns is not None:
+            return header.t_mono_ns + offset_ns
+        return header.t_utc_ns if header.utc_std_s > 0.0 else None
 
 
 def _actions(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]]:

@@ -105,18 +105,20 @@ class Redactor:
         return channel.direction is Direction.UP and wearer not in self._erasure.unit_ids
 
     def _unit(self, record: Record, event: Received) -> Record:
-        """A unit's message, or the sign of life that is left of it."""
+        """A unit's message, or the sign of life that is left of it; out of a journal, where nobody
+        can tell when it was said, that too.
+        """
         t_ns, key, _ = record
         sender, channel = parse_key(key)
         header = event.message.header
         captured_ns = self._clocks.captured_ns(header)
-        times_ns = [] if event.backfilled and captured_ns is not None else [t_ns]
+        times_ns = [] if event.backfilled else [t_ns]
         if captured_ns is not None:
             times_ns.append(captured_ns)
         wearer = tracked_unit(sender) or sender
-        if channel in (DESCRIPTION, HEARTBEAT) or not any(
-            self._erasure.covers(wearer, one) for one in times_ns
-        ):
+        at_any_time = not times_ns and wearer in self._erasure.unit_ids
+        covered = at_any_time or any(self._erasure.covers(wearer, one) for one in times_ns)
+        if channel in (DESCRIPTION, HEARTBEAT) or not covered:
             return self._renamed(record)
         alive = HEARTBEAT.key(sender)
         if event.backfilled:

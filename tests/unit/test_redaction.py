@@ -120,3 +120,33 @@ def test_of_what_nobody_can_read_a_sign_of_life_is_left(key: str, t_ns: int, sta
         return
     assert left_key == backfilled_key("anna", HEARTBEAT.suffix)
     assert decode(HEARTBEAT, payload) == Heartbeat(Header("anna", 7, 3, 0), 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("boot_id", "utc_ns", "utc_std_s", "stays"),
+    [
+        (7, 0, 0.0, False),  # heard live: captured at 150
+        (8, 0, 0.0, False),  # nobody can tell
+        (8, 150, 0.1, False),
+        (8, 250, 0.1, True),
+        (8, 250, 0.0, False),  # by a clock that nobody has set
+    ],
+)
+def test_what_a_journal_brought_goes_where_it_was_said_by_who_is_forgotten(
+    boot_id: int, utc_ns: int, utc_std_s: float, stays: bool
+) -> None:
+    clocks = Clocks()
+    clocks.note(140, Header("anna", 7, 1, 40))
+    redact = Redactor(Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), clocks)
+    header = Header("anna", boot_id, 3, 50, utc_ns, utc_std_s)
+    record = 300, backfilled_key("anna", TEMPERATURE.suffix), encode(Temperature(header, 20.0))
+    ((_, key, payload),) = redact(record)
+    assert ((300, key, payload) == record) == stays
+    assert stays or isinstance(decode(HEARTBEAT, payload), Heartbeat)
+
+
+def test_of_another_unit_what_a_journal_brought_stays_whenever_it_was_said() -> None:
+    redact = Redactor(Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), Clocks())
+    message = encode(Temperature(Header("bert", 8, 3, 50), 20.0))
+    record = 150, backfilled_key("bert", TEMPERATURE.suffix), message
+    assert redact(record) == [record]
