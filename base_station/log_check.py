@@ -39,7 +39,7 @@ class LogCheck:
             if path is None:
                 self._idle += 1
                 if self._idle >= _AGAIN_LOOKS:
-                    self._begin_again()
+                    self._begin_again(set())
                 return
             self._read.add(path)
         try:
@@ -49,6 +49,8 @@ class LogCheck:
             damage = str(error)
         if damage:
             self.note_damaged(path, damage)
+        else:  # somebody may have put it back from a backup
+            self.note_mended(path, again=False)
 
     def note_damaged(self, path: Path, damage: str) -> None:
         """Not all of this segment can be read."""
@@ -62,11 +64,11 @@ class LogCheck:
         """Somebody who reads the log has met this damage."""
         with self._lock:
             if not any(path.name in what for path in self._damaged):
-                self._begin_again()
+                self._begin_again(set(self._damaged))
 
-    def _begin_again(self) -> None:
+    def _begin_again(self, but_for: set[Path]) -> None:
         self._idle = 0
-        self._read = set(self._damaged)
+        self._read = but_for
 
     @property
     def damaged(self) -> tuple[Path, ...]:
@@ -74,10 +76,11 @@ class LogCheck:
         with self._lock:
             return tuple(sorted(self._damaged))
 
-    def note_mended(self, path: Path) -> None:
-        """It is looked at again."""
+    def note_mended(self, path: Path, *, again: bool = True) -> None:
+        """All of this segment can be read; ``again``: it is looked at."""
         with self._lock:
-            self._read.discard(path)
+            if again:
+                self._read.discard(path)
             self._damaged.pop(path, None)
 
     def problems(self) -> tuple[str, ...]:

@@ -67,6 +67,19 @@ def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:
     assert check._read == known, "it is known"
 
 
+def test_one_that_was_put_back_from_a_backup_is_damaged_no_more(
+    recorder: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As the console tells people to do it."""
+    monkeypatch.setattr("base_station.log_check._AGAIN_LOOKS", 50)
+    whole = recorder.segments()[0].path.read_bytes()
+    path = flip(recorder)
+    check = looked(LogCheck("Restore it."), recorder)
+    assert "Restore it." in check.problems()[0]
+    path.write_bytes(whole)
+    assert looked(check, recorder, 60).problems() == ()
+
+
 def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
     lacking = Lacking()
     lacking.note_stepped(100, 200)
