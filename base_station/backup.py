@@ -88,17 +88,19 @@ def _copy_files(
             copied, copied_bytes = copied + 1, copied_bytes + size
         passed += size
         on_progress(passed / total)
+    if not source.begun.exists():
+        copy.begun.unlink(missing_ok=True)  # it has names in it
     here = {path.name for path in segment_paths(source.log)}
     gone = sum(path.name not in here for path in segment_paths(copy.log))
     return Backup(copied, copied_bytes, len(files) - copied, gone)
 
 
 def _files(source: DataFolder) -> Iterator[Path]:
+    # What is to be forgotten goes first: done meanwhile, it is done in the copy, too.
+    yield from filter(Path.exists, (source.forgettings, source.begun))
     yield from segment_paths(source.log)
     for folder in (PkiFolder(source.path).path, source.path / APART):
         yield from sorted(path for path in folder.rglob("*") if path.is_file())
-    if source.forgettings.exists():
-        yield source.forgettings
 
 
 def _is_current(path: Path, target: Path) -> bool:

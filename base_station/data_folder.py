@@ -20,6 +20,7 @@ class DataFolder:
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.database = path / "station.sqlite"
         self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is
+        self.begun = path / "forgetting-begun.json"  # whom that concerns, of incidents
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:

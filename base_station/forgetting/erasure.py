@@ -158,8 +158,8 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
 
 
 class Clocks:
-    """When a message was captured, by the station's clock.  The least delayed one tells; of a run of
-    which nothing came live the unit itself, if it knew the station's time.
+    """When a message was captured, by the station's clock.  The least delayed one tells; of a run
+    of which nothing came live the unit itself, if it knew the station's time.
     """
 
     def __init__(self) -> None:

@@ -54,7 +54,6 @@ BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is f
 _ACTIONS = OPERATOR.key(STATION_ID)
 _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
-_BEGUN = "forgetting-begun.json"  # beside the wishes; what it holds, no wish does
 Progress = Callable[[float], None]  # hears the fraction done
 MendedFirst = Callable[[Path, str], bool]  # hears what is damaged in a segment of the log
 Act = Callable[[str, Action], Future[ActionDone] | None]  # None: no station that leads does it
@@ -160,7 +159,7 @@ class Forgetter:
         self._pulls = pulls
         self._act = act
         self._mended_first = mended_first
-        self._begun = Begun(DataFolder(log.folder.parent).forgettings.with_name(_BEGUN))
+        self._begun = Begun(DataFolder(log.folder.parent).begun)
 
     def person(
         self,

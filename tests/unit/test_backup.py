@@ -34,6 +34,7 @@ def data(tmp_path: Path) -> Path:
         "checkpoints/1.checkpoint": "can be made again",
         "recordings/FF-01/raw.mcap": "can be fetched again",
         "forgetting.json": "[]",
+        "forgetting-begun.json": "who was there",
         "lock": "4711",
     }.items():
         (data / name).parent.mkdir(parents=True, exist_ok=True)
@@ -60,11 +61,32 @@ def test_it_holds_what_cannot_be_made_again(data: Path, tmp_path: Path) -> None:
         "pki/station.key",
         f"apart/{SECOND}",
         "forgetting.json",
+        "forgetting-begun.json",
         "station.sqlite",
     }
     assert (target / "pki" / "station.key").read_text() == "secret"
     assert target.stat().st_mode & 0o077 == 0
-    assert (done.copied, done.unchanged, done.gone) == (5, 0, 0)
+    assert (done.copied, done.unchanged, done.gone) == (6, 0, 0)
+
+
+def test_what_is_forgotten_while_it_is_made_is_forgotten_in_it_too(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A station that is started on it does what the copied log may still have to lose."""
+    copy, target = shutil.copy2, tmp_path / "backup"
+
+    def forget_meanwhile(source: Path, part: Path) -> None:
+        copy(source, part)
+        if source.suffix == ".mcap":
+            (data / "forgetting.json").write_text("[] done")
+
+    monkeypatch.setattr(shutil, "copy2", forget_meanwhile)
+    run(data, target)
+    assert (target / "forgetting.json").read_text() == "[]"
+    (data / "forgetting-begun.json").unlink()
+    run(data, target)
+    assert (target / "forgetting.json").read_text() == "[] done"
+    assert not (target / "forgetting-begun.json").exists(), "it has names in it"
 
 
 def test_a_second_run_copies_what_is_new(data: Path, tmp_path: Path) -> None:
@@ -72,7 +94,7 @@ def test_a_second_run_copies_what_is_new(data: Path, tmp_path: Path) -> None:
     run(data, target)
     (data / "log" / SECOND).write_text("grown")
     done = run(data, target)
-    assert (done.copied, done.copied_bytes, done.unchanged) == (1, len("grown"), 4)
+    assert (done.copied, done.copied_bytes, done.unchanged) == (1, len("grown"), 5)
     assert (target / "log" / SECOND).read_text() == "grown"
 
 
@@ -160,7 +182,7 @@ def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
             run(data, target)
     assert not [name for name in files(target) if name.endswith(".part")]
     assert len(files(target)) == copied + 1  # with the database
-    assert run(data, target).copied == 5 - copied
+    assert run(data, target).copied == 6 - copied
 
 
 def test_a_database_for_which_there_is_no_room_leaves_nothing(data: Path, tmp_path: Path) -> None:
@@ -168,7 +190,7 @@ def test_a_database_for_which_there_is_no_room_leaves_nothing(data: Path, tmp_pa
     with files_of_at_most(8000), pytest.raises(StoreError, match="see that there is room beside"):
         run(data, target)
     assert files(target) == set()
-    assert run(data, target).copied == 5
+    assert run(data, target).copied == 6
 
 
 def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: Path) -> None:
@@ -176,7 +198,7 @@ def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: P
     (target / "log").mkdir(parents=True)
     for name in ("station.sqlite.part", f"log/{FIRST}.part"):
         (target / name).write_text("half")
-    assert run(data, target).copied == 5
+    assert run(data, target).copied == 6
     assert not [name for name in files(target) if name.endswith(".part")]
 
 
