@@ -158,6 +158,19 @@ def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
     until(lambda: 0.0 < at_s(session) < 60.0)
 
 
+def test_it_says_from_when_to_when_it_goes_and_goes_nowhere_else(session: ReplaySession) -> None:
+    view = session.view()
+    assert (view.start_ms, view.end_ms) == (
+        START_NS // 10**6,
+        START_NS // 10**6 + DURATION_S * 1000,
+    )
+    session.pause()
+    session.seek(START_NS - 50 * NS_PER_S)
+    assert at_s(session) == 0.0
+    (unit,) = picture(session).units
+    assert unit.position is None
+
+
 def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
     tmp_path: Path, screen: Screen
 ) -> None:
@@ -225,17 +238,18 @@ def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: S
         archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, clock
     )
     session.pause()
+    session.seek(START_NS + 40 * NS_PER_S)
     picture(session)
     clock.advance(30.0)
     session.play()
     picture(session)
     resumed_s = at_s(session)
     clock.advance(10.0)
-    until(lambda: at_s(session) >= 10.0)
+    until(lambda: at_s(session) >= 50.0)
     played_s = at_s(session)
     session.close()
-    assert resumed_s == 0.0
-    assert played_s == 10.0
+    assert resumed_s == 40.0
+    assert played_s == 50.0
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf"), 0.1])
