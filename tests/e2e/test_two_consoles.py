@@ -42,6 +42,10 @@ def test_the_console_goes_to_the_station_that_has_taken_over(
         page.wait_for_url(f"{two.second.url}/**", timeout=PATIENCE_MS)
         expect(page.get_by_text("Mill Lane").first).to_be_visible()
         assert "ticket" not in page.url
+        silent = page.get_by_role("alert").filter(has_text="no alarm is heard here before")
+        expect(silent).to_contain_text("You come from the console of")
+        silent.get_by_role("button", name="OK").click()
+        expect(page.get_by_role("button", name="Sound on")).to_be_visible()
         page.context.clear_cookies()  # who comes without a ticket logs in
         page.goto("about:blank")
         page.goto(f"{two.second.url}/#from=first&ticket=used")

@@ -2,11 +2,12 @@
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
 import { ApiError } from "./call";
-import { ticketOf, withoutTicket } from "./live/arrival";
+import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
 import { loadBaseMap } from "./plan/baseMap";
+import { soundBlocked, soundOn } from "./sound";
 
 export interface Replay {
   id: string;
@@ -42,6 +43,9 @@ export async function resume(): Promise<void> {
   if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
   try {
     begin(await api.me().catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket))));
+    if (ticket !== "" && soundOn.peek() && soundBlocked.peek()) {
+      notice.value = arrivedSilent(location.hash);
+    }
   } catch {
     user.value = null;
   }

@@ -92,9 +92,8 @@ describe("floorRemark", () => {
   it("says who is on another floor, or on one that nobody knows", () => {
     expect(floorRemark(position({ floor: 1 }), 0)).toBe("floor 1");
     expect(floorRemark(position({ floor: null }), 0)).toBe("floor unknown");
-    expect(floorRemark(position({ floor: 0, floor_probability: 0.49 }), 0)).toBe(
-      "floor unknown, perhaps ground floor",
-    );
+    expect(floorRemark(position({ floor: 0, floor_probability: 0.49 }), 0)).toBe("floor unknown");
+    expect(floorRemark(position({ floor: 1, floor_probability: 0.49 }), 0)).toBe("floor unknown");
     expect(floorRemark(position({ floor: null }), "all")).toBe("");
   });
 });

@@ -14,11 +14,20 @@ export function wayFrom(station: string, url: string, ticket = ""): string {
 
 /** What the login page says to who came that way; empty: nobody did. */
 export function arrival(hash: string): string {
+  const from = cameFrom(hash);
+  return from === "" ? "" : `${from} The same user and password hold here.`;
+}
+
+/** To who went on by a ticket, where the browser plays nothing yet: nobody need have pressed anything. */
+export function arrivedSilent(hash: string): string {
+  return `${cameFrom(hash)} Press OK: no alarm is heard here before.`.trim();
+}
+
+function cameFrom(hash: string): string {
   if (!hash.startsWith(FROM)) return "";
   const [station] = hash.slice(FROM.length).split(TICKET);
   const name = decoded(station).slice(0, LONGEST);
-  if (name === "") return "";
-  return `You come from the console of the station “${name}”. The same user and password hold here.`;
+  return name === "" ? "" : `You come from the console of the station “${name}”.`;
 }
 
 /** What lets go on who came that way; empty: nothing does. */

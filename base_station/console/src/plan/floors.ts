@@ -2,7 +2,7 @@
 import { urgencyOf, type Urgency } from "../live/urgency";
 import type { FloorChoice } from "../view";
 import type { AlarmView, Plan, PositionView, UnitView } from "../wire";
-import { floorOf, isFloorLikely } from "../words";
+import { floorName, floorOf, isFloorLikely } from "../words";
 
 export interface Floor {
   floor: number;
@@ -45,8 +45,9 @@ export function firstFloor(floors: readonly Floor[]): number | null {
 
 /** What a floor that is shown does not say of somebody on it: another floor, or one that nobody knows. */
 export function floorRemark(position: PositionView, shown: FloorChoice): string {
-  const there = position.floor === shown && isFloorLikely(position);
-  return shown === "all" || there ? "" : floorOf(position);
+  if (shown === "all") return "";
+  if (!isFloorLikely(position)) return floorName(null);
+  return position.floor === shown ? "" : floorOf(position);
 }
 
 export function shortName(floor: number): string {
