@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Iterator
+from itertools import count
 from pathlib import Path
 
 import msgspec
@@ -13,7 +14,7 @@ from base_station.api.wire import Snapshot, TrailPoint
 from base_station.bench.rig import said
 from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
-from base_station.past.playback import Archive
+from base_station.past.playback import BURST, Archive
 from base_station.past.replay import ReplaySession, Window
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
@@ -193,7 +194,7 @@ def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
     assert again_s == 0.0
 
 
-def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
+def test_its_pace_is_the_speed_asked_for(session: ReplaySession, screen: Screen) -> None:
     session.set_speed(32.0)
     pause = threading.Event()
     begin_s = at_s(session)
@@ -201,9 +202,10 @@ def test_its_pace_is_the_speed_asked_for(session: ReplaySession) -> None:
     assert 15.0 < at_s(session) - begin_s < 60.0
     session.pause()
     picture(session)
-    paused_s = at_s(session)
+    paused_s, told = at_s(session), len(screen.deltas)
     pause.wait(0.3)
     assert at_s(session) == paused_s
+    assert len(screen.deltas) <= told + 3, "it rests"
 
 
 def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
@@ -229,6 +231,38 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     session.close()
     assert clock_s > 10.0
     assert sought_s == MAYDAY_S
+
+
+def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
+    tmp_path: Path, screen: Screen
+) -> None:
+    _, key, payload = walk_with_mayday()[-1]
+    read = 0
+
+    def endless(t_ns: int) -> Iterator[Record]:
+        nonlocal read
+        for second in count():
+            read += 1
+            if (at_ns := START_NS + second * NS_PER_S) >= t_ns:
+                yield at_ns, key, payload
+
+    def under_way() -> None:
+        before = read
+        session.seek(window.end_ns)
+        until(lambda: read > before + 2 * BURST)
+
+    threads = set(threading.enumerate())
+    window = Window("i1", START_NS, START_NS + 10**9 * NS_PER_S)
+    source = Archive(endless, Checkpoints(tmp_path), make_pipeline)
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, ManualClock())
+    session.pause()
+    under_way()
+    session.seek(START_NS + 10 * NS_PER_S)
+    assert picture(session).now_ms == START_NS // 10**6 + 10_000
+    under_way()
+    session.close()
+    assert session.is_over
+    assert "replay" not in {thread.name for thread in set(threading.enumerate()) - threads}
 
 
 def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: Screen) -> None:
