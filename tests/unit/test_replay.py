@@ -236,6 +236,7 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
 def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
     tmp_path: Path, screen: Screen
 ) -> None:
+    """Meanwhile whoever opens the console is shown where it goes."""
     _, key, payload = walk_with_mayday()[-1]
     read = 0
 
@@ -243,6 +244,7 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
         nonlocal read
         for second in count():
             read += 1
+            clock.advance(0.001)
             if (at_ns := START_NS + second * NS_PER_S) >= t_ns:
                 yield at_ns, key, payload
 
@@ -250,11 +252,15 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
         before = read
         session.seek(window.end_ns)
         until(lambda: read > before + 2 * BURST)
+        joining = picture(session).replay
+        assert joining is not None
+        assert joining.seeking
 
+    clock = ManualClock()
     threads = set(threading.enumerate())
     window = Window("i1", START_NS, START_NS + 10**9 * NS_PER_S)
     source = Archive(endless, Checkpoints(tmp_path), make_pipeline)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, ManualClock())
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     session.pause()
     under_way()
     session.seek(START_NS + 10 * NS_PER_S)
