@@ -17,6 +17,7 @@ import msgspec
 
 from base_station.api.wire import Delta, HealthView, Snapshot, Trail
 from base_station.live.sinks import LiveSource, Trails
+from shared.errors import StoreError
 
 QUEUE = 64  # messages a client may be behind, some three seconds
 
@@ -142,10 +143,15 @@ class Hub:
         return len(self._clients)
 
     def join(self) -> Client:
+        """Raises StoreError where there is no picture now."""
         client = Client(self)
         self._clients.add(client)
         self._watched = True
-        client.ask_for_snapshot()
+        try:
+            client.ask_for_snapshot()
+        except StoreError:
+            self.leave(client)
+            raise
         return client
 
     def leave(self, client: Client) -> None:
@@ -155,8 +161,8 @@ class Hub:
     def request_snapshot(self) -> None:
         """Many clients that ask at once share one snapshot."""
         if self._source is not None and not self._requested:
+            self._source.request_snapshot(self._deliver)  # if that fails, the next one asks again
             self._requested = True
-            self._source.request_snapshot(self._deliver)
 
     def _spread_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
         for client in self._clients:

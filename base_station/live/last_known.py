@@ -7,6 +7,7 @@ unit counts as not heard, and nobody can change anything.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -30,6 +31,7 @@ from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.live.sinks import ActionDone, LiveSink, Trails
 from base_station.site.roaming import RADII_95
+from base_station.trouble import Trouble
 from base_station.views import alarm_view, anchor_view
 from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
@@ -38,6 +40,7 @@ from shared.messages.station import Action
 _RECENT_NS = 3600 * NS_PER_S  # of trails; what was raised so long before an incident is of it
 _TRAIL_EVERY_S = 5
 _SAID_AGAIN_NS = 2 * NS_PER_S
+_log = logging.getLogger(__name__)
 _OLD = TrustView("red", "as it was last stored; the station is reading its log")
 
 
@@ -52,17 +55,20 @@ class LastKnown:
         self._share = 0.0
         self._said_ns = 0
         self._stored: tuple[Snapshot, Trails] | None = None  # nothing new while the log is read
+        self._trouble = Trouble(_log, "what was last stored cannot be shown")
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        """Raises StoreError where the tables cannot be read."""
         deliver(*self.whole())
 
     def tell(self, share: float) -> None:
-        """So much of the log is read."""
+        """So much of the log is read, which goes on whatever the tables do."""
         self._share = share
         now_ns = self._clock.monotonic_ns()
         if now_ns - self._said_ns >= _SAID_AGAIN_NS:
             self._said_ns = now_ns
-            self._sink.reset(*self.whole())
+            with self._trouble:
+                self._sink.reset(*self.whole())
 
     # ---- a standing
 

@@ -13,6 +13,7 @@ import pytest
 from websockets.sync.client import connect
 
 from base_station.api.security import COOKIE
+from base_station.api.wire import Snapshot
 from base_station.app.disk import Disk, open_disk
 from base_station.app.early_console import early_console
 from base_station.bench.rig import said as said_by_bench
@@ -23,12 +24,13 @@ from base_station.live import last_known
 from base_station.live import recovering as module
 from base_station.live.last_known import LastKnown
 from base_station.live.recovering import recovering
-from base_station.live.sinks import Projection
+from base_station.live.sinks import Projection, Trails
 from base_station.live.surroundings import Record
 from base_station.recorder import Recorder
 from base_station.server import bind
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
+from shared.errors import StoreError
 from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
 from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
@@ -122,6 +124,7 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
     with ExitStack() as closing:
         closing.callback(recorder.close)
         disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        disk.store.hangs = lambda: False  # hours go by between two turns of the recorder
         store_what_happened(disk, raised_before_s=600.0)
         pictures = []
         for waited_s in (1800.0, 3 * 3600.0):
@@ -133,6 +136,43 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
         assert (shown.position.north_m, shown.position.east_m) == (3.0, 4.0)
         assert [points[1:3] for points in json.loads(bytes(trails["FF-01"]))] == [[3.0, 4.0]]
         assert [one.text for one in picture.alarms] == ["MAYDAY"]
+
+
+class Consoles:
+    """They show what they are told."""
+
+    def __init__(self) -> None:
+        self.shown: list[Snapshot] = []
+
+    def reset(self, snapshot: Snapshot, _: Trails) -> None:
+        self.shown.append(snapshot)
+
+    def delta(self, _: object) -> None:
+        raise AssertionError("nothing here is live")
+
+
+def test_tables_that_cannot_be_read_for_a_while_end_no_start(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
+) -> None:
+    """The log has everything; what was last stored is shown once it can be read."""
+    monkeypatch.setattr(last_known, "_SAID_AGAIN_NS", 0)
+    folder, recorder = DataFolder(tmp_path), Recorder(tmp_path, clock)
+    with ExitStack() as closing:
+        closing.callback(recorder.close)
+        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        store_what_happened(disk)
+        hangs = True
+        disk.store.hangs = lambda: hangs
+        consoles = Consoles()
+        known = LastKnown(disk.roster, disk.records, clock, consoles)
+        known.tell(0.1)
+        with pytest.raises(StoreError):
+            known.request_snapshot(consoles.reset)
+        assert consoles.shown == []
+        hangs = False
+        known.tell(0.2)
+    (shown,) = consoles.shown
+    assert shown.health.reading == 0.2
 
 
 def look(address: str) -> None:

@@ -13,6 +13,7 @@ import pytest
 from base_station.api.hub import QUEUE, Client, Hub
 from base_station.api.wire import Delta, HealthView, Snapshot
 from base_station.live.sinks import Trails
+from shared.errors import StoreError
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
@@ -76,6 +77,23 @@ async def test_a_client_gets_a_snapshot_and_then_every_delta(hub: Hub, source: S
     first = await next_one(client)
     assert (first["type"], first["seq"]) == ("snapshot", 3)
     assert [(await next_one(client))["seq"] for _ in range(5)] == [4, 5, 6, 7, 8]
+
+
+async def test_a_source_that_cannot_be_asked_now_is_asked_by_the_next_console(
+    hub: Hub, source: Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> None:
+        raise StoreError("the disk does not answer")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(source, "request_snapshot", fail)
+        with pytest.raises(StoreError):
+            hub.join()
+    assert hub.watchers == 0
+    client = hub.join()
+    source.answer()
+    await settle()
+    assert (await next_one(client))["type"] == "snapshot"
 
 
 async def test_deltas_before_the_snapshot_are_left_out(hub: Hub, source: Source) -> None:
