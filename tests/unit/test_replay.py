@@ -208,11 +208,8 @@ def test_its_pace_is_the_speed_asked_for(session: ReplaySession, screen: Screen)
     assert len(screen.deltas) <= told + 3, "it rests"
 
 
-def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
-    tmp_path: Path, screen: Screen
-) -> None:
-    """Who goes to the next alarm sees it happen, however long the station reads to get there."""
-    clock = ManualClock()
+def slow_archive(clock: ManualClock, folder: Path) -> Archive:
+    """To read a record takes a tenth of a second."""
 
     def slowly(t_ns: int) -> Iterable[Record]:
         for record in walk_with_mayday():
@@ -220,8 +217,35 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
                 clock.advance(0.1)
                 yield record
 
+    return Archive(slowly, Checkpoints(folder), make_pipeline)
+
+
+def test_faster_than_this_machine_it_shows_what_it_comes_past(
+    tmp_path: Path, screen: Screen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("base_station.past.replay.DELTA_S", 0.001)
+    monkeypatch.setattr("base_station.past.playback.BURST", 1)
+    clock = ManualClock()
     window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
-    slow = Archive(slowly, Checkpoints(tmp_path), make_pipeline)
+    session = ReplaySession(
+        slow_archive(clock, tmp_path), window, 1000.0, screen, lambda _: None, clock
+    )
+    until(lambda: len(screen.resets) == 1)
+    clock.advance(1.0)
+    until(lambda: not session.view().playing)
+    session.close()
+    shown_ms = [delta.replay.at_ms for delta in screen.deltas if delta.replay]
+    assert shown_ms == sorted(shown_ms)
+    assert len(set(shown_ms)) >= DURATION_S
+
+
+def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
+    tmp_path: Path, screen: Screen
+) -> None:
+    """Who goes to the next alarm sees it happen, however long the station reads to get there."""
+    clock = ManualClock()
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    slow = slow_archive(clock, tmp_path)
     session = ReplaySession(slow, window, 1.0, screen, lambda _: None, clock)
     until(lambda: len(screen.resets) == 1)
     session.seek(START_NS + MAYDAY_S * NS_PER_S)
