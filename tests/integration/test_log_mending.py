@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 from pathlib import Path
 from threading import Event
 
@@ -52,9 +52,11 @@ class Pair:
         closing_all.callback(server.close)
         self.check = LogCheck("It is mended.")
         self.mended_ns: list[int] = []
+        self.other: str | None = "b"
         self.mending = Mending(
-            router.attach_station(), self.mine, self.check, lambda: "b", self.mended_ns.append
-        )
+            router.attach_station(), self.mine, self.check, lambda: self.other,
+            self.mended_ns.append,
+        )  # fmt: skip
 
     def write(self, mine: list[LogRecord], theirs: list[LogRecord]) -> None:
         for recorder, all_of in ((self.mine, mine), (self.theirs, theirs)):
@@ -146,8 +148,11 @@ def test_of_two_that_follow_on_each_other_every_event_is_there_once(pair: Pair) 
     assert pair.check.problems() == ()
 
 
-def test_nothing_is_done_while_the_other_one_is_away(tmp_path: Path) -> None:
-    with closing(Recorder(tmp_path, SystemClock(), POLICY)) as recorder:
-        bus, check, mended_ns = MemoryRouter().attach_station(), LogCheck(""), list[int]()
-        Mending(bus, recorder, check, lambda: None, mended_ns.append).look(Event())
-        assert mended_ns == []
+def test_nothing_is_done_while_the_other_one_is_away(pair: Pair) -> None:
+    pair.write(records(), records())
+    pair.damage(1, 0.3)
+    pair.look_at_all()
+    pair.other = None
+    before = pair.events()
+    pair.mending.look(Event())
+    assert (pair.events(), pair.mended_ns) == (before, [])

@@ -10,6 +10,7 @@ from shared.mcap_log import (
     SegmentReader,
     SegmentWriter,
     recover_log,
+    rewrite_segment,
     segment_paths,
 )
 from tests.small_log import KEY, T0_NS, on_disk
@@ -60,6 +61,21 @@ def test_a_recovery_that_was_cut_off_goes_on_with_the_last_of_several_originals(
     [recovery] = recover_log(tmp_path)
     assert recovery.torn_path.read_bytes() == originals[-1]
     assert on_disk(tmp_path) == [b"\0", b"\1", b"\2"]
+
+
+def test_what_was_begun_of_a_segment_that_is_there_does_not_bring_back_what_was_torn(
+    tmp_path: Path,
+) -> None:
+    """Forgetting was cut off: what was mended before, and perhaps forgotten in, stays."""
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"1", urgent=True)
+    recover_log(tmp_path)
+    [path] = segment_paths(tmp_path)
+    assert rewrite_segment(path, lambda record: [(*record[:2], b"(forgotten)")]) == 1
+    path.with_name(path.name + ".recovering").write_bytes(b"half made")
+    assert recover_log(tmp_path) == []
+    assert on_disk(tmp_path) == [b"(forgotten)"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == [path.name, path.name + ".torn"]
 
 
 def test_a_segment_that_was_moved_away_does_not_come_back(tmp_path: Path) -> None:

@@ -56,6 +56,20 @@ def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     assert said == [[b"once"], [b"twice"]]
 
 
+def test_a_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there(
+    tmp_path: Path,
+) -> None:
+    records = events(6)  # of which the last two have one time
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), records)
+    recorder.close()
+    set_aside(DataFolder(tmp_path), Place(T0 + 4, 1))
+    kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+    assert kept == records[:5]
+    (name,) = parts(tmp_path)
+    assert list(read_part(tmp_path, name)) == records[5:]
+
+
 def test_what_was_set_aside_does_not_come_back_with_the_next_start(tmp_path: Path) -> None:
     """It was killed, and what it mended of its log has the torn file beside it."""
     records = [*events(9), (T0 + 10**12, TICKED, b"apart"), (T0 + 10**12 + 1, TICKED, b"apart too")]

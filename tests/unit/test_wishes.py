@@ -63,6 +63,17 @@ def test_how_things_stand_is_told_while_the_disk_hangs(
     assert [(one.name, one.share) for one in again.all()] == [("first", 1.0), ("second", 0.0)]
 
 
+def test_of_those_that_are_over_the_last_are_told_and_all_that_are_not(tmp_path: Path) -> None:
+    wishes = Wishes(tmp_path / "wishes.json", Wish)
+    for number in range(50):
+        wished(wishes, f"wish {number}")
+        *_, last = wishes.under_way()
+        if number != 3:
+            wishes.note(last, save=False, state=State(is_over=True))
+    over = [f"wish {number}" for number in range(30, 50)]
+    assert [one.name for one in wishes.all()] == [*over[:-1], "wish 3", over[-1]]
+
+
 def test_what_the_disk_does_not_take_is_not_wished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
