@@ -21,7 +21,7 @@ from base_station.db.store import Store
 from base_station.exporters.incident import incident_tracks
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
-from base_station.past.hindsight import Hindsight
+from base_station.past.hindsight import LATELY_NS, Hindsight
 from base_station.past.playback import Archive, Record
 from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
@@ -133,6 +133,35 @@ def test_what_closed_lately_is_smoothed_without_being_asked(
     assert made is not None
     assert made[0] == SMOOTHERS[0].name
     assert past.kept.report("i1") is not None
+
+
+def test_what_closed_long_ago_waits_until_it_is_asked_for(past: Past, store: Store) -> None:
+    assert past.incident.closed_ns is not None
+    clock = ManualClock(utc_ns=past.incident.closed_ns + LATELY_NS)
+    kept = SmoothedTracks(store)
+    hindsight = Hindsight(past.archive, SMOOTHERS[0], kept, clock)
+    hindsight.catch_up([past.incident], past.records.tracks_of)
+    assert not kept.has("i1")
+    assert hindsight.smoothed(past.incident).is_kept
+
+
+def test_an_incident_that_cannot_be_looked_back_on_is_given_up_and_the_next_is_not(
+    past: Past, store: Store, caplog: pytest.LogCaptureFixture
+) -> None:
+    hindsight = Hindsight(past.archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock(utc_ns=0))
+    asked: list[str] = []
+
+    def shown(incident: Incident) -> dict[str, Sequence[TrackSample]]:
+        asked.append(incident.incident_id)
+        raise ZeroDivisionError("a mistake")
+
+    incidents = [
+        Incident(incident_id=one, name=one, opened_ns=1, closed_ns=2) for one in ("i1", "i2")
+    ]
+    for _ in range(4):
+        hindsight.catch_up(incidents, shown)
+    assert asked == ["i1", "i2"]
+    assert "the trails of i1 cannot be smoothed" in caplog.text
 
 
 class FullStore(SmoothedTracks):
