@@ -51,8 +51,8 @@ class Console:
         trail = self.trails.setdefault(unit_id, [])
         if trail:
             passed_ms = point.t_ms - trail[-1].t_ms
-            walked = passed_ms >= STEP_MS and apart_m(point, trail[-1]) >= STEP_M
-            if not walked and passed_ms < REST_MS:
+            moved = apart_m(point, trail[-1]) >= STEP_M or point.floor != trail[-1].floor
+            if passed_ms < (STEP_MS if moved else REST_MS):
                 return
         trail.append(point)
 

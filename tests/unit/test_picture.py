@@ -4,22 +4,126 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.events import TrailFilled
+from base_station.api.wire import Delta, ReplayView
+from base_station.events import CommandTouched, PinsTouched, TrailFilled, UnitTouched
 from base_station.live.picture import FILLED_A_TURN, Picture
-from base_station.live_state import UnitState
+from base_station.live_state import Incident, UnitState
+from base_station.pipeline import StationPipeline
 from base_station.trail import TrailStep
 from shared.clock import NS_PER_S
+from shared.messages import STATION_ID, AlarmChange, AlarmState, Header
 from tests.live_station import Screen, make_pipeline
 
 UNITS = [f"FF-{i:02}" for i in range(2 * FILLED_A_TURN + 3)]
+REPLAY = ReplayView("i1", 0, 9000, 1000, 1.0, playing=True)
 
 
 def walked(screen: Screen) -> Picture:
-    pipeline = make_pipeline()
+    return walked_in(make_pipeline(), screen)
+
+
+def walked_in(pipeline: StationPipeline, screen: Screen) -> Picture:
     for unit_id in UNITS:
         unit = pipeline.state.units[unit_id] = UnitState(unit_id)
         unit.trail.append(TrailStep(NS_PER_S, 1.0, 2.0, 0))
     return Picture(pipeline, screen, lambda _: None)
+
+
+def alarm_of(unit_id: str) -> AlarmChange:
+    header = Header(STATION_ID, 1, 1, 0, 0)
+    return AlarmChange(
+        header, "a1", "mayday", unit_id, 1, AlarmState.RAISED, "alarm", "MAYDAY", "", NS_PER_S
+    )
+
+
+def told(screen: Screen) -> list[Delta]:
+    """What was told since this was asked last."""
+    deltas = screen.deltas.copy()
+    screen.deltas.clear()
+    return deltas
+
+
+def units_of(deltas: list[Delta]) -> list[list[str]]:
+    return [[unit.unit_id for unit in delta.units] for delta in deltas]
+
+
+def test_a_change_is_told_once_and_the_station_s_health_when_asked_for() -> None:
+    screen = Screen()
+    picture = walked(screen)
+    picture.flush()
+    assert told(screen) == []
+    picture.note([UnitTouched("FF-01"), UnitTouched("FF-01")])
+    for health in (False, False, True):
+        picture.flush(health)
+    unit, health_only = told(screen)
+    assert units_of([unit, health_only]) == [["FF-01"], []]
+    assert (unit.health is None, health_only.health is None) == (True, False)
+    assert (unit.pins, unit.beacons, unit.replay) == (None, None, None)
+    assert [unit.seq, health_only.seq] == [1, 2]
+
+
+def test_what_may_wait_is_told_with_the_health_or_when_the_unit_is_touched() -> None:
+    screen = Screen()
+    picture = walked(screen)
+    picture.note([UnitTouched("FF-01", soon=False), UnitTouched("FF-02", soon=False)])
+    picture.flush()
+    assert told(screen) == []
+    picture.note([UnitTouched("FF-02")])
+    for health in (False, True, True):
+        picture.flush(health)
+    assert units_of(told(screen)) == [["FF-02"], ["FF-01"], []]
+    picture.note([UnitTouched("FF-03", soon=False)])
+    picture.flush(replay=REPLAY)
+    (shown,) = told(screen)
+    assert (units_of([shown]), shown.replay) == ([["FF-03"]], REPLAY)
+
+
+def test_alarms_commands_and_pins_are_urgent_until_they_are_told() -> None:
+    for output in (alarm_of("FF-04"), alarm_of(""), CommandTouched("c1"), PinsTouched(())):
+        screen = Screen()
+        picture = walked(screen)
+        urgent = [picture.is_urgent]
+        picture.note([output])
+        urgent.append(picture.is_urgent)
+        picture.flush()
+        picture.flush()
+        urgent.append(picture.is_urgent)
+        assert urgent == [False, True, False]
+        (shown,) = told(screen)
+        raised = isinstance(output, AlarmChange)
+        assert [one.alarm_id for one in shown.alarms] == (["a1"] if raised else [])
+        unit_id = output.unit_id if isinstance(output, AlarmChange) else ""
+        assert units_of([shown]) == [[unit_id] if unit_id else []]
+        pins = () if isinstance(output, PinsTouched) else None
+        assert (shown.pins, shown.beacons) == (pins, pins)
+
+
+def test_another_incident_is_told_to_all_anew_and_what_was_to_be_told_with_it() -> None:
+    screen, pipeline = Screen(), make_pipeline()
+    picture = walked_in(pipeline, screen)
+    pipeline.state.incident = Incident("i1", "Mill Lane", NS_PER_S)
+    later, touched = UnitTouched("FF-01", soon=False), UnitTouched("FF-02")
+    picture.note([later, touched, alarm_of("FF-03"), CommandTouched("c1"), PinsTouched(())])
+    picture.flush()
+    picture.flush(health=True)
+    (whole,) = screen.resets
+    assert whole.incident is not None
+    (after,) = told(screen)
+    assert units_of([after]) == [[]]
+    assert (after.alarms, after.pins, after.seq) == ((), None, whole.seq + 1)
+
+
+def test_who_joins_goes_on_with_what_is_told_next() -> None:
+    screen = Screen()
+    picture = walked(screen)
+    picture.note([UnitTouched("FF-01"), PinsTouched(())])
+    shown, _ = picture.whole()
+    picture.note([UnitTouched("FF-02")])
+    picture.flush()
+    before, after = told(screen)
+    assert (before.seq, after.seq) == (shown.seq, shown.seq + 1)
+    assert units_of([before, after]) == [["FF-01"], ["FF-02"]]
+    assert after.pins is None
 
 
 def test_who_joins_gets_every_trail_beside_the_snapshot() -> None:
@@ -39,9 +143,9 @@ def test_trails_that_were_filled_in_are_told_some_at_a_time() -> None:
     assert not screen.deltas, "once a second will do"
     for health in (True, False, False, False):
         picture.flush(health)
-    told = [list(delta.trails) for delta in screen.deltas]
-    assert [len(trails) for trails in told] == [FILLED_A_TURN, FILLED_A_TURN, 3]
-    assert sorted(one for trails in told for one in trails) == UNITS
+    filled = [list(delta.trails) for delta in screen.deltas]
+    assert [len(trails) for trails in filled] == [FILLED_A_TURN, FILLED_A_TURN, 3]
+    assert sorted(one for trails in filled for one in trails) == UNITS
 
 
 def test_a_snapshot_to_all_takes_the_place_of_what_was_not_told_yet() -> None:

@@ -40,7 +40,14 @@ describe("a check-in", () => {
     [0, "overdue"],
     [-60_000, "overdue"],
   ])("that is due in %i ms is %s", (dueMs, state) => {
-    expect(parOf(duty(dueMs), INCIDENT, 0).state).toBe(state);
+    const nowMs = 5_000_000;
+    const par = parOf(duty(nowMs + dueMs), INCIDENT, nowMs);
+    expect(par).toEqual({ state, leftMs: dueMs });
+  });
+
+  it("is announced by nobody where no incident says how long before", () => {
+    expect(parOf(duty(1), null, 0).state).toBe("green");
+    expect(parOf(duty(0), null, 0).state).toBe("overdue");
   });
 });
 

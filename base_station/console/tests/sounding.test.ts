@@ -36,6 +36,10 @@ describe("what is to be heard", () => {
     ).toEqual(["immediate", null, "immediate", null]);
   });
 
+  it("is nothing for what is only said", () => {
+    expect(after({ alarms: [alarm("off", { priority: 3 })] })).toEqual([null]);
+  });
+
   it("is a second immediate alarm without waiting", () => {
     const both = [FALL, alarm("mayday")];
     expect(after({ alarms: [FALL] }, { alarms: both, nowMs: 100 })).toEqual([

@@ -24,6 +24,15 @@ describe("apply", () => {
     expect(state?.units.get("a")).toBe(before.units.get("a"));
   });
 
+  it("leaves everything as it was that a delta does not name", () => {
+    const before = after(
+      snapshot({ units: [unit("a")], alarms: [alarm("x")], commands: [command("c", { a: "sent" })] }),
+      { type: "trail", unit_id: "a", points: [[1000, 0, 0, 0]] },
+    );
+    const { state } = apply(before, delta(11));
+    expect(state).toEqual({ ...before, seq: 11, now_ms: 2_000 });
+  });
+
   it("adds a unit that appears", () => {
     const state = after(snapshot(), delta(11, { units: [unit("new")] }));
     expect(state.units.has("new")).toBe(true);
@@ -106,6 +115,19 @@ describe("trails", () => {
     expect(trail(state)).toEqual([1000, 2000]);
   });
 
+  it("grow half a metre at a time in any direction", () => {
+    const to = (seq: number, t_ms: number, north_m: number, east_m: number) =>
+      delta(seq, { units: [unit("a", { position: position({ t_ms, north_m, east_m }) })] });
+    const state = after(
+      snapshot(),
+      to(11, 1000, -3, -4),
+      to(12, 2000, -3.3, -4.3), // 0.42 m
+      to(13, 3000, -3.5, -4),
+      to(14, 4000, -3.5, -3.4),
+    );
+    expect(trail(state)).toEqual([1000, 3000, 4000]);
+  });
+
   it("say seldom that somebody stands still", () => {
     const state = after(snapshot(), walk(11, 1000, 0), walk(12, 9000, 0), walk(13, 16000, 0));
     expect(trail(state)).toEqual([1000, 16000]);
@@ -155,6 +177,7 @@ describe("trails", () => {
     const state = after(snapshot(), past("a", [[1000, 0, 0, 0]]));
     expect(trail(state)).toEqual([1000]);
     expect(state.seq).toBe(10);
+    expect(apply(state, past("a", [])).missed).toBe(false);
   });
 
   it("from before another snapshot are gone with it", () => {

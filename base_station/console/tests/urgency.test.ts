@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { openAlarms } from "../src/live/alarms";
-import { arrange, isJump, nameAmong, urgencyOf, type Place } from "../src/live/urgency";
+import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
 
@@ -9,6 +9,20 @@ const ALARMS: ReadonlyMap<string, AlarmView> = new Map([
   ["two", alarm("two", { priority: 2 })],
   ["three", alarm("three", { priority: 3 })],
 ]);
+
+describe("samePlaces", () => {
+  const ana: Place = { unitId: "a", name: "Ana", urgency: "normal", calmSinceMs: null };
+  const bo: Place = { ...ana, unitId: "b", name: "Bo" };
+
+  it("is so only while nothing moves and nobody gets better or worse", () => {
+    expect(samePlaces([ana, bo], [{ ...ana }, { ...bo }])).toBe(true);
+    expect(samePlaces([ana, bo], [bo, ana])).toBe(false);
+    expect(samePlaces([ana, bo], [ana])).toBe(false);
+    expect(samePlaces([ana], [ana, bo])).toBe(false);
+    expect(samePlaces([ana, bo], [ana, { ...bo, urgency: "soon" }])).toBe(false);
+    expect(samePlaces([ana, bo], [ana, { ...bo, calmSinceMs: 5 }])).toBe(false);
+  });
+});
 
 describe("nameAmong", () => {
   it("tells namesakes apart", () => {
