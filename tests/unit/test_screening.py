@@ -45,7 +45,7 @@ def fix(**changes: object) -> GpsFix:
         ({"lat_deg": math.nan}, "no numbers"),
         ({"height_m": math.inf}, "no numbers"),
         ({"horizontal_std_m": 0.0}, "accuracy"),
-        ({"horizontal_std_m": 5000.0}, "accuracy"),
+        ({"horizontal_std_m": 100.1}, "accuracy"),
         ({"horizontal_std_m": math.nan}, "accuracy"),
     ],
 )
@@ -53,6 +53,43 @@ def test_a_fix_that_tells_against_itself(changes: dict[str, object], reason: str
     verdict = screen(fix(**changes))
     assert not verdict.accepted
     assert reason in verdict.reason
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"lat_deg": 51.48, "lon_deg": 0.0},
+        {"lat_deg": 0.0, "lon_deg": 9.45},
+        {"lat_deg": 90.0, "lon_deg": -180.0},
+        {"fix_type": FixType.TWO_D},
+        {"horizontal_std_m": None},
+        {"horizontal_std_m": 0.02},
+        {"horizontal_std_m": 100.0},
+    ],
+)
+def test_what_is_unusual_is_no_reason(changes: dict[str, object]) -> None:
+    assert screen(fix(**changes)) == FixVerdict(True)
+
+
+def test_who_is_fifty_kilometres_away_is_not_at_the_site() -> None:
+    for away_km, is_there in ((49.5, True), (50.5, False)):
+        seen = fix(lat_deg=ANCHOR.lat_deg + 1e3 * away_km / NORTH_M_PER_DEG)
+        assert isinstance(in_incident_frame(seen, ANCHOR), PlaceFix) is is_there
+
+
+@pytest.mark.parametrize(
+    ("changes", "may"),
+    [
+        ({"horizontal_std_m": 8.0}, True),
+        ({"horizontal_std_m": 8.1}, False),
+        ({"horizontal_std_m": None}, False),
+        ({"fix_type": FixType.TWO_D}, False),
+    ],
+)
+def test_only_a_good_fix_with_a_height_may_say_where_the_site_is(
+    changes: dict[str, object], may: bool
+) -> None:
+    assert may_anchor(fix(**changes)) is may
 
 
 def test_a_good_fix_passes_and_lies_where_it_should() -> None:
@@ -67,6 +104,7 @@ def test_a_good_fix_passes_and_lies_where_it_should() -> None:
 def test_the_wrong_hemisphere_is_too_far() -> None:
     verdict = in_incident_frame(fix(lat_deg=-52.0), ANCHOR)
     assert isinstance(verdict, FixVerdict)
+    assert not verdict.accepted
     assert "too far" in verdict.reason
 
 
