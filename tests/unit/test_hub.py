@@ -96,6 +96,22 @@ async def test_a_source_that_cannot_be_asked_now_is_asked_by_the_next_console(
     assert (await next_one(client))["type"] == "snapshot"
 
 
+async def test_a_console_that_came_before_the_source_is_shown_it(hub: Hub) -> None:
+    client = hub.join()
+    source = Source(hub)
+    hub.connect(asyncio.get_running_loop(), source)
+    source.answer()
+    await settle()
+    assert (await next_one(client))["type"] == "snapshot"
+
+
+async def test_how_the_station_is_is_known_where_nobody_looks(hub: Hub, source: Source) -> None:
+    assert hub.health is None
+    hub.delta(Delta(1, 1, health=HEALTH))
+    source.say()
+    assert hub.health is HEALTH
+
+
 async def test_deltas_before_the_snapshot_are_left_out(hub: Hub, source: Source) -> None:
     client = hub.join()
     source.say(4)  # before the source has looked at its requests
