@@ -120,7 +120,14 @@ def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
     assert (sorted(erasure.unit_ids), erasure.names) == (["A"], ("Ana",))
 
 
-@pytest.mark.parametrize(("actions", "said"), [([(20, OPEN)], "open"), ([], "knows no incident")])
+@pytest.mark.parametrize(
+    ("actions", "said"),
+    [
+        ([(20, OPEN)], "open"),
+        ([], "knows no incident"),
+        ([(10, OpenIncident("i0", "")), (20, CloseIncident("i0"))], "knows no incident"),
+    ],
+)
 def test_what_is_open_or_unknown_is_not_forgotten(
     actions: list[tuple[int, Action]], said: str
 ) -> None:

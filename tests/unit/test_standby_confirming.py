@@ -86,6 +86,31 @@ class TestConfirming:
         assert all(one.done() for one in told)
         copy.check()
 
+    @pytest.mark.parametrize(
+        ("has", "comes_after", "waits_s"),
+        [(4, 5, 0.1), (4, 10**9, 2.0), (5, 10**9, 0.0), (None, 10**9, 0.0)],
+        ids=["it comes", "it is slow", "it has all", "there is none"],
+    )
+    def test_a_station_that_ends_hands_over_what_the_standby_lacks(
+        self, copy: OtherCopy, clock: ManualClock, monkeypatch: pytest.MonkeyPatch,
+        has: int | None, comes_after: int, waits_s: float,
+    ) -> None:  # fmt: skip
+        looks = 0
+
+        def look_again(after_s: float) -> None:
+            nonlocal looks
+            looks += 1
+            clock.advance(after_s)
+            if looks == comes_after:
+                copy.note(self.place)
+
+        monkeypatch.setattr("base_station.standby.confirming.time.sleep", look_again)
+        if has is not None:
+            copy.note(Place(has, 1))
+        began_ns = clock.monotonic_ns()
+        copy.hand_over()
+        assert clock.monotonic_ns() - began_ns == pytest.approx(waits_s * 1e9, abs=3e7)
+
     def test_it_does_not_wait_for_long_and_that_is_said(
         self, copy: OtherCopy, clock: ManualClock
     ) -> None:
