@@ -7,6 +7,7 @@ import pytest
 
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.moved import Moved
+from base_station.fusion.path.points import FIX_ROW
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
 from tests.walked_path import at, fill, walked
@@ -38,6 +39,8 @@ def test_late_ones_that_come_between_live_ones_are_no_more_than_they_would_have_
         taken(history, 1000.0 + second)
         taken(history, float(second))
     assert history.fixes.packed
+    stored = len(history.fixes.packed.rows(FIX_ROW)) + len(history.fixes.loose) // FIX_ROW.itemsize
+    assert stored == pytest.approx(600, abs=10), "no more is kept than is of use"
     live = [1000.0 + second for second in range(0, 600, 2)]
     assert kept_s(history) == [*map(float, range(0, 600, 2)), *live]
 
@@ -84,6 +87,13 @@ def test_fixes_of_where_the_path_breaks_are_of_neither_end(boot_id: int, jumped:
         is_first = second == 50
         history.note(at(second, 0.0, boot_id), second * NS_PER_S, jumped and is_first)
     assert [t_s for t_s in kept_s(history) if 18.0 < t_s < 54.0] == [18.5, 50.5, 52.5]
+
+
+def test_one_fix_that_lies_elsewhere_is_enough_to_place_its_unit_again() -> None:
+    history = walked(20)
+    taken(history, 10.0)
+    assert history.move_fixes(0.0, 0.0, 2.0)
+    assert history.arrays().fix_m.tolist() == [[10.0, 2.0]]
 
 
 def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:

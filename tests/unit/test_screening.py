@@ -114,6 +114,13 @@ def test_a_receiver_is_never_believed_to_the_centimetre() -> None:
     assert place.horizontal_std_m >= 1.0
 
 
+@pytest.mark.parametrize(("vertical_std_m", "taken_m"), [(4.0, 4.0), (None, 5.0)])
+def test_a_fix_is_as_good_as_it_says(vertical_std_m: float | None, taken_m: float) -> None:
+    place = in_incident_frame(fix(horizontal_std_m=2.5, vertical_std_m=vertical_std_m), ANCHOR)
+    assert isinstance(place, PlaceFix)
+    assert (place.horizontal_std_m, place.vertical_std_m) == (2.5, taken_m)
+
+
 def test_an_accuracy_that_is_not_stated_is_a_poor_one() -> None:
     place = in_incident_frame(fix(horizontal_std_m=None, vertical_std_m=None), ANCHOR)
     assert isinstance(place, PlaceFix)
