@@ -230,6 +230,28 @@ def test_sound_that_the_browser_keeps_silent_is_not_said_to_be_on(stage: Stage) 
     expect(page.get_by_role("button", name="No sound yet")).to_be_visible()
 
 
+def test_a_photo_that_is_refused_adds_nobody_twice(stage: Stage, tmp_path: Path) -> None:
+    """Who adds a person and is told that the photo is none may press again."""
+    page, _ = stage.open(scenes.quiet())
+    added = {**scenes.PEOPLE[0], "person_id": "new"}
+    page.route(
+        "**/api/v1/people",
+        lambda route: (
+            route.fulfill(json=added) if route.request.method == "POST" else route.fallback()
+        ),
+    )
+    page.route(
+        "**/photo", lambda route: route.fulfill(status=422, json={"detail": "This is no picture."})
+    )
+    (tmp_path / "notes.txt").write_text("notes")
+    dialog = menu(page, "People")
+    dialog.get_by_label("Name", exact=True).fill("Astrid Lindqvist")
+    dialog.get_by_label("Photo", exact=True).set_input_files(tmp_path / "notes.txt")
+    dialog.get_by_role("button", name="Add person").click()
+    expect(dialog.get_by_role("alert").filter(has_text="no picture")).to_be_visible()
+    expect(dialog.get_by_label("Name", exact=True)).to_have_value("")
+
+
 def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     page.get_by_role("button", name="Pins 2").click()

@@ -96,7 +96,8 @@ function ChangeForm({ person, done }: RowProps) {
       class="row"
       onSubmit={(event) => {
         const { name = "", crew = "", role = "" } = fields(event);
-        void attempt(api.changePerson(person.person_id, { name, crew, role })).then(done);
+        const changed = api.changePerson(person.person_id, { name, crew, role });
+        void attempt(changed).then((person) => person && done());
       }}
     >
       <PersonFields person={person} />
@@ -135,9 +136,9 @@ async function add(form: HTMLFormElement): Promise<void> {
     crew: text("crew"),
     role: text("role"),
   });
+  form.reset(); // whatever becomes of the photo: pressed again, the form would add somebody twice
   const photo = data.get("photo");
   if (photo instanceof File && photo.size > 0) await api.setPhoto(person.person_id, photo);
-  form.reset();
 }
 
 function PersonForm({ done }: { done: () => void }) {
