@@ -26,9 +26,10 @@ from base_station.past.playback import Archive, Record
 from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
 from shared.errors import StoreError
-from shared.messages.station import CloseIncident
+from shared.messages.station import CloseIncident, OpenIncident, SetStart
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
+from tests.station_script import START_NS, Script
 
 
 class Past:
@@ -223,6 +224,42 @@ def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
     smoothed = past.hindsight.smoothed(past.incident).tracks["FF-01"]
     assert (raw[0].north_m, raw[0].east_m) == (smoothed[0].north_m, smoothed[0].east_m)
     assert past.mean_off_m(raw) > 2.0 * past.mean_off_m(smoothed)
+
+
+def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Path) -> None:
+    """Each of its runs as the unit had it, from where that run is known to have begun."""
+    script = Script()
+    script.register("FF-01")
+    script.act(SetStart("FF-01", 5.0, 7.0, 0.0, 1.0, 0.5, 0.1))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for boot_id in (7, 8):
+        script.boot_ids["FF-01"] = boot_id
+        for second in range(41):
+            script.now_s += 1.0
+            script.position("FF-01", 1.0 * second, 0.0)
+    script.act(CloseIncident("i1"))
+    archive = Archive(
+        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
+        Checkpoints(tmp_path / "checkpoints"),
+        make_pipeline,
+    )
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    incident = Incident(
+        incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
+    )
+    raw = hindsight.raw(incident)["FF-01"]
+    smoothed = hindsight.smoothed(incident).tracks["FF-01"]
+    assert [one.t_ns for one in raw] == [one.t_ns for one in smoothed]
+    again = next(row for row, one in enumerate(raw) if one.t_ns >= START_NS + 42 * 10**9)
+    for begin, end in ((0, again - 1), (again, -1)):
+        assert (raw[begin].north_m, raw[begin].east_m) == pytest.approx(
+            (smoothed[begin].north_m, smoothed[begin].east_m)
+        )
+        went_m = raw[end].north_m - raw[begin].north_m, raw[end].east_m - raw[begin].east_m
+        assert math.hypot(*went_m) == pytest.approx(40.0, abs=0.02)
+        assert raw[end].heading_rad == pytest.approx(math.atan2(went_m[1], went_m[0]) % math.tau)
+    assert raw[0].heading_rad == pytest.approx(1.0, abs=0.05), "as its start says"
+    assert {one.quality for one in smoothed[:again]} == {"good"}
 
 
 def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(past: Past) -> None:
