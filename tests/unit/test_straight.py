@@ -57,3 +57,20 @@ def test_ten_centimetres_beside_is_another_way() -> None:
             assert straight.leads_to(2.0 * north_m, 2.0 * east_m + beside, 4.0)
             assert not straight.leads_to(2.0 * north_m + 1.1 * beside, 2.0 * east_m, 4.0)
             assert not straight.leads_to(2.0 * north_m, 2.0 * east_m + 1.1 * beside, 4.0)
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)])
+@pytest.mark.parametrize(
+    ("then_m", "led_mps", "misled_mps"),
+    [(1.0, 0.95, 0.85), (1.2, 1.05, 1.15)],
+    ids=["slower", "faster"],
+)
+def test_what_one_place_ruled_out_no_later_one_allows(
+    way: tuple[float, float], then_m: float, led_mps: float, misled_mps: float
+) -> None:
+    north, east = way
+    straight = Straight()
+    straight.pass_by(north, east, 1.0)
+    straight.pass_by(then_m * north, then_m * east, 1.1)
+    assert straight.leads_to(2.0 * led_mps * north, 2.0 * led_mps * east, 2.0)
+    assert not straight.leads_to(2.0 * misled_mps * north, 2.0 * misled_mps * east, 2.0)
