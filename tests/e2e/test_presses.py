@@ -77,6 +77,15 @@ def test_two_presses_acknowledge_one_alarm(stage: Stage) -> None:
     assert station.changes() == [first, f"/alarms/{quote(still.alarm_id)}/acknowledge"]
 
 
+def test_who_acknowledges_by_key_goes_on_from_that_alarm(stage: Stage) -> None:
+    """The button is gone; without the focus the way begins at the top of the page again."""
+    page, station = stage.open(scenes.bad_minute())
+    fall = scenes.bad_minute().alarms[0]
+    page.get_by_role("button", name=f"Acknowledge: {fall.text}").press("Enter")
+    station.change(alarms=(scenes.taken(fall),))
+    expect(page.get_by_role("button", name=f"Resolve: {fall.text}")).to_be_focused()
+
+
 def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     """A question that was answered does not stand there for the next press."""
     page, station = stage.open(scenes.quiet())

@@ -1,3 +1,4 @@
+import { useRef } from "preact/hooks";
 import { attempt, isPast, mayAct } from "../sessions";
 import { find } from "../view";
 import * as api from "../api";
@@ -68,12 +69,14 @@ function stateOf(alarm: AlarmView, hasButton: boolean): string {
 /** To resolve asks first: it stands where the button to acknowledge was a moment ago. */
 function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
   const steady = useSteady(place);
+  const pressed = useRef(false);
   if (alarm.state === "acknowledged") {
     return (
       <ConfirmButton
         label="Resolve"
         about={alarm.text}
         question="Is it over?"
+        focused={pressed.current}
         onConfirm={steady(() => void attempt(api.resolve(alarm.alarm_id)))}
       />
     );
@@ -83,7 +86,10 @@ function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
       type="button"
       class="act"
       aria-label={`Acknowledge: ${alarm.text}`}
-      onClick={steady(() => void attempt(api.acknowledge(alarm.alarm_id)))}
+      onClick={steady(() => {
+        pressed.current = true;
+        void attempt(api.acknowledge(alarm.alarm_id));
+      })}
     >
       Acknowledge
     </button>

@@ -6,16 +6,18 @@ interface Props {
   label: string;
   about?: string; // what it would be done to, where the label alone could be any of several
   question: string;
+  focused?: boolean; // to begin with: it comes in place of what was pressed
   onConfirm: (press: MouseEvent) => void;
 }
 
 /** A button for what cannot be taken back: the first press only asks. */
-export function ConfirmButton({ label, about = "", question, onConfirm }: Props) {
+export function ConfirmButton({ label, about = "", question, focused = false, onConfirm }: Props) {
   const state = useSignal<"at rest" | "asked" | "answered">("at rest");
   const askedMs = useRef(0);
   const next = useRef<HTMLButtonElement>(null);
   useEffect(() => {
-    if (state.value !== "at rest") next.current?.focus();
+    const lost = focused && document.activeElement === document.body;
+    if (lost || state.value !== "at rest") next.current?.focus();
   }, [state.value]);
   if (state.value !== "asked") {
     const spoken = about === "" ? {} : { "aria-label": `${label}: ${about}` };
