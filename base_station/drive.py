@@ -184,7 +184,8 @@ class StationDrive:
             spent_ns = time.thread_time_ns() - before_ns
             due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
         while self._asked:
-            self._asked.popleft()(*self._picture.whole())
+            whole = self._picture.whole()  # who asked is asked about again should it fail
+            self._asked.popleft()(*whole)
         return bool(records)
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:

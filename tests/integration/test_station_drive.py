@@ -53,6 +53,24 @@ def test_a_message_becomes_a_log_record_a_row_and_a_card(
     assert FUSED.key(STATION_ID) in keys
 
 
+def test_who_asked_for_a_picture_that_could_not_be_made_gets_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The hub asks once and waits: forgotten, no console would be shown anything again."""
+    with LiveStation(tmp_path) as station:
+        whole, tried = station.drive._picture.whole, []
+
+        def fail_once() -> object:
+            tried.append(1)
+            if len(tried) == 1:
+                raise StoreError("the database is locked")
+            return whole()
+
+        monkeypatch.setattr(station.drive._picture, "whole", fail_once)
+        assert station.snapshot().units == ()
+    assert len(tried) == 2
+
+
 def test_what_came_live_while_it_was_fetched_is_in_the_log_once(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))

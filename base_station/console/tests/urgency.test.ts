@@ -11,7 +11,7 @@ const ALARMS: ReadonlyMap<string, AlarmView> = new Map([
 ]);
 
 describe("samePlaces", () => {
-  const ana: Place = { unitId: "a", name: "Ana", urgency: "normal", calmSinceMs: null };
+  const ana: Place = { unitId: "a", name: "Ana", urgency: "normal", rank: 5, calmSinceMs: null };
   const bo: Place = { ...ana, unitId: "b", name: "Bo" };
 
   it("is so only while nothing moves and nobody gets better or worse", () => {
@@ -20,6 +20,7 @@ describe("samePlaces", () => {
     expect(samePlaces([ana, bo], [ana])).toBe(false);
     expect(samePlaces([ana], [ana, bo])).toBe(false);
     expect(samePlaces([ana, bo], [ana, { ...bo, urgency: "soon" }])).toBe(false);
+    expect(samePlaces([ana, bo], [ana, { ...bo, rank: 4 }])).toBe(false);
     expect(samePlaces([ana, bo], [ana, { ...bo, calmSinceMs: 5 }])).toBe(false);
   });
 });
@@ -55,6 +56,23 @@ describe("arrange", () => {
 
   it("goes by name where nobody is in need", () => {
     expect(order(arrange([], calm, ALARMS, 0, false))).toBe("abc");
+  });
+
+  it("puts a mayday before a fall, and both before those who are only not heard from", () => {
+    const alarms = new Map([
+      ["roll", alarm("roll", { priority: 1, rule: "missed-check-in" })],
+      ["fall", alarm("fall", { priority: 1, rule: "fall" })],
+      ["mayday", alarm("mayday", { priority: 1, rule: "mayday" })],
+    ]);
+    const all = [
+      unit("a", { alarms: ["roll"] }),
+      unit("b", { alarms: ["battery", "roll"] }),
+      unit("c", { alarms: ["fall", "roll"] }),
+      unit("d", { alarms: ["mayday"] }),
+      unit("e", { status: { ...STATUS, mayday: true } }),
+    ];
+    alarms.set("battery", alarm("battery", { priority: 2 }));
+    expect(order(arrange([], all, alarms, 0, false))).toBe("decab");
   });
 
   it("puts whoever gets worse first at once, even while somebody points at the list", () => {

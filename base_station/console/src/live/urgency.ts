@@ -3,7 +3,9 @@ import type { AlarmView, UnitView } from "../wire";
 
 export type Urgency = "immediate" | "soon" | "watch" | "normal";
 
-const RANK: Record<Urgency, number> = { immediate: 0, soon: 1, watch: 2, normal: 3 };
+const RANK: Record<Urgency, number> = { immediate: 2, soon: 3, watch: 4, normal: 5 };
+const MAYDAY = 0;
+const IN_NEED = 1; // by more than a roll call that nobody has answered yet
 const CALMING_MS = 10_000;
 
 /** From the unit's open alarms, its state, and whether it can be heard. */
@@ -13,6 +15,16 @@ export function urgencyOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>
   if (priorities.includes(2) || unit.link === "lost") return "soon";
   const watched = priorities.length > 0 || unit.link === "stale" || unit.heat_level !== "";
   return watched ? "watch" : "normal";
+}
+
+/** Where that puts the unit in the list: a mayday first, and whoever is only not heard from last. */
+function rankOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): number {
+  const urgency = urgencyOf(unit, alarms);
+  if (urgency !== "immediate") return RANK[urgency];
+  const open = unit.alarms.map((id) => alarms.get(id));
+  if (unit.status?.mayday || open.some((one) => one?.rule === "mayday")) return MAYDAY;
+  const inNeed = open.some((one) => (one?.priority ?? 1) === 1 && one?.rule !== "missed-check-in");
+  return inNeed ? IN_NEED : RANK.immediate;
 }
 
 export function displayName(unit: UnitView): string {
@@ -31,6 +43,7 @@ export interface Place {
   unitId: string;
   name: string;
   urgency: Urgency;
+  rank: number; // the lower, the further up
   calmSinceMs: number | null;
 }
 
@@ -52,29 +65,27 @@ export function arrange(
   held: boolean,
 ): Place[] {
   const known = new Map(before.map((place) => [place.unitId, place]));
-  const places = units.map((unit) =>
-    placeOf(unit, urgencyOf(unit, alarms), known.get(unit.unit_id), nowMs, held),
-  );
+  const places = units.map((unit) => placeOf(unit, alarms, known.get(unit.unit_id), nowMs, held));
   return places.sort(
     (a, b) =>
-      RANK[a.urgency] - RANK[b.urgency] ||
-      a.name.localeCompare(b.name) ||
-      (a.unitId < b.unitId ? -1 : 1),
+      a.rank - b.rank || a.name.localeCompare(b.name) || (a.unitId < b.unitId ? -1 : 1),
   );
 }
 
 function placeOf(
   unit: UnitView,
-  urgency: Urgency,
+  alarms: ReadonlyMap<string, AlarmView>,
   before: Place | undefined,
   nowMs: number,
   held: boolean,
 ): Place {
-  const place = { unitId: unit.unit_id, name: displayName(unit), urgency, calmSinceMs: null };
-  if (before === undefined || RANK[urgency] <= RANK[before.urgency]) return place;
+  const urgency = urgencyOf(unit, alarms);
+  const rank = rankOf(unit, alarms);
+  const place = { unitId: unit.unit_id, name: displayName(unit), urgency, rank, calmSinceMs: null };
+  if (before === undefined || rank <= before.rank) return place;
   const calmSinceMs = before.calmSinceMs ?? nowMs;
   if (!held && nowMs - calmSinceMs >= CALMING_MS) return place;
-  return { ...place, urgency: before.urgency, calmSinceMs };
+  return { ...place, urgency: before.urgency, rank: before.rank, calmSinceMs };
 }
 
 export function samePlaces(a: readonly Place[], b: readonly Place[]): boolean {
@@ -82,5 +93,5 @@ export function samePlaces(a: readonly Place[], b: readonly Place[]): boolean {
 }
 
 function samePlace(a: Place, b: Place | undefined): boolean {
-  return a.unitId === b?.unitId && a.urgency === b.urgency && a.calmSinceMs === b.calmSinceMs;
+  return a.unitId === b?.unitId && a.urgency === b.urgency && a.rank === b.rank && a.calmSinceMs === b.calmSinceMs;
 }
