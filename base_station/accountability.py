@@ -13,13 +13,13 @@ from collections.abc import Iterator
 import msgspec
 
 from base_station.commands.state import SentCommand
-from base_station.limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.live_state import (
     Duty,
     Incident,
     StationState,
     UnitState,
 )
+from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import CommandKind

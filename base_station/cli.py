@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from base_station import collector
+from base_station import interpreter
 from base_station.recordings.command import fetch_recording
 from base_station.user_commands import users
 from shared.out_file import writable
@@ -58,7 +58,7 @@ def serve(
     }
     settings = _settle(config, flags)
     # Imported where needed: it takes its time, and a wrong setting is said before.
-    with collector.held():
+    with interpreter.held():
         from base_station.app.live import run_station  # noqa: PLC0415
 
     run_station(settings, _announce)
@@ -76,7 +76,7 @@ def replay(
     """Show a past incident in a console of its own; the folder is only read."""
     flags = {"data": data, "http.listen": http, "insecure": insecure or None}
     settings = _settle(config, flags)
-    with collector.held():
+    with interpreter.held():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
     run_replay_station(settings, incident, speed, _announce)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-from base_station.limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError

@@ -1,6 +1,6 @@
 """The thread that runs the live station: feed, log, pipeline, and everybody who wants to know.
 
-What arrives is written to the log first and stepped second (``keeping``).  Time (ticks) and
+What arrives is written to the log first and stepped second (``write_ahead``).  Time (ticks) and
 people's actions become log records like any other.  Nothing in here waits for the network, the
 store or a console.
 """
@@ -22,14 +22,14 @@ from base_station.commands import book as command_book
 from base_station.events import Refused
 from base_station.journals.backfill import Report
 from base_station.journals.unit_journal import Held
+from base_station.live.drive_ports import DrivePorts, Record
 from base_station.live.hearing import Heard, judge
-from base_station.live.keeping import Keeping
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.saving import Saving
 from base_station.live.self_watch import SelfWatch
 from base_station.live.sinks import ActionDone, Trails
-from base_station.live.surroundings import Record, Surroundings
+from base_station.live.write_ahead import WriteAhead
 from base_station.pipeline import StationPipeline
 from shared.channels import OPERATOR, TICK
 from shared.clock import NS_PER_S
@@ -65,14 +65,14 @@ class _Due:
 class StationDrive:
     """``OperatorGate`` and ``LiveSource`` of the live station."""
 
-    def __init__(self, pipeline: StationPipeline, surroundings: Surroundings) -> None:
+    def __init__(self, pipeline: StationPipeline, surroundings: DrivePorts) -> None:
         self._pipeline = pipeline
         self._around = surroundings
         self._stamper = Stamper(STATION_ID, surroundings.boot_id, surroundings.clock)
         self._watch = SelfWatch()
         self._picture = Picture(pipeline, surroundings.live, surroundings.photo_urls)
         self._projector = Projector()
-        self._keeping = Keeping(
+        self._write_ahead = WriteAhead(
             pipeline, surroundings.log, self._picture, self._projector, self._watch
         )
         self._saving = Saving(surroundings.log, surroundings.checkpoints, self._watch)
@@ -119,7 +119,7 @@ class StationDrive:
     @property
     def place(self) -> tuple[int, int]:
         """In the log: the time of the last event, and how many events had that time."""
-        return self._keeping.place
+        return self._write_ahead.place
 
     def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
         """Step what a log says happened; gives the number of events stepped.
@@ -127,7 +127,7 @@ class StationDrive:
         ``after`` is the place (time, events at that time) of the checkpoint with which the
         pipeline was made.
         """
-        stepped = self._keeping.rebuild(self._saving_on_the_way(records), after)
+        stepped = self._write_ahead.rebuild(self._saving_on_the_way(records), after)
         self._settle()
         if stepped >= MANY_STEPPED:  # killed sooner than it saves, it would step more every time
             self._due.checkpoint_ns = 0
@@ -160,7 +160,7 @@ class StationDrive:
         for t_ns, key, payload in records:
             try:
                 if follows:
-                    self._keeping.keep_and_step(t_ns, key, payload)
+                    self._write_ahead.keep_and_step(t_ns, key, payload)
                 else:
                     self._hear(t_ns, key, payload)
             except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
@@ -190,7 +190,7 @@ class StationDrive:
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
-        event = self._keeping.event_of(t_ns, key, payload)
+        event = self._write_ahead.event_of(t_ns, key, payload)
         heard = judge(key, event, self._pipeline.state)
         if heard is Heard.FORGED:
             text = f"Somebody on the bus speaks as the station ({key}): not believed"
@@ -201,7 +201,7 @@ class StationDrive:
         elif heard is Heard.REPEATED:
             self._repeated += 1
         elif heard is not Heard.LEAVE:
-            self._keeping.keep(event, key, payload, urgent=heard is Heard.URGENT)
+            self._write_ahead.keep(event, key, payload, urgent=heard is Heard.URGENT)
 
     def _take_actions(self) -> None:
         for _ in range(len(self._inbox)):
@@ -221,7 +221,7 @@ class StationDrive:
         header = self._stamper.header()
         action_id = f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, by, action)
-        outputs = self._keeping.keep_and_step(
+        outputs = self._write_ahead.keep_and_step(
             header.t_utc_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
         )
         refused = next((output for output in outputs if isinstance(output, Refused)), None)
@@ -230,7 +230,7 @@ class StationDrive:
     def _tick(self) -> None:
         header = self._stamper.header()
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
-        self._keeping.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
+        self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
         self._report_problems()
         if not self._around.log.is_behind:  # what is reported may be acknowledged to its unit
             self._around.report(self._held())
@@ -248,7 +248,7 @@ class StationDrive:
 
     def _settle(self) -> None:
         """What is urgent reaches the disk before the store hears of it, or anybody else."""
-        self._keeping.settle()
+        self._write_ahead.settle()
         if self._projector.is_urgent:
             self._project()
 
@@ -264,7 +264,7 @@ class StationDrive:
 
     def _save_checkpoint(self) -> None:
         with self._watch.guarding("checkpoint"):
-            self._saving.begin(self._keeping.place, self._pipeline.checkpoint())
+            self._saving.begin(self._write_ahead.place, self._pipeline.checkpoint())
 
     def _report_problems(self) -> None:
         """A part that fails, or is well again, is an event like any other."""

@@ -16,7 +16,7 @@ import uvicorn
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from base_station import collector
+from base_station import interpreter
 from base_station.trouble import Trouble
 from shared.errors import ConfigError
 
@@ -142,7 +142,7 @@ async def serve_until_stopped(
 
     ``housekeeping`` is called now and then, in a thread; where it fails, the station goes on.
     """
-    collector.settle()
+    interpreter.settle()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, server.stop)

@@ -14,8 +14,8 @@ from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
 from base_station.fusion import FUSERS
 from base_station.journals.backfill import Report
+from base_station.live.drive_ports import DrivePorts
 from base_station.live.sinks import ActionDone, Projection, Trails
-from base_station.live.surroundings import Surroundings
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
 from base_station.pipeline import StationPipeline
@@ -85,7 +85,7 @@ class LiveStation:
         self.pipeline = make_pipeline(saved.pipeline if saved else None)
         self.drive = StationDrive(
             self.pipeline,
-            Surroundings(
+            DrivePorts(
                 feed=self.feed,
                 log=self.recorder,
                 live=self.screen,

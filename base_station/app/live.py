@@ -10,7 +10,7 @@ from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
 from typing import NamedTuple
 
-from base_station import collector
+from base_station import interpreter
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.services import Services
@@ -34,17 +34,17 @@ from base_station.ended_threads import EndedThreads
 from base_station.fair_share import FairShare
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
+from base_station.live.drive_ports import DrivePorts
 from base_station.live.recovering import Watch, recovering
 from base_station.live.sinks import ActionDone
-from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
 from base_station.past.checkpoints import Checkpoints
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
-from base_station.standby.lacking import Lacking
 from base_station.standby.places import Place
 from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
+from base_station.standby.stale_picture import StalePicture
 from base_station.views import StationFacts
 from shared.channels import ROOT, clock_key
 from shared.envelope import Stamper
@@ -62,7 +62,7 @@ class _Again(NamedTuple):
 
 def run_station(config: StationConfig, announce: Announce) -> None:
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
-    collector.relax()
+    interpreter.relax()
     allow_many_files()
     manager = ServiceManager(os.environ)
 
@@ -100,7 +100,7 @@ class _LiveStation:
         self._announce, self._manager = announce, manager
         self._again: _Again | None = None
         bus, steady = resources.bus, self._disk.clock
-        self._lacking = Lacking()
+        self._lacking = StalePicture()
         self._ended = closing.enter_context(EndedThreads())
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
         self._reported: Mapping[str, str] = {}  # problems of the station's parts, by the log
@@ -166,9 +166,9 @@ class _LiveStation:
         standby = resources.config.standby
         return OneOfTwo(standby, parts) if standby.name else OnlyStation(parts)
 
-    def _surroundings(self) -> Surroundings:
+    def _surroundings(self) -> DrivePorts:
         """Of the drive."""
-        return Surroundings(
+        return DrivePorts(
             feed=self._side.feed,
             log=self._side.log,
             live=self._resources.hub,

@@ -9,8 +9,8 @@ from contextlib import AbstractContextManager
 from base_station.app.parts import new_pipeline
 from base_station.drive import StationDrive
 from base_station.feed import LogFeed
+from base_station.live.drive_ports import DrivePorts
 from base_station.live.recovering import Watch
-from base_station.live.surroundings import Surroundings
 from base_station.live_state import StationState
 from base_station.past.checkpoints import SavedState
 
@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 def start_drive(
     log: LogFeed,
     saved: SavedState | None,
-    surroundings: Surroundings,
+    surroundings: DrivePorts,
     begin: Callable[[tuple[int, int], StationState], None],
     recovery: AbstractContextManager[Watch],
 ) -> StationDrive:

@@ -15,7 +15,7 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station import collector
+from base_station import interpreter
 from base_station.bench.rig.console import Console, watching
 from base_station.bench.rig.latency import Latency, latencies_ms, latency_of
 from base_station.bench.rig.station import Membership, PlainTcp, StationProcess, station_process
@@ -72,7 +72,7 @@ def bench_backfill(
 def measure(
     backlog: int, units: int, seconds: float, progress: Progress, *, plain: bool = False
 ) -> BackfillReport:
-    collector.relax()  # units, journal and console share this process, as no station's do
+    interpreter.relax()  # units, journal and console share this process, as no station's do
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
         names = unit_names(units)
         members = Membership(Path(folder), [*names, _BACKLOG_UNIT], plain=plain)

@@ -17,7 +17,7 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station import collector
+from base_station import interpreter
 from base_station.bench.rig.compressed import CompressedStation, compressed_station
 from base_station.bench.rig.units import unit_names
 from shared.bench_figures import FiguresFile, write_figures
@@ -61,14 +61,14 @@ def bench_station(
 def measure(
     units: int, rate_hz: float, minutes: float, consoles: int, progress: Progress
 ) -> ThroughputReport:
-    collector.relax()  # as the station does
+    interpreter.relax()  # as the station does
     task = progress.add_task(f"{units} units", total=minutes)
     with (
         TemporaryDirectory(prefix="muster-bench-") as folder,
         compressed_station(Path(folder), unit_names(units), rate_hz, consoles) as station,
     ):
         station.run(_WARM_S)
-        collector.settle()
+        interpreter.settle()
         messages, spent_s, began = station.messages, station.cpu_s(), time.perf_counter()
         memory_mb = [_memory_mb()]
         while (left := minutes - (len(memory_mb) - 1)) > 0.0:

@@ -25,7 +25,6 @@ from base_station.db.forgetting import forget_in, known_names
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.events import Received, event_of
-from base_station.forgetting.begun import Begun
 from base_station.forgetting.erasure import (
     Clocks,
     Erasure,
@@ -33,6 +32,7 @@ from base_station.forgetting.erasure import (
     erasure_of_incident,
     erasure_of_person,
 )
+from base_station.forgetting.pending_erasure import PendingErasure
 from base_station.forgetting.redaction import Redactor
 from base_station.live.sinks import ActionDone
 from base_station.past.checkpoints import Checkpoints
@@ -159,7 +159,7 @@ class Forgetter:
         self._pulls = pulls
         self._act = act
         self._mended_first = mended_first
-        self._begun = Begun(DataFolder(log.folder.parent).begun)
+        self._begun = PendingErasure(DataFolder(log.folder.parent).begun)
 
     def person(
         self,

@@ -6,7 +6,7 @@ import msgspec
 
 from base_station.fusion.fixes.trust import FixTrust
 from base_station.fusion.learnt.recognition import Recognition
-from base_station.fusion.path.memory import PathMemory
+from base_station.fusion.path.recent_path import PathMemory
 from base_station.fusion.plane.walled_filter import SavedWalled
 from base_station.fusion.vertical.height import SavedHeight
 from shared.messages import Position

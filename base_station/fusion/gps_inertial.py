@@ -19,8 +19,8 @@ from base_station.fusion.kernels import Placed, Stretch
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.learnt.recognition import Recognition
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import PathMemory
 from base_station.fusion.path.own_path import OwnPath
+from base_station.fusion.path.recent_path import PathMemory
 from base_station.fusion.plane.compassed_filter import CompassedFilter
 from base_station.fusion.plane.walled_filter import WalledFilter
 from base_station.fusion.port import (

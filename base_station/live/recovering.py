@@ -12,7 +12,7 @@ from threading import Event, Thread
 from starlette.types import ASGIApp
 
 from base_station.config import HttpConfig
-from base_station.live.surroundings import Record
+from base_station.live.drive_ports import Record
 from base_station.server import ConsoleServer
 from shared.mcap_log import SegmentInfo
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from concurrent.futures import Future, ThreadPoolExecutor
 
+from base_station.live.drive_ports import Log
 from base_station.live.self_watch import SelfWatch
-from base_station.live.surroundings import Log
 from base_station.past.checkpoints import Checkpoints
 
 PART = "checkpoint"

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.led import Led
+from base_station.fusion.path.start_correction import StartCorrection
 from base_station.fusion.port import Fuser, Start
 from base_station.live_state import StationState, UnitState
 from base_station.pins.pinning import trail_of
@@ -39,7 +39,7 @@ def unlearn(state: StationState, unit_id: str) -> None:
     state.learnt_building = state.learnt_building.without(unit_id)
 
 
-def _led(begin_ns: int, unit: UnitState, fuser: Fuser, sunk_m: float) -> Led | None:
+def _led(begin_ns: int, unit: UnitState, fuser: Fuser, sunk_m: float) -> StartCorrection | None:
     """As the fuser sees two places of the own path: its origin, and one beside."""
     assert unit.position is not None
     origin, beside = (
@@ -49,4 +49,4 @@ def _led(begin_ns: int, unit: UnitState, fuser: Fuser, sunk_m: float) -> Led | N
     if origin is None or beside is None:
         return None
     cosine, sine = beside.north_m - origin.north_m, beside.east_m - origin.east_m
-    return Led(begin_ns, origin.north_m, origin.east_m, cosine, sine, sunk_m)
+    return StartCorrection(begin_ns, origin.north_m, origin.east_m, cosine, sine, sunk_m)

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from threading import Condition
 
-from base_station.live.surroundings import Log
+from base_station.live.drive_ports import Log
 from base_station.standby.places import BEGINNING, Place, Record, is_event
 from shared.channels import OPERATOR
 from shared.clock import Clock

@@ -13,8 +13,8 @@ from base_station.config import StandbyConfig
 from base_station.db.kept import KeptTables
 from base_station.db.records import Records
 from base_station.feed import LiveFeed, LogFeed
+from base_station.live.drive_ports import Feed, Log
 from base_station.live.sinks import OperatorGate
-from base_station.live.surroundings import Feed, Log
 from base_station.live_state import StationState
 from base_station.log_check import LogCheck
 from base_station.pki.folder import PkiFolder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 
 from edge.simulation.curve import Curve
-from edge.simulation.glide import Glide
+from edge.simulation.lift_motion import LiftMotion
 from shared.messages.status import Activity
 
 SENSOR_HEIGHT_M = 0.08  # of the instep above the sole
@@ -25,7 +25,7 @@ class BodyPlan:
         self.east = Curve(east_m)
         self.down = Curve(down_m - SENSOR_HEIGHT_M)
         self.lift = Curve(0.0)
-        self.floor = Glide()  # down, of a lift
+        self.floor = LiftMotion()  # down, of a lift
         self.yaw = Curve(yaw_rad)
         self.pitch = Curve(0.0)
         self.roll = Curve(0.0)

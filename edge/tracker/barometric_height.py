@@ -22,7 +22,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION
-from edge.tracker.measuring import begin_updates, end_updates, measure
+from edge.tracker.measurement_update import begin_updates, end_updates, measure
 from edge.tracker.side_filter import agree, handed_over, project
 from edge.tracker.side_filter import measure as measure_aside
 from edge.tracker.state import Aid, FilterState, Progress, Ring, Step

@@ -27,14 +27,14 @@ from edge.tracker.gaps import doubt_hole, open_hole_s, stand_over
 from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
-from edge.tracker.measuring import turn_walk
+from edge.tracker.measurement_update import turn_walk
 from edge.tracker.plateaus import ACCEL_SATURATED, GYRO_SATURATED
+from edge.tracker.row_quality import judge, note_faults
 from edge.tracker.stance import glides, stand
 from edge.tracker.state import FilterState, Progress, Ring, Step, Trail, reach
-from edge.tracker.stated import bend_way, state_position
+from edge.tracker.stated_covariance import bend_way, state_position
 from edge.tracker.strapdown import advance, dot, rotation_matrix
-from edge.tracker.verdict import judge, note_faults
-from edge.tracker.warmth import follow_warmth
+from edge.tracker.thermal_bias import follow_warmth
 from edge.tracker.zero_velocity import stance_threshold, steady_rate, unrest
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next

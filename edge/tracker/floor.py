@@ -22,7 +22,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION, SIZE
-from edge.tracker.measuring import remember
+from edge.tracker.measurement_update import remember
 from edge.tracker.state import FilterState, Progress, Ring, Step
 
 DOWN = POSITION + 2

@@ -25,7 +25,7 @@ from edge.tracker.magnetic_field import (
     north_of,
     north_variance,
 )
-from edge.tracker.measuring import begin_updates, end_updates, measure_heading
+from edge.tracker.measurement_update import begin_updates, end_updates, measure_heading
 from edge.tracker.side_filter import agree, noise_to_tell, told_residual
 from edge.tracker.state import Aid, FilterState, Ring, Step
 

@@ -14,7 +14,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, VELOCITY
-from edge.tracker.measuring import begin_updates, end_updates, measure, measure_with_lever
+from edge.tracker.measurement_update import begin_updates, end_updates, measure, measure_with_lever
 from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
 

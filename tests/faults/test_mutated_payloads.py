@@ -16,7 +16,7 @@ import pytest
 from base_station.api.wire import HealthView
 from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
-from base_station.live.surroundings import Record, Surroundings
+from base_station.live.drive_ports import DrivePorts, Record
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import compare
 from base_station.views import StationFacts
@@ -148,7 +148,7 @@ def test_the_station_keeps_counts_and_shows_whatever_is_said(
     feed, pipeline = Said(clock, 4, COUNT), make_pipeline()
     drive = StationDrive(
         pipeline,
-        Surroundings(
+        DrivePorts(
             feed=feed,
             log=log,
             live=screen,

@@ -21,7 +21,7 @@ async def test_a_failure_is_told_and_tried_again(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr("base_station.server._HOUSEKEEPING_S", 0.01)
-    monkeypatch.setattr("base_station.collector.settle", lambda: None)  # this process goes on
+    monkeypatch.setattr("base_station.interpreter.settle", lambda: None)  # this process goes on
     tries = 0
 
     def keep_house() -> None:

@@ -22,10 +22,10 @@ from base_station.data_folder import DataFolder
 from base_station.db.principals import Role
 from base_station.live import last_known
 from base_station.live import recovering as module
+from base_station.live.drive_ports import Record
 from base_station.live.last_known import LastKnown
 from base_station.live.recovering import recovering
 from base_station.live.sinks import Projection, Trails
-from base_station.live.surroundings import Record
 from base_station.recorder import Recorder
 from base_station.server import bind
 from shared.clock import NS_PER_S, ManualClock

@@ -15,7 +15,7 @@ from base_station.fusion.fixes.trust import FRESH_LEAST, FRESH_PART, SURPRISE_MO
 from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.gps_inertial import GpsInertial, GpsInertialFuser
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import OwnPlace
+from base_station.fusion.path.recent_path import OwnPlace
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
 from shared.messages import Header

@@ -11,7 +11,7 @@ import pytest
 from base_station.feed import LogFeed
 from base_station.log_check import LogCheck
 from base_station.recorder import Recorder
-from base_station.standby.lacking import Lacking
+from base_station.standby.stale_picture import StalePicture
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
 from shared.mcap_log import SegmentPolicy
@@ -81,7 +81,7 @@ def test_one_that_was_put_back_from_a_backup_is_damaged_no_more(
 
 
 def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
-    lacking = Lacking()
+    lacking = StalePicture()
     lacking.note_stepped(100, 200)
     for end_ns, lacks in ((90, False), (210, False), (150, True), (210, True)):
         lacking.note_mended(end_ns)
@@ -90,7 +90,7 @@ def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
 
 
 def test_a_station_that_lacks_something_starts_again_when_it_can_be_spared() -> None:
-    lacking = Lacking()
+    lacking = StalePicture()
     assert not lacking.can_be_made_good(leads=False, spared=True, in_incident=False)
     lacking.note_stepped(100, 200)
     lacking.note_mended(150)

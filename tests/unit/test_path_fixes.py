@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base_station.fusion.path.frame_shift import FrameShift
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.moved import Moved
 from base_station.fusion.path.points import FIX_ROW
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
@@ -109,7 +109,7 @@ def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:
     assert history.move_fixes(-0.7, 10.0, 4.0)
     assert history.is_refixed
     after = history.arrays()
-    expected_m = [Moved(-0.7, 10.0, 4.0).place(*place_m) for place_m in before.fix_m.tolist()]
+    expected_m = [FrameShift(-0.7, 10.0, 4.0).place(*place_m) for place_m in before.fix_m.tolist()]
     assert after.fix_m == pytest.approx(np.array(expected_m), abs=0.04)
     assert np.array_equal(after.shown_m, before.shown_m)
     assert not after.shown_std_m.any(), "what was estimated with them tells nothing"

@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from base_station.fusion.path.frame_shift import FrameShift
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.led import Led
-from base_station.fusion.path.moved import Moved
+from base_station.fusion.path.start_correction import StartCorrection
 from base_station.fusion.port import Estimate, PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.quality import Quality
@@ -34,8 +34,8 @@ def test_a_moved_frame_moves_what_is_of_the_frame_only() -> None:
 
 
 def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when() -> None:
-    history, place = PathHistory(), Moved()
-    moves = {400: Moved(0.5, 10.0, -4.0, 3.0), 800: Moved(-0.2, 1.0, 2.0, -5.0)}
+    history, place = PathHistory(), FrameShift()
+    moves = {400: FrameShift(0.5, 10.0, -4.0, 3.0), 800: FrameShift(-0.2, 1.0, 2.0, -5.0)}
     for second in range(1200):
         if second in moves:
             history.reframe(*msgspec.structs.astuple(moves[second]))
@@ -65,7 +65,7 @@ def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(seconds: in
     before = history.arrays()
     begin_ns = int(before.t_ns[10])
     assert bool(history.packed) is (seconds == 800)
-    history.lead(Led(begin_ns, 50.0, -20.0, 0.6, 0.8, 2.5))
+    history.lead(StartCorrection(begin_ns, 50.0, -20.0, 0.6, 0.8, 2.5))
     after = history.arrays()
     run = before.t_ns >= begin_ns
     own_m = before.own_m[run]
@@ -79,7 +79,7 @@ def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(seconds: in
 
 
 def test_what_is_undone_is_where_it_was() -> None:
-    move = Moved(0.8, 30.0, -7.0, 2.0)
+    move = FrameShift(0.8, 30.0, -7.0, 2.0)
     assert move.undone().place(*move.place(4.0, 9.0)) == pytest.approx((4.0, 9.0))
     same = msgspec.structs.astuple(move.and_then(move.undone()))
     assert same == pytest.approx((0.0,) * 4, abs=1e-9)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.packed import CHUNK
+from base_station.fusion.path.packed_rows import CHUNK
 from base_station.fusion.path.points import DOUBTFUL, RESTART
 from base_station.fusion.port import Start
 from shared.clock import NS_PER_S

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.led import Led
 from base_station.fusion.path.points import RESTART
+from base_station.fusion.path.start_correction import StartCorrection
 from base_station.fusion.port import PlaceFix, Start
 from shared.clock import NS_PER_S
 from tests.walked_path import at, walked
@@ -92,5 +92,5 @@ def test_a_run_that_seems_to_begin_before_the_last_one_ended_begins_behind_it() 
     arrays = history.arrays()
     (restart,) = np.flatnonzero(arrays.flags & RESTART)
     assert arrays.t_ns[restart] == history.start_ns == history.boot_begin_ns
-    history.lead(Led(history.boot_begin_ns, 50.0, -20.0, 1.0, 0.0, 0.0))
+    history.lead(StartCorrection(history.boot_begin_ns, 50.0, -20.0, 1.0, 0.0, 0.0))
     assert history.arrays().shown_m[restart - 1].tolist() == [0.0, 0.0]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.path.packed import CHUNK, MOST_CHUNKS
+from base_station.fusion.path.packed_rows import CHUNK, MOST_CHUNKS
 from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART
-from base_station.fusion.path.straight import OFF_M
+from base_station.fusion.path.straight_stretch import OFF_M
 from base_station.fusion.port import PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.quality import Quality

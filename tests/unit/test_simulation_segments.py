@@ -7,8 +7,8 @@ import pytest
 
 from edge.samples import Floats
 from edge.simulation import open_simulation
-from edge.simulation.glide import ACCEL_MPS2, Glide
 from edge.simulation.kinematics import Motion
+from edge.simulation.lift_motion import ACCEL_MPS2, LiftMotion
 from shared.messages.status import Activity
 
 
@@ -68,7 +68,7 @@ def test_lying_on_the_back_points_the_front_up(segment: str) -> None:
 
 @pytest.mark.parametrize(("by", "speed_mps"), [(-3.2, 1.6), (32.0, 3.0), (0.4, 1.0)])
 def test_a_lift_glides_to_its_floor_with_comfort(by, speed_mps):
-    glide = Glide()
+    glide = LiftMotion()
     glide.move(1.0, 2.0, 5.0)
     end_s = glide.move(40.0, by, speed_mps)
     t_s = np.arange(35.0, end_s + 2.0, 1e-3)

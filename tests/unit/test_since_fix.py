@@ -7,8 +7,8 @@ import math
 import pytest
 
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import OwnPlace
-from base_station.fusion.path.since import Since, since_then, unguided_m2, walls_std_m
+from base_station.fusion.path.recent_path import OwnPlace
+from base_station.fusion.path.since_fix import Since, since_then, unguided_m2, walls_std_m
 from shared.clock import NS_PER_S
 from tests.walked_path import at
 

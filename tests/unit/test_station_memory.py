@@ -18,10 +18,10 @@ import pytest
 from base_station.bench.fusion.walks import RATE_HZ, Receiver, Walk
 from base_station.bench.rig import said
 from base_station.fusion.path.history import PathHistory
-from base_station.live.keeping import Keeping
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.self_watch import SelfWatch
+from base_station.live.write_ahead import WriteAhead
 from shared.channels import OPERATOR, POSITION, STATUS, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
@@ -53,7 +53,7 @@ class Station:
     def __init__(self) -> None:
         self.pipeline, self.screen, self.projector = make_pipeline(), Screen(), Projector()
         self.picture = Picture(self.pipeline, self.screen, lambda _: None)
-        self.keeping = Keeping(self.pipeline, Room(), self.picture, self.projector, SelfWatch())
+        self.keeping = WriteAhead(self.pipeline, Room(), self.picture, self.projector, SelfWatch())
         self.t_ns = 1000 * NS_PER_S
         self.said = {STATION_ID: count(1), UNIT: count(1)}
         self.act(SetAnchor(52.0, 4.0, 0.0, 0.0))

@@ -11,7 +11,7 @@ from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import SIZE, TURN, heading_variance
 from edge.tracker.eskf import EskfTracker
 from edge.tracker.gain_errors import follow_gain_errors, project
-from edge.tracker.measuring import begin_updates, end_updates, measure_heading
+from edge.tracker.measurement_update import begin_updates, end_updates, measure_heading
 from edge.tracker.rows import join_rows
 from edge.tracker.state import GAIN_ERRORS, STEP, new_filter_state
 from edge.tracker.strapdown import rotate_attitude, rotation_matrix

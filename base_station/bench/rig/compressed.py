@@ -23,7 +23,7 @@ from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.drive import StationDrive
 from base_station.fusion import FUSERS
-from base_station.live.surroundings import Record, Surroundings
+from base_station.live.drive_ports import DrivePorts, Record
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
@@ -66,7 +66,7 @@ class CompressedStation:
         hub = Hub()
         drive = StationDrive(
             StationPipeline(ALARMS, FUSERS[0]),
-            Surroundings(
+            DrivePorts(
                 feed=self._feed,
                 log=recorder,
                 live=hub,

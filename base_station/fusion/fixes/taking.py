@@ -10,8 +10,8 @@ import numpy as np
 from base_station.fusion.fixes.sky import COMMON_S
 from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import OwnPlace
-from base_station.fusion.path.since import since_then, unguided_m2, walls_std_m
+from base_station.fusion.path.recent_path import OwnPlace
+from base_station.fusion.path.since_fix import since_then, unguided_m2, walls_std_m
 from base_station.fusion.plane.heading_bank import Sighting
 from base_station.fusion.plane.walled_filter import WalledFilter
 from base_station.fusion.port import FixVerdict, PlaceFix

@@ -13,7 +13,7 @@ import msgspec
 from base_station.fusion.fixes.outliers import Outliers, Shape
 from base_station.fusion.fixes.sky import common_m2
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import OwnPlace
+from base_station.fusion.path.recent_path import OwnPlace
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_S
 

@@ -7,8 +7,8 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
-from base_station.fusion.path.moved import Moved
-from base_station.fusion.path.packed import CHUNK, Packed, Records
+from base_station.fusion.path.frame_shift import FrameShift
+from base_station.fusion.path.packed_rows import CHUNK, Packed, Records
 from base_station.fusion.path.points import FIX_ROW, fix_row
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_MS
@@ -26,7 +26,7 @@ class PathFixes(msgspec.Struct, array_like=True):
     def __bool__(self) -> bool:
         return bool(self.loose or self.packed)
 
-    def note(self, fix: PlaceFix, t_ns: int, frame: Moved) -> None:
+    def note(self, fix: PlaceFix, t_ns: int, frame: FrameShift) -> None:
         """Others close by tell the same."""
         times_ms, t_ms = self._loose()["t_ms"].tolist(), t_ns // NS_PER_MS
         at = bisect_left(times_ms, t_ms)
@@ -44,11 +44,11 @@ class PathFixes(msgspec.Struct, array_like=True):
         rows = self._loose()
         self.loose = rows[rows["t_ms"] >= before_ms].tobytes()
 
-    def reframe(self, move: Moved) -> None:
+    def reframe(self, move: FrameShift) -> None:
         """The frame moves; what is packed stays as it is."""
         self.loose = move.of(self._loose(), *_SEEN).tobytes()
 
-    def move(self, move: Moved, frame: Moved) -> None:
+    def move(self, move: FrameShift, frame: FrameShift) -> None:
         """They lie elsewhere in the incident frame."""
         self.reframe(move)
         self.packed.change(
@@ -56,7 +56,7 @@ class PathFixes(msgspec.Struct, array_like=True):
             lambda rows: frame.undone().of(move.of(frame.of(rows, *_SEEN), *_SEEN), *_SEEN),
         )
 
-    def rows(self, frame: Moved) -> Records:
+    def rows(self, frame: FrameShift) -> Records:
         """By time, none close to another: what came late may lie beside packed ones."""
         rows = np.concatenate((frame.of(self.packed.rows(FIX_ROW), *_SEEN), self._loose()))
         rows = rows[np.argsort(rows["t_ms"], kind="stable")]

@@ -13,9 +13,8 @@ import msgspec
 import numpy as np
 
 from base_station.fusion.path.fixes import PathFixes
-from base_station.fusion.path.led import Led
-from base_station.fusion.path.moved import Moved
-from base_station.fusion.path.packed import CHUNK, Packed, Records
+from base_station.fusion.path.frame_shift import FrameShift
+from base_station.fusion.path.packed_rows import CHUNK, Packed, Records
 from base_station.fusion.path.points import (
     BREAK,
     DOUBTFUL,
@@ -28,7 +27,8 @@ from base_station.fusion.path.points import (
     rows_of,
     thinned,
 )
-from base_station.fusion.path.straight import Straight
+from base_station.fusion.path.start_correction import StartCorrection
+from base_station.fusion.path.straight_stretch import Straight
 from base_station.fusion.port import Estimate, PlaceFix, Start
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Position
@@ -54,7 +54,7 @@ class PathHistory(msgspec.Struct):
     packed: Packed = msgspec.field(default_factory=Packed)
     points: list[Point] = msgspec.field(default_factory=list)  # behind the packed ones
     fixes: PathFixes = msgspec.field(default_factory=PathFixes)
-    moved: Moved = Moved()  # the frame, since anything was packed
+    moved: FrameShift = FrameShift()  # the frame, since anything was packed
     start: Start | None = None  # as a person said
     start_ns: int = 0  # when the own frame began that it is about
     is_start_over: bool = False  # nothing of that own frame is in the path
@@ -146,7 +146,7 @@ class PathHistory(msgspec.Struct):
         """What a person said of where an own frame begins that is in the path."""
         return None if self.is_start_over else self.start
 
-    def lead(self, led: Led) -> None:
+    def lead(self, led: StartCorrection) -> None:
         """It was not where it was shown since a run of the unit's program began."""
         led.points(self.points)
         self.packed.change(
@@ -168,7 +168,7 @@ class PathHistory(msgspec.Struct):
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         """The incident frame was moved: turned clockwise, then shifted."""
-        move = Moved(turn_rad, north_m, east_m, down_m)
+        move = FrameShift(turn_rad, north_m, east_m, down_m)
         self.moved = self.moved.and_then(move)
         self.fixes.reframe(move)
         for point in self.points:
@@ -192,7 +192,7 @@ class PathHistory(msgspec.Struct):
         """
         if not self.fixes:
             return False
-        self.fixes.move(Moved(turn_rad, north_m, east_m), self.moved)
+        self.fixes.move(FrameShift(turn_rad, north_m, east_m), self.moved)
         for point in self.points:
             point.shown_std_m = 0.0
         self.packed.change(POINT_ROW, _unsaid)

@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.path.packed import Records
+from base_station.fusion.path.packed_rows import Records
 from base_station.fusion.port import PlaceFix
 from shared.clock import NS_PER_MS
 

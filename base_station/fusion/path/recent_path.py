@@ -7,7 +7,7 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
-from base_station.fusion.path.packed import CHUNK, Packed, Records
+from base_station.fusion.path.packed_rows import CHUNK, Packed, Records
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Position
 

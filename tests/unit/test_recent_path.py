@@ -7,7 +7,7 @@ from collections.abc import Callable
 import msgspec
 import pytest
 
-from base_station.fusion.path.memory import (
+from base_station.fusion.path.recent_path import (
     COARSE_NS,
     KEPT_NS,
     MOST_POINTS,

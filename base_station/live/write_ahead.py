@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from base_station.events import Output, StationEvent, event_of
+from base_station.live.drive_ports import Log, Record
 from base_station.live.foxglove_topics import FoxgloveTopics
 from base_station.live.hearing import take_back
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.self_watch import SelfWatch
-from base_station.live.surroundings import Log, Record
 from base_station.past.playback import is_decision
 from base_station.pipeline import StationPipeline
 from shared.channels import ALARM, FUSED
@@ -23,7 +23,7 @@ _DECISIONS = (FusedPosition, AlarmChange)
 _KEYS = {FusedPosition: FUSED.key(STATION_ID), AlarmChange: ALARM.key(STATION_ID)}
 
 
-class Keeping:
+class WriteAhead:
     """``keep_and_step`` events; picture and projector are told what follows from them."""
 
     def __init__(

@@ -13,7 +13,7 @@ from base_station.pki.files import write_atomically
 from shared.errors import StoreError
 
 
-class Begun:
+class PendingErasure:
     """For one thread."""
 
     def __init__(self, path: Path) -> None:

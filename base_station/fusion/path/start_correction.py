@@ -5,12 +5,12 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from base_station.fusion.path.packed import Records
+from base_station.fusion.path.packed_rows import Records
 from base_station.fusion.path.points import Point, saturated
 from shared.clock import NS_PER_MS
 
 
-class Led(msgspec.Struct, frozen=True):
+class StartCorrection(msgspec.Struct, frozen=True):
     """The own frame of a unit's run in the incident frame: its origin, and ``cosine + i sine``, by
     which it is turned clockwise and scaled.
     """

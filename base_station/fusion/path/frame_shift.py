@@ -7,12 +7,12 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from base_station.fusion.path.packed import Records
+from base_station.fusion.path.packed_rows import Records
 from base_station.fusion.path.points import saturated
 from shared.geo import rotate
 
 
-class Moved(msgspec.Struct, frozen=True, array_like=True):
+class FrameShift(msgspec.Struct, frozen=True, array_like=True):
     """Turned clockwise, then shifted."""
 
     turn_rad: float = 0.0
@@ -28,16 +28,16 @@ class Moved(msgspec.Struct, frozen=True, array_like=True):
         north_m, east_m = rotate(north_m, east_m, self.turn_rad)
         return north_m + self.north_m, east_m + self.east_m
 
-    def and_then(self, later: Moved) -> Moved:
-        return Moved(
+    def and_then(self, later: FrameShift) -> FrameShift:
+        return FrameShift(
             self.turn_rad + later.turn_rad,
             *later.place(self.north_m, self.east_m),
             self.down_m + later.down_m,
         )
 
-    def undone(self) -> Moved:
+    def undone(self) -> FrameShift:
         back = rotate(-self.north_m, -self.east_m, -self.turn_rad)
-        return Moved(-self.turn_rad, *back, -self.down_m)
+        return FrameShift(-self.turn_rad, *back, -self.down_m)
 
     def of(self, rows: Records, north: str, east: str, down: str | None = None) -> Records:
         """Rows whose places, in columns of centimetres, are moved."""

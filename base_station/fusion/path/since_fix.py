@@ -7,7 +7,7 @@ import math
 import msgspec
 
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.memory import OwnPlace
+from base_station.fusion.path.recent_path import OwnPlace
 from shared.clock import NS_PER_S
 from shared.messages import Position
 

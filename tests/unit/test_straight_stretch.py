@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from base_station.fusion.path.straight import OFF_M, Straight
+from base_station.fusion.path.straight_stretch import OFF_M, Straight
 
 STEP = st.tuples(st.floats(0.05, 3.0), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
 

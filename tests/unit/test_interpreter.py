@@ -9,7 +9,7 @@ import pytest
 
 LARGE = """
 import ctypes
-from base_station import collector
+from base_station import interpreter
 
 libc = ctypes.CDLL(None)
 if not hasattr(libc, "mallinfo2"):
@@ -22,7 +22,7 @@ class Info(ctypes.Structure):
     )]
 
 libc.mallinfo2.restype = Info
-collector.relax()
+interpreter.relax()
 bytearray(16 << 20)  # made and freed: the C library learns from it
 before = libc.mallinfo2().hblks
 held = bytearray(4 << 20)

@@ -63,7 +63,7 @@ class Log(Protocol):
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class DrivePorts:
     """What the drive works with."""
 
     feed: Feed

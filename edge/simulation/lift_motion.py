@@ -14,7 +14,7 @@ _PEAK = 140.0 / 64.0  # of the rate of the septic from 0 to 1
 _OF_NO_WAY_S = 1.0
 
 
-class Glide:
+class LiftMotion:
     """Rests at 0; each ``move`` carries it on.
 
     The speed rises and falls along the septic 35x^4 - 84x^5 + 70x^6 - 20x^7 (see ``Curve``),

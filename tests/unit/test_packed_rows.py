@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from base_station.fusion.path.packed import CHUNK, MOST_CHUNKS, Packed, Records
+from base_station.fusion.path.packed_rows import CHUNK, MOST_CHUNKS, Packed, Records
 
 ROW = np.dtype([("t", "<i8"), ("one", "<i8"), ("other", "<i8")])
 ANY = st.integers(-(2**63), 2**63 - 1)

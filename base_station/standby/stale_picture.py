@@ -7,7 +7,7 @@ came.  One that has started since then has stepped the log without that part.
 from __future__ import annotations
 
 
-class Lacking:
+class StalePicture:
     """From any thread."""
 
     def __init__(self) -> None:
