@@ -12,6 +12,7 @@ STD_FLOOR_M = 1.27  # each axis: 1.5 m CEP of data sheets; who claims better is 
 STD_UNSTATED_M = 10.0
 STD_ABSURD_M = 100.0
 FURTHEST_M = 50_000.0  # from the anchor
+DEEPEST_M, HIGHEST_M = -1_000.0, 10_000.0  # above the ellipsoid, where anybody stands
 ANCHOR_STD_M = 8.0  # the worst fix that may say where the site is
 
 
@@ -26,6 +27,8 @@ def screen(fix: GpsFix) -> FixVerdict:
         return FixVerdict(False, "coordinates that are not on the Earth")
     if abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6:
         return FixVerdict(False, "latitude and longitude 0")
+    if fix.fix_type is FixType.THREE_D and not DEEPEST_M <= fix.height_m <= HIGHEST_M:
+        return FixVerdict(False, "a height at which nobody stands")
     if fix.horizontal_std_m is not None and not 0.0 < fix.horizontal_std_m <= STD_ABSURD_M:
         return FixVerdict(False, "an accuracy that cannot be used")
     return FixVerdict(True)
