@@ -18,20 +18,21 @@ ANCHOR_STD_M = 8.0  # the worst fix that may say where the site is
 
 def screen(fix: GpsFix) -> FixVerdict:
     """What a fix tells against itself, wherever the site is."""
-    coordinates = (fix.lat_deg, fix.lon_deg, fix.height_m)
-    if fix.fix_type not in {FixType.TWO_D, FixType.THREE_D}:
-        return FixVerdict(False, "the receiver has no fix")
-    if not all(math.isfinite(value) for value in coordinates):
-        return FixVerdict(False, "coordinates that are no numbers")
-    if abs(fix.lat_deg) > 90.0 or abs(fix.lon_deg) > 180.0:
-        return FixVerdict(False, "coordinates that are not on the Earth")
-    if abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6:
-        return FixVerdict(False, "latitude and longitude 0")
-    if fix.fix_type is FixType.THREE_D and not DEEPEST_M <= fix.height_m <= HIGHEST_M:
-        return FixVerdict(False, "a height at which nobody stands")
-    if fix.horizontal_std_m is not None and not 0.0 < fix.horizontal_std_m <= STD_ABSURD_M:
-        return FixVerdict(False, "an accuracy that cannot be used")
-    return FixVerdict(True)
+    std_m = fix.horizontal_std_m
+    doubts = {
+        "the receiver has no fix": fix.fix_type not in {FixType.TWO_D, FixType.THREE_D},
+        "coordinates that are no numbers": not all(
+            math.isfinite(value) for value in (fix.lat_deg, fix.lon_deg, fix.height_m)
+        ),
+        "coordinates that are not on the Earth": abs(fix.lat_deg) > 90.0
+        or abs(fix.lon_deg) > 180.0,
+        "latitude and longitude 0": abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6,
+        "a height at which nobody stands": fix.fix_type is FixType.THREE_D
+        and not DEEPEST_M <= fix.height_m <= HIGHEST_M,
+        "an accuracy that cannot be used": std_m is not None and not 0.0 < std_m <= STD_ABSURD_M,
+    }
+    reason = next((reason for reason, holds in doubts.items() if holds), "")
+    return FixVerdict(not reason, reason)
 
 
 def may_anchor(fix: GpsFix) -> bool:
