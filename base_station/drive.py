@@ -65,22 +65,22 @@ class _Due:
 class StationDrive:
     """``OperatorGate`` and ``LiveSource`` of the live station."""
 
-    def __init__(self, pipeline: StationPipeline, surroundings: DrivePorts) -> None:
+    def __init__(self, pipeline: StationPipeline, ports: DrivePorts) -> None:
         self._pipeline = pipeline
-        self._around = surroundings
-        self._stamper = Stamper(STATION_ID, surroundings.boot_id, surroundings.clock)
+        self._ports = ports
+        self._stamper = Stamper(STATION_ID, ports.boot_id, ports.clock)
         self._watch = SelfWatch()
-        self._picture = Picture(pipeline, surroundings.live, surroundings.photo_urls)
+        self._picture = Picture(pipeline, ports.live, ports.photo_urls)
         self._projector = Projector()
         self._write_ahead = WriteAhead(
-            pipeline, surroundings.log, self._picture, self._projector, self._watch
+            pipeline, ports.log, self._picture, self._projector, self._watch
         )
-        self._saving = Saving(surroundings.log, surroundings.checkpoints, self._watch)
+        self._saving = Saving(ports.log, ports.checkpoints, self._watch)
         self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="station-drive")
-        now_ns = surroundings.clock.monotonic_ns()
+        now_ns = ports.clock.monotonic_ns()
         self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
@@ -94,13 +94,13 @@ class StationDrive:
     def stop(self) -> None:
         """Finish what was taken, and end."""
         self._stopping.set()
-        self._around.feed.wake()
+        self._ports.feed.wake()
         self._thread.join(STOP_TIMEOUT_S)
 
     def submit(self, by: str, action: Action) -> Future[ActionDone]:
         future: Future[ActionDone] = Future()
         self._inbox.append((by, action, future))
-        self._around.feed.wake()
+        self._ports.feed.wake()
         if self._stopping.is_set() and not self._thread.is_alive():
             self._refuse_waiting()
         return future
@@ -108,11 +108,11 @@ class StationDrive:
     def save_soon(self) -> None:
         """What was saved is gone: a restart would step the whole log."""
         self._due.checkpoint_ns = 0
-        self._around.feed.wake()
+        self._ports.feed.wake()
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         self._asked.append(deliver)
-        self._around.feed.wake()
+        self._ports.feed.wake()
 
     # ---- before the thread runs
 
@@ -153,10 +153,10 @@ class StationDrive:
 
     def _turn(self) -> bool:
         """Take what came, then do whatever is due; whether anything came."""
-        clock, due = self._around.clock, self._due
+        clock, due = self._ports.clock, self._due
         wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
-        records = self._around.feed.take(max(wait_ns, 0) / NS_PER_S)
-        follows = self._around.feed.follows
+        records = self._ports.feed.take(max(wait_ns, 0) / NS_PER_S)
+        follows = self._ports.feed.follows
         for t_ns, key, payload in records:
             try:
                 if follows:
@@ -184,7 +184,7 @@ class StationDrive:
             spent_ns = time.thread_time_ns() - before_ns
             due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
         while self._asked:
-            whole = self._picture.whole()  # who asked is asked about again should it fail
+            whole = self._picture.whole()  # where it cannot be made, who asked goes on waiting
             self._asked.popleft()(*whole)
         return bool(records)
 
@@ -212,7 +212,7 @@ class StationDrive:
             done = self._do(by, action)
             self._settle()
             if isinstance(action, SendCommand):
-                self._around.say(command_book.unanswered(self._pipeline.state))
+                self._ports.say(command_book.unanswered(self._pipeline.state))
             if future.set_running_or_notify_cancel():
                 future.set_result(done)
             self._due.delta_ns = 0  # who did something sees it at once
@@ -232,14 +232,14 @@ class StationDrive:
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
         self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
         self._report_problems()
-        if not self._around.log.is_behind:  # what is reported may be acknowledged to its unit
-            self._around.report(self._held())
-        self._around.say(command_book.unanswered(self._pipeline.state))
+        if not self._ports.log.is_behind:  # what is reported may be acknowledged to its unit
+            self._ports.report(self._held())
+        self._ports.say(command_book.unanswered(self._pipeline.state))
 
     def _look_around(self) -> None:
         messages = self._pipeline.state.counts.messages
         self._picture.facts = msgspec.structs.replace(
-            self._around.facts(),
+            self._ports.facts(),
             messages_per_s=float(messages - self._messages_before),
             repeated=self._repeated,
         )
@@ -255,7 +255,7 @@ class StationDrive:
     def _project(self) -> None:
         projection = self._projector.take(self._pipeline.state.t_ns)
         if projection is not None:
-            self._around.projection.project(projection)
+            self._ports.projection.project(projection)
 
     def _tell(self) -> None:
         self._project()
@@ -270,9 +270,9 @@ class StationDrive:
         """A part that fails, or is well again, is an event like any other."""
         self._saving.look()
         seen = {
-            "log": self._around.log.problem,
-            "disk": self._around.log.little_room,
-            "store": self._around.projection.problem(),
+            "log": self._ports.log.problem,
+            "disk": self._ports.log.little_room,
+            "store": self._ports.projection.problem(),
         }
         for report in list(self._watch.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
@@ -291,9 +291,9 @@ class StationDrive:
         }
 
     def _finish(self) -> None:
-        until_ns = self._around.clock.monotonic_ns() + FINISH_NS
+        until_ns = self._ports.clock.monotonic_ns() + FINISH_NS
         with self._watch.guarding("drive"):
-            while self._turn() and self._around.clock.monotonic_ns() < until_ns:
+            while self._turn() and self._ports.clock.monotonic_ns() < until_ns:
                 pass
         self._project()
         self._save_checkpoint()

@@ -15,6 +15,7 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 
+from edge.disk_watch import HANGS_S, DiskWatch
 from edge.recording_time import ahead_of, note_ahead, remove_if_empty
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
@@ -27,9 +28,7 @@ logger = logging.getLogger(__name__)
 
 _DESCRIBE_EVERY_NS = 60 * NS_PER_S  # so that any segment can be replayed by itself
 _LOOK_EVERY_S = 0.2
-_HANGS_NS = 5 * NS_PER_S  # a worn card may take some seconds now and then
 _WAITING_MAX = 10_000  # batches, some minutes of samples, for a disk that hangs
-_LAST_S = 5.0
 _REFUSAL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO)  # of a disk, for now
 _POLICY = SegmentPolicy(segment_s=120.0)  # a station fetches whole segments of a window
 
@@ -64,7 +63,7 @@ class BlackBox:
         self._described_ns = -_DESCRIBE_EVERY_NS
         self._waiting: SimpleQueue[Raw | None] = SimpleQueue()
         self._given_up = 0  # batches that came while the disk hung
-        self._asked_ns: int | None = None  # since when the disk owes an answer
+        self._disk = DiskWatch()
         self._problem: str | None = None
         self._writer: SegmentWriter | None = None
         self._try_again_ns = 0
@@ -77,28 +76,21 @@ class BlackBox:
         """Why samples are not kept; None while they are."""
         if not self._thread.is_alive():
             return "the black box has stopped"
-        if self._hangs():
-            return f"the black box hangs: the disk has not answered for {_HANGS_NS // NS_PER_S} s"
+        if self._disk.hangs:
+            return f"the black box hangs: the disk has not answered for {HANGS_S:.0f} s"
         return self._problem
 
     def write(self, raw: Raw) -> None:
         self._waiting.put(raw)
-        if self._waiting.qsize() > _WAITING_MAX and self._hangs():
+        if self._waiting.qsize() > _WAITING_MAX and self._disk.hangs:
             self._waiting.get()
             self._given_up += 1
 
     def close(self) -> None:
         """Everything that was given is written, unless the disk hangs to the end."""
         self._waiting.put(None)
-        while self._thread.is_alive():
-            self._thread.join(_LOOK_EVERY_S)
-            if self._hangs():
-                logger.error("the black box hangs: the samples that wait are not kept")
-                return
-
-    def _hangs(self) -> bool:
-        asked_ns = self._asked_ns
-        return asked_ns is not None and self._now_ns() - asked_ns > _HANGS_NS
+        if not self._disk.join(self._thread):
+            logger.error("the black box hangs: the samples that wait are not kept")
 
     def _run(self) -> None:
         while True:
@@ -106,13 +98,13 @@ class BlackBox:
                 raw = self._waiting.get(timeout=_LOOK_EVERY_S)
             except Empty:
                 raw = ()
-            self._asked_ns = self._now_ns()
+            self._disk.asked()
             if raw is None:
                 if self._writer is not None:
                     self._writer.close()
                 return
             self._take(raw)
-            self._asked_ns = None
+            self._disk.answered()
 
     def _take(self, raw: Raw) -> None:
         """One batch, or none where nothing has come for a while."""

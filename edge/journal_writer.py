@@ -8,11 +8,11 @@ is written when it does.
 from __future__ import annotations
 
 import logging
-import time
 from collections import deque
 from collections.abc import Iterable
 from threading import Condition, Thread
 
+from edge.disk_watch import HANGS_S, DiskWatch
 from edge.spool import Journaled, Spool
 from shared.channels import Qos
 from shared.errors import StoreError
@@ -20,10 +20,8 @@ from shared.errors import StoreError
 logger = logging.getLogger(__name__)
 
 _PATIENCE_S = 1.0  # of who gives messages
-_HANGS_S = 5.0  # a worn card may take some seconds now and then
 _AGAIN_S = 1.0  # after a refusal: offering all of them at every message takes half a processor
 _UNSAVED_KEPT = 10_000  # and as many alerts, which nothing else ousts
-_LOOK_EVERY_S = 0.2
 
 
 class JournalWriter:
@@ -34,7 +32,7 @@ class JournalWriter:
         self._changed = Condition()
         self._alerts = _Unsaved()
         self._others = _Unsaved()
-        self._asked_s: float | None = None  # since when the disk owes an answer
+        self._disk = DiskWatch()
         self._refusal: str | None = None
         self._closed = False
         self._thread = Thread(target=self._run, name="journal", daemon=True)
@@ -47,8 +45,8 @@ class JournalWriter:
     @property
     def fault(self) -> str | None:
         """Why the journal cannot be written; None while it can."""
-        if self._hangs() and self._refusal is None:
-            return f"the journal hangs: the disk has not answered for {_HANGS_S:.0f} s"
+        if self._disk.hangs and self._refusal is None:
+            return f"the journal hangs: the disk has not answered for {HANGS_S:.0f} s"
         return self._refusal
 
     @property
@@ -63,7 +61,7 @@ class JournalWriter:
                 alert = message.channel.qos is Qos.ALERT
                 (self._alerts if alert else self._others).add(message)
             self._changed.notify_all()
-            if self._owed_for_s() < _PATIENCE_S:
+            if self._disk.owed_for_s < _PATIENCE_S:
                 self._changed.wait_for(self._is_answered, _PATIENCE_S)
 
     def close(self) -> None:
@@ -71,21 +69,11 @@ class JournalWriter:
         with self._changed:
             self._closed = True
             self._changed.notify_all()
-        while self._thread.is_alive():
-            self._thread.join(_LOOK_EVERY_S)
-            if self._hangs():
-                logger.error("the journal hangs: the messages that wait are not kept")
-                return
+        if not self._disk.join(self._thread):
+            logger.error("the journal hangs: the messages that wait are not kept")
 
     def _is_answered(self) -> bool:
         return self._refusal is not None or not (self._alerts.messages or self._others.messages)
-
-    def _owed_for_s(self) -> float:
-        asked_s = self._asked_s
-        return 0.0 if asked_s is None else time.monotonic() - asked_s
-
-    def _hangs(self) -> bool:
-        return self._owed_for_s() > _HANGS_S
 
     def _run(self) -> None:
         while True:
@@ -97,7 +85,7 @@ class JournalWriter:
                 )
                 ends = self._closed
                 offered = [*self._alerts.take(), *self._others.take()]
-                self._asked_s = time.monotonic()
+                self._disk.asked()
             self._offer(offered)
             if ends:
                 return
@@ -111,7 +99,8 @@ class JournalWriter:
             refusal = str(error)
         with self._changed:
             self._tell(refusal)
-            self._refusal, self._asked_s = refusal, None
+            self._refusal = refusal
+            self._disk.answered()
             for unsaved in (self._alerts, self._others):
                 unsaved.settle(saved=refusal is None)
             self._changed.notify_all()

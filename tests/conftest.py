@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import itertools
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
 from base_station.bench.rig import said
+from edge.journal_writer import JournalWriter
+from edge.spool import Spool
 from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position
@@ -46,6 +49,21 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         if subprocess.run(command, cwd=PROJECT_ROOT, check=False).returncode == 0:  # else tests say
             stamp.truncate(0)
             stamp.write(digest.hexdigest())
+
+
+@pytest.fixture
+def spool(tmp_path: Path) -> Iterator[Spool]:
+    """A unit's journal, with room for everything."""
+    spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
+    yield spool
+    spool.close()
+
+
+@pytest.fixture
+def journal(spool: Spool) -> Iterator[JournalWriter]:
+    journal = JournalWriter(spool)
+    yield journal
+    journal.close()
 
 
 @pytest.fixture(scope="session")

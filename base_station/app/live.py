@@ -100,7 +100,7 @@ class _LiveStation:
         self._announce, self._manager = announce, manager
         self._again: _Again | None = None
         bus, steady = resources.bus, self._disk.clock
-        self._lacking = StalePicture()
+        self._stale_picture = StalePicture()
         self._ended = closing.enter_context(EndedThreads())
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
         self._reported: Mapping[str, str] = {}  # problems of the station's parts, by the log
@@ -118,7 +118,7 @@ class _LiveStation:
         saved = self._disk.archive.latest()
         self._stepped_from_ns = saved.t_ns if saved else 0
         self._drive = start_drive(
-            self._disk.log, saved, self._surroundings(), self._begin, self._recovering()
+            self._disk.log, saved, self._drive_ports(), self._begin, self._recovering()
         )
         self._gate = self._side.gate_to(self._drive)
         # Ends behind the drive: the other station gets all.
@@ -166,7 +166,7 @@ class _LiveStation:
         standby = resources.config.standby
         return OneOfTwo(standby, parts) if standby.name else OnlyStation(parts)
 
-    def _surroundings(self) -> DrivePorts:
+    def _drive_ports(self) -> DrivePorts:
         """Of the drive."""
         return DrivePorts(
             feed=self._side.feed,
@@ -258,7 +258,7 @@ class _LiveStation:
 
         self._is_in_incident = is_in_incident
         self._reported = state.problems
-        self._lacking.note_stepped(self._stepped_from_ns, place[0])
+        self._stale_picture.note_stepped(self._stepped_from_ns, place[0])
         self._disk.clock.hold_while(lambda: not self._leads() or is_in_incident())
         self._side.begin(place, state)
 
@@ -270,18 +270,18 @@ class _LiveStation:
         return standing is not None and standing.view().other_role != ""
 
     def _start_again(self, cut: Place | None) -> None:
-        self._again = self._again or _Again(cut, self._lacking.is_so)
+        self._again = self._again or _Again(cut, self._stale_picture.is_so)
         self._server.stop()
 
     def _step_again(self, end_ns: int) -> None:
-        self._lacking.note_mended(end_ns)
+        self._stale_picture.note_mended(end_ns)
         self._make_good()
 
     def _make_good(self) -> None:
         standing = self._side.standing
         spared = standing is not None and standing.view().in_step
         in_incident = self._is_in_incident()
-        if self._lacking.can_be_made_good(
+        if self._stale_picture.can_be_made_good(
             leads=self._leads(), spared=spared, in_incident=in_incident
         ):
             self._start_again(None)
@@ -310,7 +310,7 @@ class _LiveStation:
         not, and the service manager hears of it.
         """
         self._manager.working()
-        others = (self._forgettings, self._disk.check, self._lacking, self._ended)
+        others = (self._forgettings, self._disk.check, self._stale_picture, self._ended)
         return facts_of(self._resources, self._disk.clock, self._side, others)
 
     def _ready(self, line: str) -> None:

@@ -20,13 +20,13 @@ _log = logging.getLogger(__name__)
 def start_drive(
     log: LogFeed,
     saved: SavedState | None,
-    surroundings: DrivePorts,
+    ports: DrivePorts,
     begin: Callable[[tuple[int, int], StationState], None],
     recovery: AbstractContextManager[Watch],
 ) -> StationDrive:
     """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
     pipeline = new_pipeline(saved.pipeline if saved else None)
-    drive = StationDrive(pipeline, surroundings)
+    drive = StationDrive(pipeline, ports)
     place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
     with recovery as watched:
         stepped = drive.rebuild(watched(log.records(place[0])), place)

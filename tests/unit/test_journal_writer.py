@@ -2,32 +2,16 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
 
 import pytest
 
-from edge.journal_writer import JournalWriter
 from edge.spool import Journaled, Spool
 from shared.channels import EVENT, TEMPERATURE
 from shared.errors import StoreError
 from tests.waiting import PATIENCE_S, until
-
-
-@pytest.fixture
-def spool(tmp_path):
-    spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
-    yield spool
-    spool.close()
-
-
-@pytest.fixture
-def journal(spool):
-    journal = JournalWriter(spool)
-    yield journal
-    journal.close()
 
 
 @pytest.fixture
@@ -168,7 +152,7 @@ def test_what_a_full_disk_cost_is_counted_and_said(spool, journal, monkeypatch, 
 
 
 def test_a_disk_that_hangs_is_not_waited_for(spool, journal, monkeypatch, hanging_disk):
-    monkeypatch.setattr("edge.journal_writer._HANGS_S", 0.0)
+    monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.0)
     with hanging_disk() as is_asked:
         monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.05)
         journal.write([said(1)])
@@ -206,7 +190,7 @@ def test_a_disk_that_is_slow_now_and_then_is_no_fault(spool, journal, monkeypatc
 
 
 def test_the_end_does_not_wait_for_a_disk_that_hangs(spool, journal, monkeypatch, hanging_disk):
-    monkeypatch.setattr("edge.journal_writer._HANGS_S", 0.3)
+    monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.3)
     monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.01)
     with hanging_disk() as is_asked:
         journal.write([said(1)])

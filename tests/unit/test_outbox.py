@@ -2,33 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sized
 from functools import partial
 
-import pytest
-
-from edge.journal_writer import JournalWriter
 from edge.outbox import Outbox
-from edge.spool import Spool
 from shared.channels import Qos
 from shared.errors import BusError
 from shared.messages import EventKind, Temperature, UnitEvent
 from tests.waiting import until
-
-
-@pytest.fixture
-def spool(tmp_path):
-    spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
-    yield spool
-    spool.close()
-
-
-@pytest.fixture
-def journal(spool):
-    journal = JournalWriter(spool)
-    yield journal
-    journal.close()
 
 
 def test_everything_is_sent_in_order_and_was_on_disk_before(spool, journal, stamper):
