@@ -85,7 +85,7 @@ def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -
 
 
 def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Locator) -> None:
-    for when, is_now in (("where the path begins", False), ("now", True)):
+    for when, is_now in (("at the start", False), ("now", True)):
         page.get_by_role("button", name="All start here").click()
         form = page.get_by_role("form", name="All start here")
         click_plan(page, -150, -80)

@@ -185,7 +185,7 @@ function WhenField({ set }: { set: number | null }) {
       When
       <select name="when">
         {set !== null && (
-          <option value="">{set === 0 ? "where the path begins" : clockTime(set)}</option>
+          <option value="">{set === 0 ? "at the start" : clockTime(set)}</option>
         )}
         {MINUTES_AGO.map((ago) => (
           <option key={ago} value={ago}>
