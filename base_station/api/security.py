@@ -7,31 +7,32 @@ something must come with the station's own ``Origin``.
 
 from __future__ import annotations
 
-import ipaddress
+import time
 from collections.abc import Callable, Collection, Coroutine
 from enum import StrEnum
+from threading import Lock
 from typing import Annotated, Any
 from urllib.parse import urlsplit
 
 from fastapi import Depends, Request, Response
 from fastapi.routing import APIRoute
 from fastapi.security import APIKeyCookie, HTTPBearer
-from limits import parse
-from limits.storage import MemoryStorage
-from limits.strategies import MovingWindowRateLimiter
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station, services_of
+from base_station.api.tries import Tries
 from base_station.db.principals import Principal, Role
+from base_station.networks import network_of
 
 COOKIE = "muster_session"
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 # What a standby lets people do all the same: log in, look, and make it lead.
 _AT_A_STANDBY = ("login", "logout", "replays", "standby")
-_LOGINS_OF_ONE = parse("10/minute")  # one name from one address
-_LOGINS_OF_ALL = parse("60/minute")  # any name from one address
+_LOGINS_OF_ONE = 10  # a minute: one name from one place
+_LOGINS_OF_ALL = 60  # any name from one place
+_MINUTE_S = 60.0
 
 # They declare the schemes in the OpenAPI document; ``principal_of`` reads the headers itself.
 _cookie_scheme = APIKeyCookie(name=COOKIE, auto_error=False)
@@ -173,30 +174,43 @@ def covers(principal: Principal, tags: Collection[str]) -> bool:
 
 
 class LoginThrottle:
-    """How often passwords may be tried."""
+    """How often passwords may be tried.  Thread-safe.
 
-    def __init__(self) -> None:
-        self._limiter = MovingWindowRateLimiter(MemoryStorage())
+    What is refused here is not counted: who tries one name again and again locks out nobody else
+    of the same place, which may be all consoles behind one router.
+    """
+
+    def __init__(self, monotonic_s: Callable[[], float] = time.monotonic) -> None:
+        self._lock = Lock()
+        self._of_one = Tries(_LOGINS_OF_ONE, _MINUTE_S, monotonic_s)
+        self._of_all = Tries(_LOGINS_OF_ALL, _MINUTE_S, monotonic_s)
 
     def check(self, address: str, username: str) -> None:
         """Count a try; Problem 429 where there were too many."""
-        place = _place_of(address)
-        allowed = self._limiter.hit(_LOGINS_OF_ALL, place) and self._limiter.hit(
-            _LOGINS_OF_ONE, place, username
-        )
-        if not allowed:
-            raise Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
+        place = network_of(address)
+        one = place, username
+        with self._lock:
+            if not (self._of_all.has_room(place) and self._of_one.has_room(one)):
+                raise _too_many()
+            self._of_all.note(place)
+            self._of_one.note(one)
+
+    def check_place(self, address: str) -> None:
+        """Problem 429 where there were too many tries; counts none."""
+        with self._lock:
+            if not self._of_all.has_room(network_of(address)):
+                raise _too_many()
+
+    def note_refused(self, address: str) -> None:
+        """Count a ticket that was of no use.  Good ones are not counted: nobody guesses one, and
+        all consoles of a place go on at once.
+        """
+        with self._lock:
+            self._of_all.note(network_of(address))
 
 
-def _place_of(address: str) -> str:
-    """One machine has as many addresses of an IPv6 network as it likes; they count as one."""
-    try:
-        parsed = ipaddress.ip_address(address.partition("%")[0])
-    except ValueError:
-        return address
-    if parsed.version == 6 and parsed.ipv4_mapped is None:
-        return str(ipaddress.ip_network((parsed, 64), strict=False))
-    return str(getattr(parsed, "ipv4_mapped", None) or parsed)
+def _too_many() -> Problem:
+    return Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
 
 
 def throttle_of(request: Request) -> LoginThrottle:

@@ -68,10 +68,11 @@ def go_on(
 ) -> Me:
     """Log in with a ticket of the other station, once."""
     address = request.client.host if request.client else ""
-    throttle.check(address, "")
+    throttle.check_place(address)
     secret = station.accounts.take_over(shown.ticket)
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
+        throttle.note_refused(address)
         raise Problem(401, "This ticket is of no use (any more); log in.")
     station.records.audit(principal.username, "WentOn", address)
     _give_cookie(request, response, station, secret)
