@@ -267,7 +267,7 @@ class Accounts:
             return None
         # An owner who was demoted takes the tokens along.
         role = min(Role.of(token.role), Role.of(owner_role))
-        return Principal(token.username, role, frozenset(token.scopes.split()))
+        return Principal(token.username, role, frozenset(token.scopes.split()), token.expires_ns)
 
 
 def _user(session: Session, username: str) -> User:

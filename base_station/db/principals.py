@@ -35,3 +35,4 @@ class Principal(msgspec.Struct, frozen=True):
     username: str
     role: Role
     scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
+    token_ends_ns: int | None = None  # None: it does not, or who asks has logged in

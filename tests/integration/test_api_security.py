@@ -15,6 +15,7 @@ from base_station.api.routes import ROUTERS
 from base_station.api.security import COOKIE, Scope
 from base_station.db.accounts import SESSION_S
 from base_station.db.principals import Role
+from base_station.db.records import EVER
 from shared.clock import ManualClock
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
@@ -174,6 +175,8 @@ async def test_a_new_password_ends_the_logins_elsewhere(
         assert (await elsewhere.post("/login", json=credentials)).status_code == 200
         changed = {"old_password": "wrong", "new_password": f"{PASSWORD} 2"}
         assert (await browser.post("/me/password", json=changed)).status_code == 403
+        tried = station.services.records.audit_entries(EVER)[0]
+        assert (tried.by, tried.action) == ("commander", "PasswordRefused")
         assert (await elsewhere.get("/me")).status_code == 200
         changed["old_password"] = PASSWORD
         assert (await browser.post("/me/password", json=changed)).status_code == 204
@@ -224,6 +227,28 @@ async def test_a_token_reaches_only_what_it_is_for(
         assert (await program.post("/tokens", json=wider)).status_code == 422
         narrower = {"name": "less", "role": "viewer", "scopes": ["incidents"]}
         assert (await program.post("/tokens", json=narrower)).status_code == 201
+
+
+async def test_a_token_makes_none_that_outlasts_it(
+    station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    lent = {"name": "lent", "role": "viewer", "days": 2}
+    made = (await browser.post("/tokens", json=lent)).json()
+    async with station.client() as program:
+        program.headers["authorization"] = f"Bearer {made['token']}"
+        for days in (None, 3):
+            wanted = {"name": "longer", "role": "viewer", "days": days}
+            answer = await program.post("/tokens", json=wanted)
+            assert answer.status_code == 403
+            assert "outlasts" in answer.json()["detail"]
+        clock.advance(86_400.0)
+        wanted = {"name": "as long", "role": "viewer", "days": 1}
+        heir = (await program.post("/tokens", json=wanted)).json()
+        program.headers["authorization"] = f"Bearer {heir['token']}"
+        clock.advance(86_399.0)
+        assert (await program.get("/me")).status_code == 200
+        clock.advance(1.0)
+        assert (await program.get("/me")).status_code == 401
 
 
 def test_a_token_can_be_for_every_part_of_the_api() -> None:

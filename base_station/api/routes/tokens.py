@@ -66,6 +66,9 @@ def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
     scopes = frozenset(new.scopes)
     if who.scopes and (not scopes or not scopes <= who.scopes):
         raise Problem(403, "A token makes only tokens for what it is for itself.")
+    ends_ns = who.token_ends_ns
+    if ends_ns is not None and (expires_ns is None or expires_ns > ends_ns):
+        raise Problem(403, "A token makes no token that outlasts it; give fewer days.")
     token_id, secret = station.accounts.add_token(who.username, new.name, role, expires_ns, scopes)
     what = ", ".join(sorted(scopes)) or "everything"
     station.records.audit(who.username, "AddedToken", f"{new.name} as {new.role} for {what}")

@@ -95,6 +95,7 @@ def change_own_password(
     """Ends all sessions of the user, this one too."""
     throttle.check("own password", who.username)
     if not station.accounts.is_right(who.username, change.old_password):
+        station.records.audit(who.username, "PasswordRefused", "")
         raise Problem(403, "The old password is wrong.")
     station.accounts.change_user(who.username, change.new_password, None)
     station.records.audit(who.username, "ChangedOwnPassword", "")
