@@ -219,28 +219,27 @@ class Spool:
 
     def _make_room(self) -> None:
         with self._writer:
-            while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
-                if not (self._free_acknowledged() or self._free_least_worth()):
-                    break
+            for number, to_seq in self._writer.execute(
+                "SELECT number, acknowledged_seq FROM boot WHERE acknowledged_seq > 0 "
+                "ORDER BY number"
+            ).fetchall():
+                for worth in _WORTHS:
+                    known = (worth, number, to_seq)
+                    self._free_while_full("worth = ? AND boot = ? AND seq <= ?", known)
+            given_up = sum(self._free_while_full("worth = ?", (worth,)) for worth in _WORTHS)
+        self.rows_freed += given_up
         bounds = _bounds(self._writer, self._boot)
         self.first_seq = self.last_seq + 1 if bounds is None else bounds[0]
 
-    def _free_acknowledged(self) -> bool:
-        for number, to_seq in self._writer.execute(
-            "SELECT number, acknowledged_seq FROM boot WHERE acknowledged_seq > 0 ORDER BY number"
-        ).fetchall():
-            for worth in _WORTHS:
-                if self._free("worth = ? AND boot = ? AND seq <= ?", (worth, number, to_seq)):
-                    return True
-        return False
-
-    def _free_least_worth(self) -> bool:
-        for worth in _WORTHS:
-            freed = self._free("worth = ?", (worth,))
-            if freed:
-                self.rows_freed += freed
-                return True
-        return False
+    def _free_while_full(self, condition: str, arguments: tuple[int, ...]) -> int:
+        """How many rows were freed: none of these is left, or there is room."""
+        freed = 0
+        while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
+            rows = self._free(condition, arguments)
+            if not rows:
+                break
+            freed += rows
+        return freed
 
     def _free(self, condition: str, arguments: tuple[int, ...]) -> int:
         cursor = self._writer.execute(
@@ -272,9 +271,12 @@ def open_spool(
 
 def _bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
     """First and last sequence number kept of one boot."""
+    # Each in a query of its own: both in one would read every message that is between them.
     found = [
         connection.execute(
-            "SELECT MIN(seq), MAX(seq) FROM message WHERE worth = ? AND boot = ?", (worth, boot)
+            "SELECT (SELECT MIN(seq) FROM message WHERE worth = :worth AND boot = :boot), "
+            "(SELECT MAX(seq) FROM message WHERE worth = :worth AND boot = :boot)",
+            {"worth": worth, "boot": boot},
         ).fetchone()
         for worth in _WORTHS
     ]

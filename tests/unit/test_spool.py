@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from edge import spool as spool_module
 from edge.spool import RAW, Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
@@ -143,6 +144,80 @@ def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_pa
     acknowledged = {boot.boot_id: boot.acknowledged_seq for boot in second.boots()}
     assert acknowledged == {1: 100, 2: 4}
     second.close()
+
+
+@pytest.fixture
+def steps(monkeypatch):
+    """Counts what SQLite does on connections that are made from now on."""
+    counted = [0]
+    connect = spool_module._connect
+
+    def count() -> int:
+        counted[0] += 1
+        return 0
+
+    def connected(path: Path) -> sqlite3.Connection:
+        connection = connect(path)
+        connection.set_progress_handler(count, 1)
+        return connection
+
+    monkeypatch.setattr(spool_module, "_connect", connected)
+    return counted
+
+
+def test_what_there_is_of_a_boot_is_said_without_reading_it(tmp_path, steps):
+    """The station asks every half minute, and a journal may have half a gigabyte."""
+    spool = spool_at(tmp_path)
+    spool.append([entry(1, channel) for channel in (IMU, POSITION)])
+    steps[0] = 0
+    spool.boots()
+    with_few, steps[0] = steps[0], 0
+    spool.append([entry(seq, IMU) for seq in range(2, 2000)])
+    steps[0] = 0
+    assert [(boot.first_seq, boot.last_seq) for boot in spool.boots()] == [(1, 1999)]
+    assert steps[0] < 2 * with_few
+    spool.close()
+
+
+def test_boots_of_which_nothing_is_left_do_not_slow_the_making_of_room(
+    tmp_path, steps, monkeypatch
+):
+    """A unit that has been started a thousand times knows of a thousand boots."""
+    monkeypatch.setattr(spool_module, "_ROWS_FREED_AT_ONCE", 5)
+    taken = []
+    for number, boots in enumerate((1, 50)):
+        folder = tmp_path / str(number)
+        for boot_id in range(1, boots + 1):
+            spool = spool_at(folder, boot_ids=[boot_id], limit_bytes=1 * MB)
+            spool.acknowledge(boot_id, 1)
+            spool.close()
+        spool = spool_at(folder, boot_ids=[999], limit_bytes=1 * MB)
+        spool.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
+        steps[0] = 0
+        spool.append([entry(1501)])
+        assert spool.rows_freed > 100
+        taken.append(steps[0])
+        spool.close()
+    assert taken[1] < 5 * taken[0]
+
+
+def test_what_could_not_be_given_up_after_all_is_not_counted(tmp_path, monkeypatch):
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    spool.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
+    with monkeypatch.context() as broken:
+        free, calls = spool._free, itertools.count(1)
+
+        def refuse_then(condition: str, arguments: tuple[int, ...]) -> int:
+            if next(calls) == 2:
+                raise sqlite3.OperationalError("disk I/O error")
+            return free(condition, arguments)
+
+        broken.setattr(spool, "_free", refuse_then)
+        with pytest.raises(StoreError, match="I/O"):
+            spool.append([entry(1501)])
+    assert len(seqs(spool, spool.boot_id)) == 1500
+    assert spool.rows_freed == 0
+    spool.close()
 
 
 def test_what_is_safe_outlives_a_power_cut(tmp_path):
