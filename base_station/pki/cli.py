@@ -87,11 +87,13 @@ def _issuing(
         png: Png = None,
     ) -> None:
         from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+        from base_station.pki.hosts import require_endpoint  # noqa: PLC0415
 
         holder = _holder(operator=operator, tracker=tracker)
+        endpoints = [require_endpoint(one) for one in connect or ()]
         target = _free_target(name, holder, out, png, qr=qr)
         valid = timedelta(days=days)
-        _hand_over(issue(PkiFolder(data), name, holder, valid, connect or ()), target, png, qr=qr)
+        _hand_over(issue(PkiFolder(data), name, holder, valid, endpoints), target, png, qr=qr)
 
     return command
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,8 +12,12 @@ from pathlib import Path
 from shared.errors import ConfigError
 
 
-def make_folder(folder: Path) -> None:
-    """Mode 0700.  Raises ConfigError where it cannot, or is there already."""
+@contextmanager
+def new_folder(folder: Path) -> Iterator[None]:
+    """Make it, mode 0700; where the block fails nothing is left of it.
+
+    Raises ConfigError where it cannot be made, or is there already.
+    """
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir(mode=0o700)
@@ -21,6 +26,11 @@ def make_folder(folder: Path) -> None:
             os.chown(folder, owner.st_uid, owner.st_gid)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be made: {error.strerror or error}") from error
+    try:
+        yield
+    except ConfigError:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def write_atomically(path: Path, content: bytes) -> None:

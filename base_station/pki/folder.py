@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 
 from base_station.pki.certificates import Issued, issue, make_authority, read_issued
-from base_station.pki.files import locked, make_folder, write_atomically, write_together
+from base_station.pki.files import locked, new_folder, write_atomically, write_together
 from base_station.pki.registry import Entry, Registry, load_registry, save_registry
 from base_station.pki.station_enrolment import StationEnrolment
 from shared.channels import validate_unit_id
@@ -68,6 +68,7 @@ class PkiFolder:
         added, for the station itself.  ``connect``: endpoints written into enrolments.
         """
         if self._folder.exists():
+            self.registry()  # says what to do where a power cut left no whole authority
             raise ConfigError(
                 f"{self._folder} is there already: making a new authority would shut out "
                 "everyone enrolled; for another address use `muster pki renew-station --host`, "
@@ -78,14 +79,15 @@ class PkiFolder:
                 f"this machine's clock says {self._now():%Y-%m-%d}: set it first, certificates "
                 "would begin and end by it"
             )
-        make_folder(self._folder)
+        now = self._now().replace(microsecond=0)  # the authority's end is a whole second
         registry = Registry(organisation, _with_loopback(hosts), tuple(connect))
-        with locked(self._folder):
-            authority = make_authority(organisation, self._now(), AUTHORITY_VALID)
+        authority = make_authority(organisation, now, AUTHORITY_VALID)
+        issued = _issue_station(authority, registry, now, valid)
+        with new_folder(self._folder), locked(self._folder):
             write_atomically(self._folder / "authority.key", authority.key_pem())
             write_atomically(self._folder / "authority.pem", authority.certificate_pem())
             # The registry is written last: what is interrupted is not taken for an authority.
-            self._issue_station(authority, registry, valid)
+            self._put_station(issued, registry)
 
     def enroll(
         self,
@@ -138,7 +140,8 @@ class PkiFolder:
                 registry = msgspec.structs.replace(registry, hosts=_with_loopback(hosts))
             if connect:
                 registry = msgspec.structs.replace(registry, connect=tuple(connect))
-            self._issue_station(self._authority(), registry, valid)
+            issued = _issue_station(self._authority(), registry, self._now(), valid)
+            self._put_station(issued, registry)
 
     def enroll_station(
         self,
@@ -177,26 +180,42 @@ class PkiFolder:
 
     def join(self, enrolment: StationEnrolment) -> None:
         """Make this folder that of a further station, or give it a new certificate."""
-        identity = enrolment.identity
         if not self.exists():
-            make_folder(self._folder)
-            registry = enrolment.registry
-        elif self._read("authority.pem") != identity.authority:
+            with new_folder(self._folder), locked(self._folder):
+                self._put_joined(enrolment.identity, enrolment.registry)
+            return
+        with locked(self._folder):
+            self._require_same_station(enrolment)
+            self._put_joined(enrolment.identity, self.registry().merged(enrolment.registry))
+
+    def _put_joined(self, identity: TlsIdentity, registry: Registry) -> None:
+        write_together(
+            {
+                self._folder / "authority.pem": identity.authority,
+                self._folder / "station.key": identity.private_key,
+                self._folder / "station.pem": identity.certificate,
+            }
+        )
+        save_registry(self.registry_path, registry)
+
+    def _require_same_station(self, enrolment: StationEnrolment) -> None:
+        """A file that was taken to the wrong machine would make that one another station."""
+        if self._read("authority.pem") != enrolment.identity.authority:
             raise ConfigError(
                 f"{self._folder} belongs to another authority; move it away, or give another "
                 "folder with --data"
             )
-        else:
-            registry = self.registry().merged(enrolment.registry)
-        with locked(self._folder):
-            write_together(
-                {
-                    self._folder / "authority.pem": identity.authority,
-                    self._folder / "station.key": identity.private_key,
-                    self._folder / "station.pem": identity.certificate,
-                }
+        try:
+            own = TlsIdentity(enrolment.identity.authority, self._read("station.pem"), b"")
+            common_name = own.common_name()
+        except ConfigError:
+            return  # missing or damaged: what is joined takes its place
+        names = [e.name for e in self.registry().entries if e.common_name == common_name]
+        if names not in ([], [enrolment.name]):
+            raise ConfigError(
+                f"{self._folder} is that of another station, and the file is for "
+                f"{enrolment.name}: take it to that machine, or give another folder with --data"
             )
-            save_registry(self.registry_path, registry)
 
     def take_registry(self, other: Registry) -> None:
         """Add what another station of this authority has enrolled and revoked."""
@@ -274,10 +293,7 @@ class PkiFolder:
         )
         return Enrolment(holder, name, tuple(connect) or registry.connect, identity)
 
-    def _issue_station(self, authority: Issued, registry: Registry, valid: timedelta) -> None:
-        issued = issue(
-            authority, STATION_NAME, Holder.STATION, self._now(), valid, hosts=registry.hosts
-        )
+    def _put_station(self, issued: Issued, registry: Registry) -> None:
         write_together(
             {
                 self._folder / "station.key": issued.key_pem(),
@@ -298,6 +314,12 @@ class PkiFolder:
             raise ConfigError(f"{path} is missing; put it back, or restore a backup") from None
         except OSError as error:
             raise ConfigError(f"{path} cannot be read: {error}") from error
+
+
+def _issue_station(
+    authority: Issued, registry: Registry, now: datetime, valid: timedelta
+) -> Issued:
+    return issue(authority, STATION_NAME, Holder.STATION, now, valid, registry.hosts)
 
 
 def _with_loopback(hosts: Sequence[str]) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import psutil
 
 from shared.errors import ConfigError
 
+_MISTYPED_ADDRESS = re.compile(r"([^.]*\.)*[0-9]+")  # no name ends in a number
 _HOST_NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?(\.[A-Za-z0-9-]+)*")
 
 
@@ -31,7 +32,8 @@ def require_host(host: str) -> str:
     try:
         return str(ipaddress.ip_address(host))
     except ValueError:
-        if _HOST_NAME.fullmatch(host) is None or len(host) > 253:
+        mistyped = _MISTYPED_ADDRESS.fullmatch(host) is not None
+        if mistyped or _HOST_NAME.fullmatch(host) is None or len(host) > 253:
             raise ConfigError(
                 f"{host!r} is no host: give a name such as station.local or an address such as "
                 "192.168.1.10, without a port"
@@ -41,6 +43,17 @@ def require_host(host: str) -> str:
 
 def tls_endpoint(host: str, port: int) -> str:
     return f"tls/[{host}]:{port}" if ":" in host else f"tls/{host}:{port}"
+
+
+def require_endpoint(endpoint: str) -> str:
+    """Return ``endpoint`` when a unit can look for its station there, else raise ConfigError."""
+    host, _, port = endpoint.removeprefix("tls/").rpartition(":")
+    if not endpoint.startswith("tls/") or not port.isdecimal() or not 0 < int(port) < 65_536:
+        raise ConfigError(
+            f"{endpoint!r} is no end of a bus: write tls/HOST:PORT, as in tls/10.0.0.1:7447"
+        )
+    require_host(host.removeprefix("[").removesuffix("]"))
+    return endpoint
 
 
 def _is_reachable(text: str) -> bool:

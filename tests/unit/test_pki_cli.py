@@ -41,7 +41,9 @@ def test_init_without_a_host_takes_what_the_machine_has(tmp_path: Path) -> None:
     assert len(registry.connect) == 1
 
 
-@pytest.mark.parametrize("host", ["192.0.2.7:7447", "tls/station", "a b", ""])
+@pytest.mark.parametrize(
+    "host", ["192.0.2.7:7447", "tls/station", "a b", "", "192.0.2.256", "192.0.2"]
+)
 def test_init_refuses_what_is_no_host(tmp_path: Path, host: str) -> None:
     with pytest.raises(ConfigError, match="is no host"):
         run("init", "--data", tmp_path, "--host", host)
@@ -55,6 +57,25 @@ def test_enroll_writes_one_file(data: Path, tmp_path: Path) -> None:
     enrolment = read_enrolment(out)
     assert (enrolment.holder, enrolment.name) == (Holder.UNIT, "FF-01")
     assert enrolment.connect == ("tls/station.local:7447",)
+
+
+def test_enroll_names_other_ends_of_the_bus_where_it_is_told(data: Path, tmp_path: Path) -> None:
+    ends = ("tls/192.0.2.9:7447", "tls/[fd00::7]:7000", "tls/station.local:1")
+    flags = [flag for end in ends for flag in ("--connect", end)]
+    run("enroll", "FF-01", "--data", data, "--out", tmp_path / "1", *flags)
+    assert read_enrolment(tmp_path / "1").connect == ends
+
+
+@pytest.mark.parametrize(
+    "end", ["192.0.2.9:7447", "tls/192.0.2.9", "tls/192.0.2.9:0", "tls/192.0.2.9:65536", "tls/:1",
+            "tcp/192.0.2.9:7447", 'tls/a"b:7447', "tls/192.0.2.900:7447"],
+)  # fmt: skip
+def test_an_end_that_no_unit_could_find_is_seen_before_anybody_is_enrolled(
+    data: Path, tmp_path: Path, end: str
+) -> None:
+    with pytest.raises(ConfigError, match=r"is no (end of a bus|host)"):
+        run("enroll", "FF-01", "--data", data, "--out", tmp_path / "1", "--connect", end)
+    assert PkiFolder(data).registry().current(Holder.UNIT, "FF-01") is None
 
 
 def test_enroll_names_the_file_after_the_unit(

@@ -149,6 +149,41 @@ def test_without_an_authority_it_says_how_to_make_one(tmp_path: Path) -> None:
             act(PkiFolder(tmp_path))
 
 
+@pytest.mark.parametrize(
+    ("organisation", "days"), [("x" * 60, 365), ("Test", 3651)], ids=["name", "days"]
+)
+def test_an_authority_that_cannot_be_made_leaves_nothing_behind(
+    tmp_path: Path, organisation: str, days: int
+) -> None:
+    pki = PkiFolder(tmp_path)
+    with pytest.raises(ConfigError, match=r"does not fit a certificate|outlive its authority"):
+        pki.create(organisation, [], [], days * DAY)
+    pki.create("Test", [], [], 3650 * DAY)  # as long as the authority itself
+
+
+@pytest.mark.parametrize("refused", range(1, 5))
+def test_a_disk_that_is_full_leaves_no_half_of_an_authority(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: int
+) -> None:
+    calls = itertools.count(1)
+
+    def full(descriptor: int) -> None:
+        if next(calls) >= refused:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr("base_station.pki.files.os.fsync", full)
+        with pytest.raises(ConfigError, match="No space left"):
+            PkiFolder(tmp_path).create("Test", [], [])
+    PkiFolder(tmp_path).create("Test", [], [])
+
+
+def test_what_a_power_cut_left_of_an_authority_is_called_that(pki: PkiFolder) -> None:
+    pki.registry_path.unlink()
+    with pytest.raises(ConfigError, match=r"registry\.json is missing.*move its folder away"):
+        pki.create("Test", [], [])
+
+
 @pytest.mark.parametrize("name", ["", "all", "station", "a/b", "a*", "-a", "a b", "é"])
 def test_a_name_that_cannot_stand_in_a_key_is_refused(pki: PkiFolder, name: str) -> None:
     with pytest.raises(ConfigError, match="cannot be used"):

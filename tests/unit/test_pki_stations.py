@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from base_station.pki.station_enrolment import read_station_enrolment
+from shared.enrolment import Holder
 from shared.errors import ConfigError
 from shared.tls import parse_certificate
 
@@ -100,6 +102,51 @@ def test_a_station_is_enrolled_again_for_a_new_certificate(
     second.join(first.enroll_station("second", ["10.0.0.9"], SECOND))
     assert second.station_identity().common_name() == "station:second"
     assert len(second.registry().entries) == 2
+
+
+def test_a_file_that_is_taken_to_the_wrong_machine_changes_nothing(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    third = first.enroll_station("third", ["10.0.0.3"], "tls/10.0.0.3:7447")
+    for folder in (first, second):
+        before = folder.station_identity(), folder.registry()
+        with pytest.raises(ConfigError, match=r"another station.*for third: take it to that"):
+            folder.join(third)
+        assert (folder.station_identity(), folder.registry()) == before
+
+
+def test_a_damaged_certificate_is_replaced_by_joining_again(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    (second.path / "station.pem").write_text("no certificate")
+    second.join(first.enroll_station("second", ["10.0.0.2"], SECOND))
+    assert second.station_identity().common_name() == "station:second"
+
+
+def test_a_station_that_was_revoked_joins_again_under_its_name(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    first.revoke("second", Holder.STATION)
+    second.take_registry(first.registry())
+    second.join(first.enroll_station("second", ["10.0.0.2"], SECOND))
+    assert second.station_identity().common_name() == "station:second#2"
+
+
+def test_a_disk_that_is_full_leaves_no_half_of_a_further_station(
+    first: PkiFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = first.enroll_station("second", ["10.0.0.2"], SECOND)
+    folder = PkiFolder(tmp_path / "second")
+
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr("base_station.pki.files.os.fsync", full)
+        with pytest.raises(ConfigError, match="No space left"):
+            folder.join(file)
+    folder.join(file)
+    assert folder.station_identity().common_name() == "station:second"
 
 
 def test_a_folder_of_another_authority_is_left_alone(first: PkiFolder, tmp_path: Path) -> None:
