@@ -56,11 +56,14 @@ def _boots(spool: Spool) -> tuple[JournalBoot, ...]:
 
 
 def _newest_first(spool: Spool, boot_id: int, channel: Channel) -> Iterator[Message]:
-    """Without what cannot be understood, as after a step back to an older program: a unit that
-    would not start for it could say nothing at all.
+    """Without what cannot be understood, as after a step back to an older program, and up to where
+    the journal is damaged: a unit that would not start for it could say nothing at all.
     """
-    for payload in spool.newest_first(boot_id, channel):
-        try:
-            yield decode(channel, payload)
-        except WireError as error:
-            logger.warning("in the journal: %s", error)
+    try:
+        for payload in spool.newest_first(boot_id, channel):
+            try:
+                yield decode(channel, payload)
+            except WireError as error:
+                logger.warning("in the journal: %s", error)
+    except StoreError as error:
+        logger.warning("not all that was said before this start is known: %s", error)

@@ -32,6 +32,7 @@ from shared.messages import (
 STARTED, STOPPED = EventKind.STARTED, EventKind.STOPPED
 MAYDAY, CANCELLED, FALL = EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.FALL
 BOOTS = itertools.count(1)
+PAGE_BYTES = 4096
 
 
 def boot(path: Path, *kinds: EventKind) -> bool:
@@ -84,6 +85,20 @@ def test_what_cannot_be_understood_keeps_no_unit_from_starting(tmp_path):
             )
     spool = Spool(path, BOOTS.__next__, 0, 10**8)
     assert mayday_before(spool)
+    assert answers_before(spool) == []
+    spool.close()
+
+
+@pytest.mark.parametrize(("at_last", "latched"), [(MAYDAY, True), (FALL, False)])
+def test_damage_inside_the_journal_keeps_no_unit_from_starting(tmp_path, at_last, latched):
+    """What was said after the part that is damaged is known all the same."""
+    boot(tmp_path, MAYDAY, *[FALL] * 1000, at_last)
+    path = tmp_path / "journal.sqlite"
+    content = path.read_bytes()
+    middle = len(content) // 2 // PAGE_BYTES * PAGE_BYTES
+    path.write_bytes(content[:middle] + b"\xff" * PAGE_BYTES + content[middle + PAGE_BYTES :])
+    spool = Spool(path, BOOTS.__next__, 0, 10**8)
+    assert mayday_before(spool) is latched
     assert answers_before(spool) == []
     spool.close()
 
