@@ -11,6 +11,7 @@ from typing import Annotated
 from fastapi import Path, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from base_station.db.principals import BARRED
 from base_station.db.records import FOREVER_NS, Window
 from shared.clock import NS_PER_MS
 
@@ -18,9 +19,8 @@ MOST_BYTES = 65_536  # of a form
 MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
 LAST_MS = FOREVER_NS // NS_PER_MS
 
-_BARRED = r"\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff"
-_PRINTABLE = rf"^[^{_BARRED}]*$"
-_NAME = rf"^[^{_BARRED}]*[^\s{_BARRED}][^{_BARRED}]*$"
+_PRINTABLE = rf"^[^{BARRED}]*$"
+_NAME = rf"^[^{BARRED}]*[^\s{BARRED}][^{BARRED}]*$"
 _ID = r"^[A-Za-z0-9_.:-]{1,128}$"
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"

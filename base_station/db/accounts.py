@@ -21,7 +21,7 @@ from sqlalchemy.orm import Session
 from base_station.db.let_in import LetIn
 from base_station.db.models import ApiToken, HandOver, LoginSession, User
 from base_station.db.passwords import Passwords
-from base_station.db.principals import Principal, Role
+from base_station.db.principals import Principal, Role, require_username
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
@@ -43,8 +43,7 @@ class Accounts:
     # ---- users
 
     def add_user(self, username: str, password: str, role: Role) -> None:
-        if not username.strip():
-            raise UserError("a user needs a name")
+        require_username(username)
         password_hash = self._passwords.hash(password)
         with self._store.write() as session:
             if session.get(User, username) is not None:

@@ -9,7 +9,7 @@ from pwdlib import PasswordHash
 
 from shared.errors import UserError
 
-MIN_PASSWORD = 10
+MIN_PASSWORD, MAX_PASSWORD = 10, 256
 _AT_ONCE = 2
 
 
@@ -23,9 +23,11 @@ class Passwords:
         self._nobody = self._hasher.hash(secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:
-        """UserError where it is too short to be one."""
+        """UserError where it is too short to be one, or longer than what is read at a login."""
         if len(password) < MIN_PASSWORD:
             raise UserError(f"a password needs at least {MIN_PASSWORD} characters")
+        if len(password) > MAX_PASSWORD:
+            raise UserError(f"a password has at most {MAX_PASSWORD} characters")
         with self._hashing:
             return self._hasher.hash(password)
 

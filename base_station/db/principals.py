@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from enum import IntEnum
 
 import msgspec
 
 from shared.errors import UserError
+
+# What no name holds: what controls, ends a line, turns writing round, or has no place in XML.
+BARRED = r"\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff"
+_USERNAME = re.compile(rf"(?!\.\.?$)(?=.*\S)[^/\ud800-\udfff{BARRED}]{{1,80}}")
+
+
+def require_username(username: str) -> None:
+    """UserError where nobody could log in by it, or name it in an address of the API."""
+    if _USERNAME.fullmatch(username) is None:
+        raise UserError("a user's name is one line of 1 to 80 plain characters, without '/'")
 
 
 class Role(IntEnum):

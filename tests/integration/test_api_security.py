@@ -6,6 +6,7 @@ import dataclasses
 import sqlite3
 from collections.abc import AsyncIterator
 from pathlib import Path
+from urllib.parse import quote
 
 import httpx
 import pytest
@@ -17,6 +18,7 @@ from base_station.db.accounts import SESSION_S
 from base_station.db.principals import Role
 from base_station.db.records import EVER
 from shared.clock import ManualClock
+from shared.errors import UserError
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
 
@@ -254,6 +256,43 @@ async def test_a_token_makes_none_that_outlasts_it(
 def test_a_token_can_be_for_every_part_of_the_api() -> None:
     tags = {tag for router in ROUTERS for tag in router.tags}
     assert tags - {"login"} <= {scope.value for scope in Scope}
+
+
+@pytest.mark.parametrize("username", ["Zoë O'Neil", "a#b?c%2Fd&e", "x" * 80, "50 %"])
+async def test_every_user_that_can_be_made_can_log_in_and_be_removed(
+    station: DeskStation, username: str
+) -> None:
+    async with station.client(Role.ADMINISTRATOR) as administrator, station.client() as client:
+        new = {"username": username, "password": PASSWORD, "role": "viewer"}
+        assert (await administrator.post("/users", json=new)).status_code == 204
+        credentials = {"username": username, "password": PASSWORD}
+        answer = await client.post("/login", json=credentials, headers={"origin": ORIGIN})
+        assert answer.status_code == 200
+        path = f"/users/{quote(username, safe='')}"
+        assert (await administrator.delete(f"{path}/sessions")).status_code == 204
+        assert (await client.get("/me")).status_code == 401
+        assert (await administrator.put(path, json={"role": "commander"})).status_code == 204
+        assert (await administrator.delete(path)).status_code == 204
+
+
+@pytest.mark.parametrize(
+    "username", ["", " ", "day/night", ".", "..", "a\nb", "a\x7fb", "a\u202eb", "x" * 81, "\udcff"]
+)
+def test_nobody_is_made_whom_no_login_and_no_address_can_name(
+    station: DeskStation, username: str
+) -> None:
+    accounts = station.services.accounts
+    with pytest.raises(UserError, match="user's name is"):
+        accounts.add_user(username, PASSWORD, Role.VIEWER)
+
+
+def test_no_password_is_kept_that_no_login_takes(station: DeskStation) -> None:
+    accounts = station.services.accounts
+    accounts.change_user("viewer", "x" * 256, None)
+    assert accounts.log_in("viewer", "x" * 256) is not None
+    for password, problem in (("x" * 257, "at most 256"), ("x" * 9, "at least 10")):
+        with pytest.raises(UserError, match=problem):
+            accounts.change_user("viewer", password, None)
 
 
 async def test_an_administrator_ends_sessions(

@@ -12,6 +12,7 @@ from base_station.api.problems import Problem
 from base_station.api.security import COOKIE, Throttle, Viewer
 from base_station.api.services import Services, Station
 from base_station.db.accounts import HAND_OVER_S, SESSION_S
+from base_station.db.passwords import MAX_PASSWORD
 from base_station.db.principals import Principal
 
 router = APIRouter(tags=["login"])
@@ -19,7 +20,7 @@ router = APIRouter(tags=["login"])
 
 class Credentials(Form):
     username: Name
-    password: Annotated[str, StringConstraints(max_length=256)]
+    password: Annotated[str, StringConstraints(max_length=MAX_PASSWORD)]
 
 
 class Me(BaseModel):

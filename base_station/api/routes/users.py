@@ -12,12 +12,12 @@ from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import Administrator, Throttle, Viewer
 from base_station.api.services import Station
-from base_station.db.passwords import MIN_PASSWORD
+from base_station.db.passwords import MAX_PASSWORD, MIN_PASSWORD
 from base_station.db.principals import Role
 
 router = APIRouter(tags=["users"])
 
-Password = Annotated[str, StringConstraints(min_length=MIN_PASSWORD, max_length=256)]
+Password = Annotated[str, StringConstraints(min_length=MIN_PASSWORD, max_length=MAX_PASSWORD)]
 RoleWord = Literal["viewer", "commander", "administrator"]
 Username = Annotated[str, Path(min_length=1, max_length=80)]
 
@@ -41,7 +41,7 @@ class UserChange(Form):
 
 
 class PasswordChange(Form):
-    old_password: Annotated[str, StringConstraints(max_length=256)]
+    old_password: Annotated[str, StringConstraints(max_length=MAX_PASSWORD)]
     new_password: Password
 
 
