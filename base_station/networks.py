@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ipaddress
+from functools import lru_cache
 
 
+@lru_cache(maxsize=4096)  # asked of all connections whenever one more comes
 def network_of(address: str) -> str:
     """One machine has as many addresses of an IPv6 network as it likes; they count as one."""
     try:

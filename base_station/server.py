@@ -17,6 +17,7 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from base_station import interpreter
+from base_station.networks import network_of
 from base_station.trouble import Trouble
 from shared.errors import ConfigError
 
@@ -25,8 +26,9 @@ _HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
 _LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
 _MOST_CONNECTIONS = 2000
-_MOST_OF_ONE = 500  # address: a proxy, or two hundred consoles behind one router
+_MOST_OF_ONE = 500  # place: a proxy, or two hundred consoles behind one router
 _ASK_WITHIN_S = 10.0  # the head of a request
+_GO_ON_WITHIN_S = 60.0  # with a body, for a radio that loses much
 
 
 _log = logging.getLogger(__name__)
@@ -46,9 +48,8 @@ class _Connection(H11Protocol):
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        host = self.client[0] if self.client else ""
-        hosts = (getattr(one, "client", None) or ("",) for one in self.connections)
-        same = sum(1 for one in hosts if one[0] == host)
+        place = _place_of(self)
+        same = sum(1 for one in self.connections if _place_of(one) == place)
         if len(self.connections) > _MOST_CONNECTIONS or same > _MOST_OF_ONE:
             transport.abort()
         self._mind_deadline()
@@ -65,7 +66,9 @@ class _Connection(H11Protocol):
         answering = getattr(self.cycle, "response_complete", True) is False
         if answering:
             self._end_deadline()
-        elif self._deadline is None:
+        if answering and self.cycle.more_body:
+            self._deadline = self.loop.call_later(_GO_ON_WITHIN_S, self._give_up)
+        elif not answering and self._deadline is None:
             self._deadline = self.loop.call_later(_ASK_WITHIN_S, self._give_up)
 
     def _end_deadline(self) -> None:
@@ -74,8 +77,16 @@ class _Connection(H11Protocol):
             self._deadline = None
 
     def _give_up(self) -> None:
-        if self.transport.get_protocol() is self:  # else it is a WebSocket by now
+        self._deadline = None
+        if self.flow.read_paused:  # the station lets the body wait
+            self._mind_deadline()
+        elif self.transport.get_protocol() is self:  # else it is a WebSocket by now
             self.transport.close()
+
+
+def _place_of(connection: object) -> str:
+    client = getattr(connection, "client", None)
+    return network_of(client[0]) if client else ""
 
 
 class ConsoleServer:

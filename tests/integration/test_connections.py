@@ -5,10 +5,13 @@ from __future__ import annotations
 import asyncio
 import resource
 from collections.abc import AsyncIterator
+from types import SimpleNamespace
 
 import pytest
 import pytest_asyncio
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import PlainTextResponse
+from starlette.types import Receive, Scope, Send
 
 from base_station import server
 from base_station.server import ConsoleServer, allow_many_files, bind
@@ -18,12 +21,22 @@ GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 
+async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "http":
+        try:
+            await Request(scope, receive).body()
+        except ClientDisconnect:
+            return
+        await PlainTextResponse("here")(scope, receive, send)
+
+
 @pytest_asyncio.fixture
 async def port(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[int]:
     monkeypatch.setattr(server, "_ASK_WITHIN_S", 1.0)
+    monkeypatch.setattr(server, "_GO_ON_WITHIN_S", 1.0)
     monkeypatch.setattr(server, "_MOST_OF_ONE", 5)
     listening = bind("127.0.0.1", 0)
-    serving = ConsoleServer(PlainTextResponse("here"), listening)
+    serving = ConsoleServer(answer_what_was_read, listening)
     task = asyncio.create_task(serving.serve())
     await serving.wait_started()
     yield listening.getsockname()[1]
@@ -31,8 +44,8 @@ async def port(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[int]:
     await task
 
 
-async def connect(port: int) -> Stream:
-    return await asyncio.open_connection("127.0.0.1", port)
+async def connect(port: int, place: str = "127.0.0.1") -> Stream:
+    return await asyncio.open_connection("127.0.0.1", port, local_addr=(place, 0))
 
 
 async def answer_of(stream: Stream) -> bytes:
@@ -63,18 +76,42 @@ async def test_who_asks_nothing_or_half_a_question_is_let_go(port: int) -> None:
         stream[1].close()
 
 
-async def test_one_address_has_only_so_many(port: int) -> None:
+async def test_who_does_not_go_on_with_a_body_is_let_go(port: int) -> None:
+    whole, half = [await connect(port) for _ in range(2)]
+    for stream in (whole, half):
+        stream[1].write(GET.replace(b"GET", b"POST") + b"Content-Length: 4\r\n\r\nhe")
+    whole[1].write(b"re")
+    assert await answer_of(whole) == b"HTTP/1.1 200 OK"
+    async with asyncio.timeout(PATIENCE_S):
+        assert await half[0].read() == b""
+    for stream in (whole, half):
+        stream[1].close()
+
+
+async def test_one_place_has_only_so_many(port: int) -> None:
     streams = [await connect(port) for _ in range(8)]
     for _, writer in streams:
         writer.write(GET + b"\r\n")
     answers = await asyncio.gather(*map(answer_of, streams), return_exceptions=True)
     assert sum(isinstance(one, bytes) for one in answers) == 5
-    for _, writer in streams:
+    elsewhere = await connect(port, "127.0.0.2")
+    elsewhere[1].write(GET + b"\r\n")
+    assert await answer_of(elsewhere) == b"HTTP/1.1 200 OK"
+    for _, writer in (*streams, elsewhere):
         writer.close()
     async with asyncio.timeout(PATIENCE_S):  # until the server has seen them go
         while not (answer := await asked(port)):
             await asyncio.sleep(0.02)
     assert answer == b"HTTP/1.1 200 OK"
+
+
+def test_a_network_of_ipv6_is_one_place() -> None:
+    def place(address: str) -> str:
+        return server._place_of(SimpleNamespace(client=(address, 1)))
+
+    assert place("2001:db8:1:2::1") == place("2001:db8:1:2:3:4:5:6")
+    assert place("2001:db8:1:2::1") != place("2001:db8:1:3::1")
+    assert place("192.0.2.1") != place("192.0.2.2")
 
 
 def test_connections_take_no_files_from_the_log() -> None:
