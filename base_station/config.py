@@ -14,7 +14,7 @@ from shared.config import Within
 from shared.errors import ConfigError
 from shared.log import LogLevel
 
-_ENDPOINT = re.compile(r"(tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):\d{1,5}([?#]\S*)?")
+_ENDPOINT = re.compile(r"(?:tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):(\d{1,5})(?:[?#]\S*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +92,12 @@ class StationConfig:
 
     def plain_endpoints(self) -> tuple[str, ...]:
         """Where others could listen in: what is not encrypted and leaves this machine."""
-        plain = [one for one in self.bus.listen if not one.startswith("tls/")]
+        plain = {
+            one: endpoint_address(one) for one in self.bus.listen if not one.startswith("tls/")
+        }
         if self.http.certificate is None:
-            plain.append(self.http.listen)
-        return tuple(one for one in plain if not _is_loopback(one.rpartition("/")[2]))
+            plain[self.http.listen] = host_and_port(self.http.listen)
+        return tuple(one for one, (host, _) in plain.items() if not _is_loopback(host))
 
     def standing_problems(self) -> tuple[str, ...]:
         """What is wrong for as long as these settings stand, for the console."""
@@ -122,16 +124,32 @@ def host_and_port(address: str) -> tuple[str, int]:
     return host, int(port)
 
 
+def endpoint_address(endpoint: str) -> tuple[str, int]:
+    """Host and port of an end of a bus; raises ConfigError."""
+    parts = _ENDPOINT.fullmatch(endpoint)
+    host, port = ("", 0) if parts is None else (parts[1].strip("[]"), int(parts[2]))
+    if not 0 < port < 65_536 or not _can_be_looked_up(host):
+        raise ConfigError(
+            f"{endpoint!r} is no end of a bus: write tls/HOST:PORT, as in tls/0.0.0.0:7447"
+        )
+    return host, port
+
+
 def _check_endpoints(endpoints: tuple[str, ...]) -> None:
     for endpoint in endpoints:
-        if _ENDPOINT.fullmatch(endpoint) is None:
-            raise ConfigError(
-                f"{endpoint!r} is no end of a bus: write tls/HOST:PORT, as in tls/0.0.0.0:7447"
-            )
+        endpoint_address(endpoint)
 
 
-def _is_loopback(address: str) -> bool:
-    host, _ = host_and_port(address)
+def _can_be_looked_up(host: str) -> bool:
+    """Whether it is a name at all; the name server may not know it yet."""
+    try:
+        host.encode("idna")
+    except UnicodeError:
+        return False
+    return True
+
+
+def _is_loopback(host: str) -> bool:
     try:
         return host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:

@@ -6,6 +6,7 @@ import secrets
 import socket
 from collections.abc import Iterator, Sequence
 
+from base_station.config import endpoint_address
 from shared.bus import Bus
 from shared.channels import STATIONS_ROOT
 from shared.errors import BusError
@@ -43,9 +44,8 @@ class Neighbour:
 def listens(endpoints: Sequence[str]) -> bool:
     """Whether anything takes connections there: the other machine is up, and so is the network."""
     for endpoint in endpoints:
-        host, _, port = endpoint.partition("/")[2].rpartition(":")
         try:
-            socket.create_connection((host.strip("[]"), int(port)), _CONNECT_S).close()
+            socket.create_connection(endpoint_address(endpoint), _CONNECT_S).close()
         except OSError:
             continue
         return True

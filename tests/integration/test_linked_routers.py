@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from base_station.bench.rig.station import free_port
+from base_station.router.neighbour import listens
 from base_station.router.router import Router
 from tests.waiting import until
 
@@ -44,6 +45,14 @@ def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
             first.refresh()
             second.refresh()
         assert (first._bus, second._bus) == before
+
+
+def test_whether_the_other_one_listens_is_seen_whatever_else_its_end_of_the_bus_says() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        end = f"tcp/127.0.0.1:{listening.getsockname()[1]}"
+        assert listens((end,))
+        assert listens((endpoint(), f"{end}#iface=lo"))
+    assert not listens((f"{end}#iface=lo",))
 
 
 def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:

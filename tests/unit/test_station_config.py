@@ -45,6 +45,9 @@ def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_pa
         ("[bus]\nlisten = ['127.0.0.1:7447']\n", "tls/HOST:PORT"),
         ("[bus]\nlisten = ['udp/127.0.0.1:7447']\n", "tls/HOST:PORT"),
         ("[standby]\nname = 'b'\npeer = ['10.0.0.2']\n", "tls/HOST:PORT"),
+        ("[standby]\nname = 'b'\npeer = ['tls/10.0.0.2:0']\n", "tls/HOST:PORT"),
+        ("[standby]\nname = 'b'\npeer = ['tls/10.0.0.2:65536']\n", "tls/HOST:PORT"),
+        ("[standby]\nname = 'b'\npeer = ['tls/a..b:7447']\n", "tls/HOST:PORT"),
         ("log_level = 'LOUD'\n", "WARNING"),
     ],
 )
@@ -62,6 +65,8 @@ def test_a_wrong_setting_is_named_with_the_right_one(tmp_path: Path, toml: str, 
         ("tcp/[::1]:7447", "localhost:8080", ()),
         ("tls/0.0.0.0:7447", "[::]:8080", ("[::]:8080",)),
         ("tcp/0.0.0.0:7447", "127.0.0.1:8080", ("tcp/0.0.0.0:7447",)),
+        ("tcp/127.0.0.1:7447#iface=lo", "127.0.0.1:8080", ()),
+        ("tcp/[::]:7447?prio=6", "127.0.0.1:8080", ("tcp/[::]:7447?prio=6",)),
         ("tcp/station.local:7447", "10.0.0.1:80", ("tcp/station.local:7447", "10.0.0.1:80")),
     ],
 )
