@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
+from base_station.fusion.path.history import PathHistory
 from base_station.live_state import StationState, UnitState
 from base_station.site.plan import Plan
-from shared.messages import FusedPosition
 
 OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
 WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
 
 
-def is_outside(
-    plan: Plan | None, fused: FusedPosition | None, shown_m: tuple[float, float] | None
-) -> bool:
-    """Whether a barometer feels the weather, and no doors and fans of the building.
-
-    ``shown_m``: north and east as estimated without any pin; no pin may matter for that, or what
-    is without pins would not be what it would be.
+def is_outside(plan: Plan | None, history: PathHistory) -> bool:
+    """Whether a unit's barometer feels the weather, and no doors and fans of the building; no pin
+    matters for that, or what is without pins would not be what it would be.
     """
-    if fused is None or shown_m is None:
+    if history.shown_m is None:
         return False
     if plan is not None and plan.outlines:
-        return plan.depth_m(*shown_m) < -OUTSIDE_M
-    return fused.since_gps_s is not None and fused.since_gps_s < OUTSIDE_FIX_S
+        return plan.depth_m(*history.shown_m) < -OUTSIDE_M
+    return history.since_gps_s is not None and history.since_gps_s < OUTSIDE_FIX_S
 
 
 def note_inside(state: StationState, unit: UnitState) -> None:

@@ -84,7 +84,7 @@ class Positioning:
             _count(unit, reason)
         for one in told[1:]:
             one.advance(position, away_s)
-        outside = is_outside(state.plan, unit.fused, history.shown_m)
+        outside = is_outside(state.plan, history)
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=outside)
         bearing = _bearing(state, position)
         for one in told:
@@ -178,20 +178,19 @@ class Positioning:
         if estimate is None:
             return None
         held = unit.fused.floor if unit.fused is not None else None
-        pinned = self._pinned.get(unit.unit_id)
-        if pinned is None:
-            unit.fused = plain = fused_message(state, unit, estimate, self._kind.name, held, header)
-        else:
-            trail = unit.plain_trail or []
-            was = trail[-1].floor if trail else held
-            plain = fused_message(state, unit, estimate, self._kind.name, was, header)
-            unit.extend_plain_trail(plain)
-            unit.fused = fused_message(
-                state, unit, pinned.estimate() or estimate, self._kind.name, held, header
-            )
-        unit.reach = ()
-        unit.extend_trail(unit.fused)
         history = state.paths.get(unit.unit_id)
+        was = held if history is None else history.floor
+        plain = fused_message(state, unit, estimate, self._kind.name, was, header)
+        is_drawn = _is_drawn(state, plain)
+        if is_drawn:
+            unit.extend_plain_trail(plain)
+        unit.fused, pinned = plain, self._pinned.get(unit.unit_id)
+        if pinned is not None:
+            known = pinned.estimate() or estimate
+            unit.fused = fused_message(state, unit, known, self._kind.name, held, header)
+        if is_drawn:
+            unit.extend_trail(unit.fused)
+        unit.reach = ()
         if history is not None:
             history.show(estimate, plain.floor)
         if unit.fused.quality is not Quality.LOST:
@@ -211,8 +210,7 @@ class Positioning:
             return None
         self._fuser(unit).remember(position)
         fused = plain = fused_message(state, unit, estimate, self._kind.name, None, header)
-        opened_ns = state.incident.opened_ns if state.incident is not None else 0
-        is_drawn = plain.t_meas_ns >= opened_ns
+        is_drawn = _is_drawn(state, plain)
         if is_drawn:
             unit.fill_plain_trail(plain)
         pinned = self._pinned.get(unit.unit_id)
@@ -273,6 +271,11 @@ def _history(state: StationState, unit: UnitState) -> PathHistory:
     if history is None:
         history = state.paths[unit.unit_id] = PathHistory()
     return history
+
+
+def _is_drawn(state: StationState, fused: FusedPosition) -> bool:
+    """Whether it belongs to the incident that is shown."""
+    return state.incident is None or fused.t_meas_ns >= state.incident.opened_ns
 
 
 def _bearing(state: StationState, position: Position) -> Bearing | None:

@@ -15,7 +15,7 @@ from base_station.pins.pinning import floors_along, trail_of
 from base_station.trail import TRAIL_POINTS
 from shared.clock import NS_PER_S
 from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
-from shared.messages.station import CloseIncident, ForgetWearers, SetPlan, SetStart
+from shared.messages.station import CloseIncident, ForgetWearers, OpenIncident, SetPlan, SetStart
 from tests.live_station import make_pipeline
 from tests.round_walk import PLAN, Walk, truth, walk_from_the_engine
 from tests.station_script import START_NS, Script
@@ -91,6 +91,43 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
     assert mine.fused.std_north_m == theirs.fused.std_north_m
     assert mine.trail == theirs.trail
     assert pinned.script.pipeline.state.pins == {}
+
+
+def test_removing_a_pin_leaves_nobody_on_the_floor_that_it_said() -> None:
+    """Half way up the stairs somebody stays on the floor where they were, and not where a pin
+    that was wrong had them.
+    """
+    floors = {}
+    for is_pinned in (False, True):
+        script = Script()
+        script.register("FF-01")
+        script.act(SetPlan(PLAN))
+        script.act(SetStart("FF-01", 10.0, 10.0, 0.0, 0.0, 3.0, 0.05))
+        for second in range(10):
+            script.now_s += 1.0
+            down_m = -0.19 * second
+            script.position("FF-01", 0.4 * second, 0.0, down_m=down_m, distance_m=0.4 * second)
+            if second == 5 and is_pinned:
+                script.act(SetPin("p", "FF-01", script.t_ns, 12.0, 10.0, 0.5, 1, None, 0.0, ""))
+                assert script.fused[-1].floor == 1
+        if is_pinned:
+            script.act(RemovePin("p"))
+        script.position("FF-01", 3.7, 0.0, down_m=down_m, distance_m=3.7)
+        floors[is_pinned] = script.fused[-1].floor
+    assert floors == {False: 0, True: 0}
+
+
+def test_an_incident_that_is_opened_shows_nobody_where_they_were_before_it() -> None:
+    """Of somebody who is silent, and was pinned, the place is shown again as pins go."""
+    walk = Walk("FF-01")
+    walk.start("FF-01")
+    walk.go(60)
+    walk.pin("p1", "FF-01", 30.0)
+    walk.script.act(CloseIncident("i1"))
+    walk.go(5)
+    walk.script.now_s += 20.0
+    walk.script.act(OpenIncident("i2", "Another"))
+    assert walk.trail("FF-01") == []
 
 
 def test_removing_one_of_two_leaves_the_trail_of_the_other() -> None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 
-import msgspec
 import pytest
 
 from base_station.bench.rig import said
@@ -18,8 +17,9 @@ from base_station.views import StationFacts, snapshot
 from edge.simulation.building import plan_path
 from shared.channels import GPS, backfilled_key
 from shared.codec import encode
-from shared.geo import pressure_pa_at
+from shared.geo import Anchor, pressure_pa_at
 from shared.messages import FusedPosition
+from shared.messages.pins import SetPin
 from shared.messages.station import SetAnchor, SetPlan, SetReference, SetStart
 from tests.live_station import make_pipeline
 from tests.station_script import Script
@@ -110,8 +110,31 @@ def test_without_a_plan_who_had_a_fix_just_now_is_outside(
     script: Script, since_gps_s: float | None, outside: bool
 ) -> None:
     script.position(U, 0.0, 0.0)
-    fused = msgspec.structs.replace(script.fused[-1], since_gps_s=since_gps_s)
-    assert is_outside(None, fused, (0.0, 0.0)) is outside
+    history = script.pipeline.state.paths[U]
+    history.since_gps_s = since_gps_s
+    assert is_outside(None, history) is outside
+
+
+def test_a_pin_that_turns_fixes_away_changes_nothing_of_the_weather() -> None:
+    """Of two with the same walk and the same air, one is pinned to where no fix leads."""
+    anchor, rises_m = Anchor(52.0, 4.0, 0.0, 0.0), {}
+    for is_pinned in (False, True):
+        script = Script()
+        script.register(U)
+        script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
+        script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 30.0, 0.05))
+        for second in range(25):
+            script.now_s += 1.0
+            pressure_pa = pressure_pa_at(SITE_M) + 1.0 * second
+            script.position(U, 1.0 * second, 0.0, distance_m=1.0 * second, pressure_pa=pressure_pa)
+            if second == 5 and is_pinned:
+                script.act(SetPin("p", U, script.t_ns, 5.0, 50.0, 0.3, None, None, 0.0, ""))
+                assert script.pipeline.state.pin_verdicts["p"].state == "used"
+            if second > 5:
+                script.gps(U, *anchor.to_geodetic(1.0 * second, 0.0, 0.0)[:2])
+        assert (script.fused[-1].since_gps_s is None) is is_pinned
+        rises_m[is_pinned] = script.pipeline.state.barometers.weather.rise_m
+    assert rises_m[True] == rises_m[False] != 0.0
 
 
 def test_who_is_not_heard_is_within_walls(script: Script) -> None:

@@ -64,6 +64,8 @@ class PathHistory(msgspec.Struct):
     opened_ns: int = 0  # when the incident was opened
     is_refixed: bool = False  # fixes were moved: the unit is to be placed again
     filled_ns: int = 0  # where the path had come to when a position came late last
+    since_gps_s: float | None = None  # as last estimated without any pin
+    floor: int | None = None
 
     @property
     def begin_ns(self) -> int | None:
@@ -134,6 +136,7 @@ class PathHistory(msgspec.Struct):
 
     def show(self, estimate: Estimate, floor: int | None) -> None:
         """What is estimated at the newest point without any pin."""
+        self.since_gps_s, self.floor = estimate.since_gps_s, floor
         if self.points:
             _show(self.points[-1], estimate, floor)
 
