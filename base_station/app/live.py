@@ -39,6 +39,8 @@ from base_station.live.recovering import Watch, recovering
 from base_station.live.sinks import ActionDone
 from base_station.live_state import StationState
 from base_station.past.checkpoints import Checkpoints
+from base_station.past.hindsight import Hindsight
+from base_station.past.looking_back import LookingBack
 from base_station.pki.members import EnrolledUnits
 from base_station.segment_index import SegmentIndex
 from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
@@ -130,7 +132,9 @@ class _LiveStation:
             thread.start()
             closing.callback(thread.close)
         closing.callback(self._side.feed.close)
-        self._services = self._new_services()
+        hindsight, records = self._disk.hindsight(), self._disk.records
+        closing.enter_context(LookingBack(hindsight, records.incidents, records.tracks_of))
+        self._services = self._new_services(hindsight)
         self._server = self._new_server()
 
     def run(self) -> _Again | None:
@@ -192,7 +196,7 @@ class _LiveStation:
             self._announce,
         )
 
-    def _new_services(self) -> Services:
+    def _new_services(self, hindsight: Hindsight) -> Services:
         resources, disk = self._resources, self._disk
         return Services(
             accounts=disk.accounts,
@@ -210,7 +214,7 @@ class _LiveStation:
             secure=resources.config.http.certificate is not None,
             standing=self._side.standing,
             recordings=resources.recordings,
-            hindsight=disk.hindsight(),
+            hindsight=hindsight,
             accountability=resources.config.accountability,
         )
 
@@ -220,11 +224,7 @@ class _LiveStation:
         return ConsoleServer(app, self._resources.listening, http.certificate, http.private_key)
 
     def _housekeeping(self) -> Callable[[], None]:
-        resources, records, hindsight = (
-            self._resources,
-            self._disk.records,
-            self._services.hindsight,
-        )
+        resources, records = self._resources, self._disk.records
         recoveries = {one.path: str(one) for one in resources.recorder.recoveries}
         index = SegmentIndex(records, recoveries)
         enrolled = EnrolledUnits(
@@ -242,8 +242,6 @@ class _LiveStation:
                 enrolled.update()
                 for report in self._share.news(self._reported):
                     self._gate.submit(STATION_ID, report)
-            if hindsight is not None:
-                hindsight.catch_up(records.incidents(), records.tracks_of)
 
         return keep_house
 
