@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy import URL, Connection, Engine, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -158,7 +158,7 @@ def copy_database(source: Path, target: Path) -> None:
         return
     try:
         with (
-            closing(sqlite3.connect(f"file:{source}?mode=ro", uri=True)) as reading,
+            closing(_reading(source)) as reading,
             closing(sqlite3.connect(target)) as writing,
         ):
             reading.backup(writing)
@@ -178,14 +178,19 @@ def _code_of(error: BaseException) -> int:
 def known_segments(path: Path) -> set[str]:
     """Of which log a copied database tells, by the names of its segments."""
     try:
-        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as reading:
+        with closing(_reading(path)) as reading:
             return {row[0] for row in reading.execute("SELECT name FROM log_segments")}
     except sqlite3.Error:  # there is none, or something else
         return set()
 
 
+def _reading(path: Path) -> sqlite3.Connection:
+    return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)
+
+
 def _engine(path: Path) -> Engine:
-    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": BUSY_TIMEOUT_S})
+    where = URL.create("sqlite", database=str(path))
+    engine = create_engine(where, connect_args={"timeout": BUSY_TIMEOUT_S})
 
     @event.listens_for(engine, "connect")
     def configure(connection: Any, _record: object) -> None:

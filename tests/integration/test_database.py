@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
@@ -13,8 +14,10 @@ from alembic import command
 from sqlalchemy import inspect, text
 
 from base_station.bench.rig import said
+from base_station.db.accounts import Accounts
 from base_station.db.migrate import alembic_config
 from base_station.db.models import Base, Person
+from base_station.db.principals import Principal, Role
 from base_station.db.projection import SqlProjection
 from base_station.db.records import FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
@@ -54,6 +57,56 @@ def test_an_empty_file_is_migrated_to_what_the_models_say(store: Store) -> None:
     }
     with store.engine.connect() as connection:
         command.check(alembic_config(connection))  # raises where models and migrations differ
+
+
+@pytest.fixture
+def first_schema(path: Path, store: Store) -> Path:
+    """As the first version left it: somebody was logged in, and did things."""
+    with store.engine.connect() as connection:
+        command.downgrade(alembic_config(connection), "0001")
+        connection.commit()
+    store.close()
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute("INSERT INTO users VALUES ('mia', 'hash', 'commander', 1)")
+        cookie = hashlib.sha256(b"cookie").hexdigest()
+        database.execute("INSERT INTO sessions VALUES (?, 'mia', 1, 5000000000)", [cookie])
+        for entry_id, t_ns in (("a", 3), ("c", 1), ("b", 2)):
+            row = (entry_id, t_ns, "mia", "OpenIncident", f"at {t_ns}")
+            database.execute("INSERT INTO audit VALUES (?, ?, ?, ?, ?)", row)
+    return path
+
+
+def test_an_older_database_is_brought_up_to_date_and_loses_nothing(
+    first_schema: Path,
+) -> None:
+    clock = ManualClock(utc_ns=NS_PER_S)
+    for _ in range(2):  # the second time nothing is left to do
+        with Store(first_schema) as store:
+            audit = Records(store, clock).audit_entries(ALL)
+            assert [(one.number, one.detail) for one in audit] == [
+                (3, "at 3"), (2, "at 2"), (1, "at 1"),
+            ]  # fmt: skip
+            assert Accounts(store, clock).of_session("cookie") == Principal("mia", Role.COMMANDER)
+            with store.engine.connect() as connection:
+                command.check(alembic_config(connection))
+
+
+def test_a_database_whose_update_is_cut_short_stays_as_it_was(
+    first_schema: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def killed(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with closing(sqlite3.connect(first_schema)) as database:
+        before = list(database.iterdump())
+    with monkeypatch.context() as cut:
+        cut.setattr("alembic.op.drop_table", killed)  # of the audit, in the last step
+        with pytest.raises(KeyboardInterrupt):
+            Store(first_schema)
+    with closing(sqlite3.connect(first_schema)) as database:
+        assert list(database.iterdump()) == before
+    with Store(first_schema) as store:
+        assert len(Records(store, ManualClock()).audit_entries(ALL)) == 3
 
 
 def test_what_is_committed_survives_a_power_cut(store: Store) -> None:
@@ -121,6 +174,19 @@ def test_a_copy_can_be_taken_while_someone_writes(
         copy_database(path, tmp_path / "copy.sqlite")
     with Store(tmp_path / "copy.sqlite") as copy:
         assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
+
+
+@pytest.mark.parametrize("name", ["site#1", "what?", "100%41", "?mode=memory"])
+def test_a_folder_may_be_called_anything(tmp_path: Path, clock: ManualClock, name: str) -> None:
+    """What an address would take for something else is a part of the name."""
+    folder = tmp_path / name
+    folder.mkdir()
+    with Store(folder / "station.sqlite") as store:
+        Roster(store, clock).add_person("Ada", "A", "")
+    copy_database(folder / "station.sqlite", folder / "copy.sqlite")
+    with Store(folder / "copy.sqlite") as copy:
+        assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
+    assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
 def test_a_full_disk_is_said_and_nothing_is_half_written(store: Store, clock: ManualClock) -> None:
