@@ -180,8 +180,11 @@ def compose_agent(
         in_trouble.callback(black_box.close)
         commands: SimpleQueue[bytes] = SimpleQueue()
         link = _link(unit_id, station, commands, spool, RecordingServer(unit_id, folder, clock))
+        in_trouble.callback(link.close)
         journal = JournalWriter(spool)
+        in_trouble.callback(journal.close)
         outbox = Outbox(unit_id, journal, link.publish)
+        in_trouble.callback(outbox.close)
         for detail in _set_aside(folder, damaged):
             outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(

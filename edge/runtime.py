@@ -75,7 +75,8 @@ class Agent:
         self._next_heartbeat_ns = 0
         self._last_batch_ns = 0
         self._silence_told = False
-        self._storage_fault: str | None = None
+        self._storage_faults = ["", "", ""]
+        self._time_cannot_be_asked = False
         self.commands_not_understood = 0
 
     def run(self, stop: Event, *, for_s: float | None = None) -> None:
@@ -158,16 +159,22 @@ class Agent:
             raise RuntimeError("the journal has stopped; see the log before this")
         if not parts.link.is_working:
             raise RuntimeError("the link has stopped; see the log before this")
-        fault = parts.journal.fault or parts.black_box.fault
-        if fault is not None and self._storage_fault is None:
-            self._say(EventKind.STORAGE_FAULT, fault)
-        self._storage_fault = fault
+        self._tell_storage_faults()
         for detail in parts.reader.take_faults():
             self._say(EventKind.SENSOR_FAULT, detail)
         silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
         if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_told:
             self._silence_told = True
             self._say(EventKind.SENSOR_FAULT, "the source has been silent for 2 s")
+
+    def _tell_storage_faults(self) -> None:
+        """Each by itself: one that lasts hides none of the others."""
+        parts = self._parts
+        faults = [parts.spool.damage, parts.journal.fault or "", parts.black_box.fault or ""]
+        for fault, before in zip(faults, self._storage_faults, strict=True):
+            if fault and not before:
+                self._say(EventKind.STORAGE_FAULT, fault)
+        self._storage_faults = faults
 
     def _beat(self) -> None:
         parts = self._parts
@@ -191,8 +198,16 @@ class Agent:
         parts.outbox.put((heartbeat,))
 
     def _ask_time(self, on_reply: ReplyHandler) -> None:
+        """A bus that fails ends nothing: the link opens it anew."""
         selector = clock_key(self._parts.stamper.unit_id)
-        self._parts.link.ask(selector, _CLOCK_TIMEOUT_S, on_reply)
+        try:
+            self._parts.link.ask(selector, _CLOCK_TIMEOUT_S, on_reply)
+        except Exception:
+            if not self._time_cannot_be_asked:
+                logger.exception("the station cannot be asked for the time")
+            self._time_cannot_be_asked = True
+        else:
+            self._time_cannot_be_asked = False
 
     def _end(self, reason: str) -> None:
         """Send what is left, in order, and let go of everything."""

@@ -4,6 +4,9 @@ One SQLite file in WAL mode with ``synchronous=FULL``: what ``append`` has retur
 survives ``kill -9`` and power loss.  Messages are named by boot id and sequence number, as
 in their headers.  Rows are clustered by how much they are worth, so that making room frees
 whole pages: what the station is known to have goes first, then the oldest of the least worth.
+
+A file that turns out to be damaged while it is in use is left alone: who reads it has it open.  A
+new one is begun beside it, and takes its name at the next start.
 """
 
 from __future__ import annotations
@@ -11,12 +14,13 @@ from __future__ import annotations
 import heapq
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from operator import itemgetter
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
+from edge.journal_file import DAMAGE, NO_JOURNAL, REFUSAL, anew, code_of, connect, in_words, rename
 from shared.channels import GPS, IMU, POSITION, Channel, Qos
 from shared.errors import StoreError
 from shared.messages import JournalBoot, JournalEntry
@@ -41,15 +45,6 @@ CREATE TABLE IF NOT EXISTS message (
 _RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = tuple(range(4))
 EVERYTHING, URGENT, RAW = _WORTHS, (_ALERT,), (_RAW,)
 _ROWS_FREED_AT_ONCE = 50
-# What SQLite says of a disk that is full, or has failed and can only be read.
-_REFUSAL = (
-    sqlite3.SQLITE_FULL,
-    sqlite3.SQLITE_IOERR,
-    sqlite3.SQLITE_READONLY,
-    sqlite3.SQLITE_CANTOPEN,
-)
-# What SQLite says of a file that is no journal, in whole or in part.
-_DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 _FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append
 
 
@@ -83,16 +78,18 @@ class Spool:
         self.first_seq = 1  # the oldest of this boot that is kept
         self.last_seq = 0  # the newest of this boot that is on disk
         self.rows_freed = 0  # unacknowledged messages given up for room
+        self.damage = ""  # why a new file was begun, for a person
+        self._unreadable = ""  # the same, as a reader has found out
         self._connection: sqlite3.Connection | None = None
         self._boot = 0
         self.boot_id = new_boot_id()
-        with _in_words(path):
+        with in_words(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             try:
                 while not self._begin_boot():
                     self.boot_id = new_boot_id()
             except sqlite3.Error as error:
-                if _code(error) not in _REFUSAL:
+                if code_of(error) not in REFUSAL:
                     raise
 
     @property
@@ -101,21 +98,17 @@ class Spool:
         return max(0, self.last_seq - self._acknowledged_seq)
 
     def append(self, messages: Sequence[Journaled]) -> None:
-        """Put messages on disk, all or none; returns when they are safe.
-
-        Room is made before: what is safe must not be said to have failed, or it is given again.
-        """
-        with _in_words(self._path), self._lock:
-            if self._bytes_used() > self._limit_bytes:
-                self._make_room()
-            rows = [
-                (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
-                 each.payload)
-                for each in messages
-            ]  # fmt: skip
-            with self._writer:
-                self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
-            self.last_seq = max(self.last_seq, *(each.seq for each in messages))
+        """Put messages on disk, all or none; returns when they are safe."""
+        with in_words(self._path), self._lock:
+            if self._unreadable and not self.damage:
+                self._begin_anew(self._unreadable)
+            try:
+                self._insert(messages)
+            except sqlite3.Error as error:
+                if self.damage or code_of(error) not in DAMAGE:
+                    raise
+                self._begin_anew(str(error))
+                self._insert(messages)
 
     def read(
         self, boot_id: int, from_seq: int, to_seq: int, worths: Sequence[int] = EVERYTHING
@@ -126,7 +119,7 @@ class Spool:
 
         Reads while it is iterated, beside the writer.
         """
-        with _in_words(self._path), closing(_connect(self._path)) as reader:
+        with in_words(self._path), closing(connect(self._path)) as reader:
             parts = [
                 reader.execute(
                     "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
@@ -141,25 +134,25 @@ class Spool:
 
     def boots(self) -> tuple[JournalBoot, ...]:
         """What can be served, oldest boot first; boots of which nothing is left are not named."""
-        kept = []
-        with _in_words(self._path), closing(_connect(self._path)) as reader:
-            for number, boot_id, acknowledged_seq, started_utc_ns in reader.execute(
-                "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot ORDER BY number"
-            ).fetchall():
-                bounds = _bounds(reader, number)
-                if bounds is not None:
-                    kept.append(JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns))
-        return tuple(kept)
+        path = self._path
+        with in_words(path), closing(connect(path)) as reader:
+            try:
+                return tuple(_boots(reader))
+            except sqlite3.Error as error:
+                # Where nobody can be told what there is, nothing of it will be asked for.
+                if path == self._path and code_of(error) in DAMAGE:
+                    self._unreadable = str(error)
+                raise
 
     def has_boot(self, boot_id: int) -> bool:
         """Whether this boot was ever written here, though nothing of it may be left."""
-        with _in_words(self._path), closing(_connect(self._path)) as reader:
+        with in_words(self._path), closing(connect(self._path)) as reader:
             found = reader.execute("SELECT 1 FROM boot WHERE boot_id = ?", (boot_id,))
             return found.fetchone() is not None
 
     def newest_first(self, boot_id: int, channel: Channel) -> Iterator[bytes]:
         """What is kept of one channel of a boot; reads while it is iterated."""
-        with _in_words(self._path), closing(_connect(self._path)) as reader:
+        with in_words(self._path), closing(connect(self._path)) as reader:
             for (payload,) in reader.execute(
                 "SELECT payload FROM message WHERE worth = ? AND "
                 "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
@@ -170,7 +163,7 @@ class Spool:
 
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
         """The station has everything of this boot up to ``to_seq`` on its own disk."""
-        with _in_words(self._path), self._lock, self._writer:
+        with in_words(self._path), self._lock, self._writer:
             self._writer.execute(
                 "UPDATE boot SET acknowledged_seq = MAX(acknowledged_seq, ?) WHERE boot_id = ?",
                 (to_seq, boot_id),
@@ -183,6 +176,28 @@ class Spool:
             if self._connection is not None:
                 self._connection.close()
 
+    def _insert(self, messages: Sequence[Journaled]) -> None:
+        """Room is made before: what is safe must not be said to have failed, and be given again."""
+        if self._bytes_used() > self._limit_bytes:
+            self._make_room()
+        rows = [
+            (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
+             each.payload)
+            for each in messages
+        ]  # fmt: skip
+        with self._writer:
+            self._writer.executemany("INSERT INTO message VALUES (?, ?, ?, ?, ?, ?)", rows)
+        self.last_seq = max(self.last_seq, *(each.seq for each in messages))
+
+    def _begin_anew(self, damage: str) -> None:
+        """Once: a disk that damages the new file as well is not filled with more of them."""
+        self.damage = f"the journal is damaged ({damage}); it is left alone, and a new one is begun"
+        self.first_seq = self.last_seq + 1
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
+        self._path = anew(self._path)
+
     @property
     def _writer(self) -> sqlite3.Connection:
         """Of a boot that has begun; for one thread at a time."""
@@ -193,7 +208,7 @@ class Spool:
 
     def _begin_boot(self) -> bool:
         """Whether no earlier boot had this one's id."""
-        connection = _connect(self._path)
+        connection = connect(self._path)
         with ExitStack() as in_trouble:
             in_trouble.callback(connection.close)
             connection.executescript(_SCHEMA)
@@ -253,20 +268,35 @@ class Spool:
 def open_spool(
     path: Path, new_boot_id: Callable[[], int], started_utc_ns: int, limit_bytes: int
 ) -> tuple[Spool, Path | None]:
-    """Open the journal; one that is damaged is set aside under the name that is returned."""
+    """Open the journal; one that is damaged, or was when it was last used, is set aside under the
+    name that is returned.
+    """
+    aside = path.with_name(f"{path.name}.damaged-{started_utc_ns}")
+    with in_words(path):
+        is_followed = anew(path).exists()
+        if is_followed:
+            rename(path, aside)
+            rename(anew(path), path)
     try:
-        return Spool(path, new_boot_id, started_utc_ns, limit_bytes), None
+        spool = Spool(path, new_boot_id, started_utc_ns, limit_bytes)
     except StoreError as error:
         cause = error.__cause__
-        if not isinstance(cause, sqlite3.Error) or _code(cause) not in _DAMAGE:
+        if not isinstance(cause, sqlite3.Error) or code_of(cause) not in NO_JOURNAL:
             raise
-    aside = path.with_name(f"{path.name}.damaged-{started_utc_ns}")
-    with _in_words(path):
-        for tail in ("", "-wal", "-shm"):
-            part = path.with_name(path.name + tail)
-            if part.exists():
-                part.rename(aside.with_name(aside.name + tail))
+    else:
+        return spool, aside if is_followed else None
+    with in_words(path):
+        rename(path, aside)
     return Spool(path, new_boot_id, started_utc_ns, limit_bytes), aside
+
+
+def _boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
+    for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
+        "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot ORDER BY number"
+    ).fetchall():
+        bounds = _bounds(connection, number)
+        if bounds is not None:
+            yield JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns)
 
 
 def _bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
@@ -292,27 +322,3 @@ def _worth(channel: Channel) -> int:
     if channel in (POSITION, GPS):
         return _TRACK
     return _ALERT if channel.qos is Qos.ALERT else _ROUTINE
-
-
-def _code(error: sqlite3.Error) -> int:
-    """The kind of an error, without what SQLite adds to it."""
-    return error.sqlite_errorcode & 0xFF
-
-
-def _connect(path: Path) -> sqlite3.Connection:
-    connection = sqlite3.connect(path, check_same_thread=False, timeout=5.0)
-    try:
-        connection.execute("PRAGMA journal_mode = WAL")
-        connection.execute("PRAGMA synchronous = FULL")
-    except sqlite3.Error:
-        connection.close()
-        raise
-    return connection
-
-
-@contextmanager
-def _in_words(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except (sqlite3.Error, OSError) as error:
-        raise StoreError(f"the journal {path} cannot be used: {error}") from error

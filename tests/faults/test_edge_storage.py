@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import errno
+import sqlite3
 import subprocess
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.sources import open_source
+from edge.spool import Journaled
 from edge.warm_up import compile_trackers
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -130,6 +132,44 @@ def test_a_full_disk_under_the_black_box(running, monkeypatch):
         before = running.station.count(Heartbeat)
         until(lambda: running.station.count(Heartbeat) > before + 2)
     until(lambda: running.parts.black_box.fault is None)
+    assert len(running.station.faults()) == 1
+
+
+def test_a_fault_of_one_hides_none_of_the_other(running, monkeypatch):
+    """Somebody may have dealt with the first, and not know of the second."""
+
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("shared.mcap_log.durable_file.os.pwrite", full)
+        until(running.station.faults)
+        set_room(running, 1)
+        until(lambda: len(running.station.faults()) > 1)
+        assert "journal" in running.station.faults()[1]
+        set_room(running, 1_000_000)
+
+
+def test_a_journal_that_is_damaged_while_it_is_written(running, monkeypatch):
+    spool = running.parts.spool
+    insert, had = spool._insert, spool.last_seq
+
+    def spoilt(messages: Sequence[Journaled]) -> None:
+        if not spool.damage:
+            error = sqlite3.DatabaseError("database disk image is malformed")
+            error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
+            raise error
+        insert(messages)
+
+    monkeypatch.setattr(spool, "_insert", spoilt)
+    until(running.station.faults)
+    assert "a new one is begun" in running.station.faults()[0]
+    until(lambda: spool.last_seq > had + 20)
+    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    assert kept[0] > had
+    assert kept == list(range(kept[0], kept[0] + len(kept)))
+    assert running.parts.journal.fault is None
+    assert running.parts.journal.never_saved == 0
     assert len(running.station.faults()) == 1
 
 

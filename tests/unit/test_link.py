@@ -21,7 +21,7 @@ from edge.spool import Spool
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
 from shared.codec import decode
-from shared.errors import BusError, RecordingError
+from shared.errors import BusError, RecordingError, StoreError
 from shared.messages import EventKind, UnitEvent
 from tests.waiting import until
 
@@ -180,6 +180,50 @@ def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(statio
     with pytest.raises(RuntimeError, match="the link has stopped"):
         agent.run(threading.Event(), for_s=60.0)
     assert how_it_stopped(data) == FAILED
+    data.close()
+
+
+def test_a_bus_that_cannot_be_asked_ends_no_agent(station, tmp_path, caplog):
+    """The link opens it anew; the wearer's path does not begin anew for it."""
+    asked: list[str] = []
+    stop = threading.Event()
+
+    def open_bus():
+        bus = station.router.attach_unit()
+
+        def ask(selector: str, *_: object, **__: object) -> None:
+            asked.append(selector)
+            if len(asked) > 1:
+                stop.set()
+            raise BusError("the bus is closed")
+
+        bus.ask = ask
+        return bus
+
+    data = DataFolder(tmp_path / "u1")
+    config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
+    source = open_source(config.source)
+    agent = compose_agent(config, "u1", data, source, OtherEnd(open_bus), speed=1.0)
+    agent.run(stop)
+    assert how_it_stopped(data) == "told to stop"
+    assert caplog.text.count("cannot be asked") == 1
+    data.close()
+
+
+def test_an_agent_that_cannot_be_made_leaves_nothing_running(station, tmp_path, monkeypatch):
+    """A link that is open keeps the program from ending, and its service from starting it again."""
+
+    def fail(_: object) -> None:
+        raise StoreError("the journal cannot be read")
+
+    monkeypatch.setattr("edge.app.answers_before", fail)
+    before = set(threading.enumerate())
+    data = DataFolder(tmp_path / "u1")
+    config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
+    source = open_source(config.source)
+    with pytest.raises(StoreError):
+        compose_agent(config, "u1", data, source, OtherEnd(station.router.attach_unit), speed=1.0)
+    assert set(threading.enumerate()) <= before
     data.close()
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from edge import journal_file
 from edge import spool as spool_module
 from edge.spool import RAW, Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
@@ -150,7 +152,7 @@ def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_pa
 def steps(monkeypatch):
     """Counts what SQLite does on connections that are made from now on."""
     counted = [0]
-    connect = spool_module._connect
+    connect = journal_file.connect
 
     def count() -> int:
         counted[0] += 1
@@ -161,7 +163,7 @@ def steps(monkeypatch):
         connection.set_progress_handler(count, 1)
         return connection
 
-    monkeypatch.setattr(spool_module, "_connect", connected)
+    monkeypatch.setattr(spool_module, "connect", connected)
     return counted
 
 
@@ -276,6 +278,83 @@ def test_a_damaged_journal_is_set_aside_not_deleted(tmp_path, spoil_at):
     spool.append([entry(1)])
     assert seqs(spool, spool.boot_id) == [1]
     spool.close()
+
+
+def spoil_page(path: Path, which: str) -> None:
+    """Of a journal of one boot, which opens all the same; ``which`` asks for the page's number."""
+    spool = spool_at(path, boot_ids=[1])
+    spool.append([entry(seq, EVENT, 800) for seq in range(1, 401)])
+    spool.close()
+    file = path / "journal.sqlite"
+    with closing(sqlite3.connect(file)) as journal:
+        (page,) = journal.execute(which).fetchone()
+        (page_bytes,) = journal.execute("PRAGMA page_size").fetchone()
+    content = bytearray(file.read_bytes())
+    content[(page - 1) * page_bytes : page * page_bytes] = b"\xff" * page_bytes
+    file.write_bytes(content)
+
+
+ROOT = "SELECT rootpage FROM sqlite_master WHERE name = 'message'"
+OLDEST = "SELECT pageno FROM dbstat WHERE name = 'message' AND pagetype = 'leaf' ORDER BY path"
+
+
+def test_a_journal_that_damage_keeps_from_being_written_is_begun_anew_at_once(tmp_path):
+    """And is the journal from the next start on; the damaged one is kept beside it."""
+    spoil_page(tmp_path, ROOT)
+    path = tmp_path / "journal.sqlite"
+    spool, aside = open_spool(path, itertools.count(2).__next__, 77, MB)
+    assert aside is None
+    spool.append([entry(1), entry(2)])
+    spool.append([entry(3)])
+    assert "malformed" in spool.damage
+    assert seqs(spool, 2) == [1, 2, 3]
+    assert spool.has_boot(2)
+    assert not spool.has_boot(1)
+    spool.close()
+    again, aside = open_spool(path, itertools.count(3).__next__, 78, MB)
+    assert aside is not None
+    assert b"\xff" * 1000 in aside.read_bytes()
+    assert again.damage == ""
+    again.append([entry(1)])
+    assert [(boot.boot_id, boot.first_seq, boot.last_seq) for boot in again.boots()] == [
+        (2, 1, 3),
+        (3, 1, 1),
+    ]
+    again.close()
+    last, aside = open_spool(path, itertools.count(4).__next__, 79, MB)
+    assert aside is None
+    last.close()
+
+
+def test_a_journal_of_which_nobody_can_be_told_what_is_in_it_is_begun_anew(tmp_path):
+    spoil_page(tmp_path, OLDEST)
+    path = tmp_path / "journal.sqlite"
+    spool, _ = open_spool(path, itertools.count(2).__next__, 77, MB)
+    spool.append([entry(1, EVENT)])
+    assert spool.damage == ""
+    with pytest.raises(StoreError, match="malformed"):
+        spool.boots()
+    spool.append([entry(2)])
+    assert "malformed" in spool.damage
+    assert [(boot.boot_id, boot.first_seq, boot.last_seq) for boot in spool.boots()] == [(2, 2, 2)]
+    assert spool.first_seq == 2
+    spool.close()
+
+
+def test_a_disk_that_damages_whatever_is_written_is_not_filled_with_journals(tmp_path, monkeypatch):
+    spool = spool_at(tmp_path)
+
+    def insert(_: object) -> None:
+        error = sqlite3.DatabaseError("database disk image is malformed")
+        error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
+        raise error
+
+    monkeypatch.setattr(spool, "_insert", insert)
+    for seq in range(1, 4):
+        with pytest.raises(StoreError, match="malformed"):
+            spool.append([entry(seq)])
+    spool.close()
+    assert len(list(tmp_path.glob("*.anew*"))) <= 1
 
 
 @pytest.mark.parametrize(
