@@ -15,6 +15,7 @@ from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.recordings.fetch import Fetch, FetchState, Wanted, ask_over
 from base_station.router.router import station_endpoint
+from base_station.steady_clock import SteadyClock
 from shared.bus_zenoh import ZenohBus
 from shared.clock import SystemClock
 from shared.errors import UserError
@@ -25,11 +26,16 @@ _REST_S = 0.5  # when the unit does not answer
 
 def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
     """Station times of an incident, one that is open until now.  Raises UserError."""
-    clock = SystemClock()
     with ExitStack() as closing:
-        records = Records(_store(config, closing), clock)
+        records = Records(_store(config, closing), SystemClock())
         incident = records.require_incident(incident_id)
-        return incident.opened_ns, incident.closed_ns or clock.utc_ns()
+        return incident.opened_ns, incident.closed_ns or _now_ns(records)
+
+
+def since(config: StationConfig, from_ns: int) -> tuple[int, int]:
+    """Station times from then until now."""
+    with ExitStack() as closing:
+        return from_ns, _now_ns(Records(_store(config, closing), SystemClock()))
 
 
 def pull(config: StationConfig, wanted: Wanted, show: Show) -> tuple[Path, str]:
@@ -60,6 +66,12 @@ def pull(config: StationConfig, wanted: Wanted, show: Show) -> tuple[Path, str]:
         if fetch.state is FetchState.FAILED:
             raise UserError(fetch.problem)
         return fetch.folder, fetch.problem
+
+
+def _now_ns(records: Records) -> int:
+    """Station time, which goes on from what was recorded where a clock was set back."""
+    recorded_ns = max((one.last_ns for one in records.segments()), default=0)
+    return SteadyClock(SystemClock(), recorded_ns).utc_ns()
 
 
 def _store(config: StationConfig, closing: ExitStack) -> Store:

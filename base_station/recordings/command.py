@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import NS_PER_S
 from shared.errors import UserError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def fetch_recording(
     from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn  # noqa: PLC0415
 
     from base_station.config import StationConfig  # noqa: PLC0415
-    from base_station.recordings.app import pull, window_of  # noqa: PLC0415
+    from base_station.recordings.app import pull, since, window_of  # noqa: PLC0415
     from base_station.recordings.fetch import Wanted  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
 
@@ -45,7 +45,7 @@ def fetch_recording(
     if incident:
         from_ns, to_ns = window_of(settings, incident)
     else:
-        from_ns, to_ns = _ns(from_), _ns(to) if to else SystemClock().utc_ns()
+        from_ns, to_ns = (_ns(from_), _ns(to)) if to else since(settings, _ns(from_))
     if to_ns <= from_ns:
         raise UserError("the window ends before it begins; turn the two times round")
     columns = TextColumn("{task.description}"), BarColumn(), DownloadColumn()
