@@ -2,7 +2,8 @@
 
 A thread of its own, because a disk may take its time to say that bytes are safe.  Messages
 that wait together are committed together, at most every tenth of a second; an alert waits
-for nobody.
+for nobody.  What is put at once is committed at once: after a sudden end all of it is there or
+none.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class Outbox:
         self._unit_id = unit_id
         self._journal = journal
         self._publish = publish
-        self._waiting: SimpleQueue[Message | None] = SimpleQueue()
+        self._waiting: SimpleQueue[tuple[Message, ...] | None] = SimpleQueue()
         self._bus_fails = False
         self._urgent = Event()
         self._closed = False
@@ -45,11 +46,9 @@ class Outbox:
         return self._thread.is_alive()
 
     def put(self, messages: Iterable[Message]) -> None:
-        urgent = False
-        for message in messages:
-            self._waiting.put(message)
-            urgent = urgent or channel_of(message).qos is Qos.ALERT
-        if urgent:
+        together = tuple(messages)
+        self._waiting.put(together)
+        if any(channel_of(message).qos is Qos.ALERT for message in together):
             self._urgent.set()
 
     def close(self) -> None:
@@ -69,16 +68,16 @@ class Outbox:
             self._journal.write(group)
             self._send(group)
 
-    def _drain(self, first: Message | None) -> list[Journaled]:
+    def _drain(self, first: tuple[Message, ...] | None) -> list[Journaled]:
         group = []
-        message = first
+        together = first
         try:
             while True:
-                if message is None:
+                if together is None:
                     self._closed = True
                 else:
-                    group += _journaled(message)
-                message = self._waiting.get_nowait()
+                    group += [kept for message in together for kept in _journaled(message)]
+                together = self._waiting.get_nowait()
         except Empty:
             return group
 

@@ -33,6 +33,31 @@ def test_everything_is_sent_in_order_and_was_on_disk_before(spool, journal, stam
     assert sent[-1][0::2] == ("muster/v1/FF-01/alert/event", Qos.ALERT)
 
 
+def test_what_is_put_at_once_is_written_at_once(spool, journal, stamper, monkeypatch):
+    """A mayday that is still latched is said with the start: a boot that is cut off between the two
+    would leave a start that knows of no mayday.
+    """
+    written: list[list[int]] = []
+    append = spool.append
+
+    def note(messages):
+        written.append([message.seq for message in messages])
+        append(messages)
+
+    monkeypatch.setattr(spool, "append", note)
+
+    def first_words():
+        yield UnitEvent(stamper.header(), EventKind.STARTED)
+        outbox.put((UnitEvent(stamper.header(), EventKind.FALL),))
+        until(lambda: written)  # the outbox has taken all that was there
+        yield UnitEvent(stamper.header(), EventKind.MAYDAY)
+
+    outbox = Outbox("FF-01", journal, lambda key, payload, qos: None)
+    outbox.put(first_words())
+    outbox.close()
+    assert written == [[2], [1, 3]]
+
+
 def test_a_bus_that_fails_ends_nothing(spool, journal, stamper, caplog):
     sent = []
 
