@@ -34,17 +34,20 @@ class BlackBoxSource(Played):
         return self._description
 
     def batches(self) -> Iterator[SensorBatch]:
+        """A batch was written at one instant, its inertial samples first; there may be none."""
         group: list[Message] = []
-        for message in self._messages():
-            if isinstance(message, RawImu) and group:
+        group_ns = 0
+        for log_ns, message in self._messages():
+            if group and (isinstance(message, RawImu) or log_ns != group_ns):
                 yield batch_of(tuple(group))
                 group = []
+            group_ns = log_ns
             group.append(message)
         if group:
             yield batch_of(tuple(group))
 
     def _read_description(self) -> tuple[str, SensorDescription]:
-        for unit_id, channel, payload in self._records():
+        for _, unit_id, channel, payload in self._records():
             if channel is DESCRIPTION:
                 description = decode(channel, payload)
                 assert isinstance(description, UnitDescription)
@@ -53,9 +56,9 @@ class BlackBoxSource(Played):
             f"{self._path} does not say which sensor it is from; it is no black box of a unit"
         )
 
-    def _messages(self) -> Iterator[Message]:
+    def _messages(self) -> Iterator[tuple[int, Message]]:
         unreadable = 0
-        for unit_id, channel, payload in self._records():
+        for log_ns, unit_id, channel, payload in self._records():
             if unit_id != self._unit_id:
                 raise RecordingError(
                     f"{self._path} holds several units ({self._unit_id}, {unit_id}); a black box "
@@ -64,16 +67,16 @@ class BlackBoxSource(Played):
             if channel is DESCRIPTION:
                 continue
             try:
-                yield decode(channel, payload)
+                yield log_ns, decode(channel, payload)
             except WireError:
                 unreadable += 1
         if unreadable:
             logger.warning("%s: %d records cannot be understood", self._path, unreadable)
 
-    def _records(self) -> Iterator[tuple[str, Channel, bytes]]:
-        for _, key, payload in _log_records(self._path):
+    def _records(self) -> Iterator[tuple[int, str, Channel, bytes]]:
+        for log_ns, key, payload in _log_records(self._path):
             try:
-                yield *parse_key(key), payload
+                yield log_ns, *parse_key(key), payload
             except UnknownChannelError:
                 logger.warning("%s: a record under %s, which is no channel", self._path, key)
 

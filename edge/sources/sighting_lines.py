@@ -64,9 +64,11 @@ def _value(word: str) -> tuple[str, float]:
 
 def _range(values: dict[str, float]) -> tuple[float, float]:
     if "rssi" in values and "range" not in values:
-        if not LEAST_RSSI_DBM <= values["rssi"] <= MOST_RSSI_DBM:
-            raise WireError(f"rssi={values['rssi']} is no level in dBm")
-        return range_of(values["rssi"], values.get("power", POWER_DBM))
+        rssi_dbm, power_dbm = values["rssi"], values.get("power", POWER_DBM)
+        for name, level_dbm in (("rssi", rssi_dbm), ("power", power_dbm)):
+            if not LEAST_RSSI_DBM <= level_dbm <= MOST_RSSI_DBM:
+                raise WireError(f"{name}={level_dbm:g} is no level in dBm")
+        return range_of(rssi_dbm, power_dbm)
     range_m, std_m = values.get("range", math.nan), values.get("std", math.nan)
     if range_m < 0.0 or range_m > _FURTHEST_M or std_m < 0.0:
         raise WireError(f"a range is 0 to {_FURTHEST_M:.0f} m, and its std not negative")

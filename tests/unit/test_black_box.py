@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,18 +12,29 @@ import pytest
 from edge.black_box import BlackBox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, batch_of, sensor_of
-from edge.samples import ButtonPress, SensorBatch
+from edge.samples import ButtonPress, ImuBatch, SensorBatch
 from edge.sources import open_source
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.port import Source
 from edge.tracker import make_tracker
-from shared.clock import ManualClock
+from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.errors import RecordingError
 from shared.messages import Message, Position, Status, UnitEvent
 
 SCENARIO = "simulated:climbs-stairs?seed=3"
 BATCHES = 800
+
+
+NO_IMU = ImuBatch(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)))
+
+
+class Ticking(ManualClock):
+    """So that what is recorded is flushed now and then, and nothing at the same time as another."""
+
+    def monotonic_ns(self) -> int:
+        self.advance(0.01)
+        return super().monotonic_ns()
 
 
 def spoiled(source: Source) -> list[SensorBatch]:
@@ -97,12 +109,28 @@ def test_a_replay_of_a_replay_is_the_same_recording(tmp_path):
         assert repr(again.others) == repr(batch.others)
 
 
-def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
-    class Ticking(ManualClock):
-        def monotonic_ns(self) -> int:
-            self.advance(0.01)  # so that it is flushed now and then
-            return super().monotonic_ns()
+def test_what_came_while_the_sensor_was_gone_is_played_when_it_came(tmp_path):
+    """Fixes of a receiver beside it, each by itself: not all at once with the last sample."""
+    raw = RawStream("u1", 7)
+    source = open_source(SCENARIO)
+    description = raw.description(0, source.description, source="", tracker="")
+    box = BlackBox(tmp_path, description, 10**9, Ticking())
+    first, *_, last = itertools.islice(source.batches(), 100)
+    first_ns = int(first.imu.t_ns[-1])
+    presses = [ButtonPress(first_ns + second * NS_PER_S, "mayday") for second in range(1, 4)]
+    alone = [SensorBatch(NO_IMU, (press,)) for press in presses]
+    with_one = SensorBatch(first.imu, (ButtonPress(first_ns, "cancel"),))
+    given = [with_one, *alone, last]
+    for batch in given:
+        box.write(raw.messages(batch))
+    box.close()
+    (boot,) = tmp_path.iterdir()
+    played = list(BlackBoxSource(boot).batches())
+    assert [len(batch.imu) for batch in played] == [len(batch.imu) for batch in given]
+    assert [batch.others for batch in played[:4]] == [batch.others for batch in given[:4]]
 
+
+def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
     _, boot = record(tmp_path, Ticking())
     (segment,) = boot.iterdir()
     whole = sum(len(batch.imu) for batch in BlackBoxSource(segment).batches())

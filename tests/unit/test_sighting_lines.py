@@ -70,7 +70,9 @@ def test_a_line_may_say_nothing(line: str) -> None:
         ("beacon b range=-1", "0 to 1000"),
         ("beacon b range=1e9", "0 to 1000"),
         ("beacon b std=-1", "not negative"),
-        ("beacon b rssi=900", "dBm"),
+        ("beacon b rssi=900", "rssi=900 is no level in dBm"),
+        ("beacon b rssi=-71 power=59", "power=59 is no level in dBm"),  # the sign is missing
+        ("beacon b rssi=-71 power=1e9", "power=1e.09 is no level in dBm"),
         ("beacon b colour=3", "known are"),
         ("beacon b " + "x" * 300, "longer"),
     ],
