@@ -101,9 +101,10 @@ class SourceReader:
         """The times beside a source are this machine's; where the source's are not, what came is of
         the batch with which it comes.
         """
-        came, imu = self._came(), placed.batch.imu
-        if came and not self._source.is_live and len(imu):
-            came = tuple(replace(one, t_ns=int(imu.t_ns[-1])) for one in came)
+        came = self._came()
+        times_ns = None if self._source.is_live else _bounds_ns(placed.batch)
+        if times_ns is not None:
+            came = tuple(replace(one, t_ns=times_ns[1]) for one in came)
         if not came:
             return placed
         batch = replace(placed.batch, others=(*placed.batch.others, *came))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from edge.samples import BatterySample, ImuBatch, SensorBatch, SensorDescription
+from edge.samples import BatterySample, ButtonPress, ImuBatch, SensorBatch, SensorDescription
 from edge.source_reader import PlacedBatch, SourceReader
 from edge.sources.port import Outage
 from shared.clock import NS_PER_S, ManualClock, SystemClock
@@ -152,6 +152,13 @@ def test_what_is_read_beside_a_source_comes_with_its_next_batch(live: bool, t_ns
     assert len(placed.batch.imu) == 1
     assert reader.take_faults() == ("it is loose",)
     assert beside.closed
+
+
+def test_beside_a_recording_it_has_the_recordings_time_also_where_the_sensor_was_gone():
+    press = ButtonPress(5 * NS_PER_S, "mayday")
+    source = Scripted(lambda: iter([SensorBatch(batch(0.0).imu.part(slice(0)), (press,))]))
+    (placed,) = everything(SourceReader(source, SystemClock(), None, (Told(LOW),)))
+    assert placed.batch.others == (press, BatterySample(5 * NS_PER_S, LOW.level))
 
 
 @pytest.mark.parametrize("live", [True, False])
