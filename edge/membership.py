@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from edge.config import EdgeConfig
 from shared.channels import tracker_id, validate_unit_id
 from shared.errors import ConfigError
+from shared.host_names import can_be_looked_up
 from shared.tls import TlsIdentity
 
 _ENDPOINT = re.compile(r"(tcp|tls)/(\[[0-9A-Fa-f:.]+\]|[^\s/:]+):([0-9]{1,5})")
@@ -86,7 +87,7 @@ def _enrolled(config: EdgeConfig, followed: str | None) -> Membership:
 
 def _check_endpoint(endpoint: str, *, secured: bool) -> None:
     parts = _ENDPOINT.fullmatch(endpoint)
-    if parts is None or not 0 < int(parts[3]) < 65536 or not _can_be_looked_up(parts[2]):
+    if parts is None or not 0 < int(parts[3]) < 65536 or not can_be_looked_up(parts[2]):
         raise ConfigError(
             f"{endpoint!r} is no place to connect to; write tcp/HOST:PORT, or tls/HOST:PORT with "
             "an enrolment"
@@ -97,12 +98,3 @@ def _check_endpoint(endpoint: str, *, secured: bool) -> None:
             if secured
             else f"{endpoint}: a secure link needs the unit's enrolment; give --enrolment FILE"
         )
-
-
-def _can_be_looked_up(host: str) -> bool:
-    """Whether it is a name at all; the name server may not know it yet."""
-    try:
-        host.encode("idna")
-    except UnicodeError:
-        return False
-    return True

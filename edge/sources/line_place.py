@@ -11,6 +11,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from edge.sources.line import Line, SerialLine, SocketLine, speed_of
 from shared.errors import ConfigError
+from shared.host_names import can_be_looked_up
 
 BAUD = (50.0, 4e6)  # least and most
 
@@ -66,11 +67,10 @@ def server_of(where: str, port: int | None) -> tuple[str, int, str] | None:
     try:
         parts = urlsplit(where)
         host, written = parts.hostname, parts.port
-        (host or "").encode("idna")  # what cannot be looked up is no name of a machine
     except ValueError:
         return None
     port = port if written is None else written
-    return (host, port, parts.path) if host and port else None
+    return (host, port, parts.path) if host and port and can_be_looked_up(host) else None
 
 
 def options_of(

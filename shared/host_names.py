@@ -1,0 +1,15 @@
+"""Names of machines, as far as they can be judged without asking anybody."""
+
+from __future__ import annotations
+
+
+def can_be_looked_up(host: str) -> bool:
+    """Whether it is a name at all; the name server may not know it yet.
+
+    Of what is none, ``socket`` says a UnicodeError and no OSError.
+    """
+    try:
+        host.encode("idna")
+    except UnicodeError:
+        return False
+    return True
