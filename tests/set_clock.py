@@ -3,23 +3,37 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from unittest import mock
 
+_PROJECT = Path(__file__).resolve().parent.parent
+_FILE = "MUSTER_TEST_CLOCK"
+_READ_EACH_S = 0.05
 # Python runs it first in every program that finds it on its path.
-_SITE = """
-import os, time
-_utc_ns, _file, _read = time.time_ns, os.environ["MUSTER_TEST_CLOCK"], [0.0, 0]
-def _ahead_ns():
-    if time.monotonic() - _read[0] > 0.05:
-        with open(_file) as said:
-            _read[:] = time.monotonic(), int(said.read())
-    return _read[1]
-time.time_ns = lambda: _utc_ns() + _ahead_ns()
-time.time = lambda: time.time_ns() / 1e9
-"""
+_SITE = "from tests.set_clock import go_by_machine_clock\ngo_by_machine_clock()\n"
+
+
+_true_utc_ns, _true_utc_s = time.time_ns, time.time
+
+
+def go_by_machine_clock() -> None:
+    """This program's UTC is that of the ``MachineClock`` under which it was started, if any."""
+    time.time_ns, time.time = _true_utc_ns, _true_utc_s
+    if (file := os.environ.get(_FILE)) is None:
+        return
+    read_s, ahead_ns = 0.0, 0
+
+    def utc_ns() -> int:
+        nonlocal read_s, ahead_ns
+        if time.monotonic() - read_s > _READ_EACH_S:
+            read_s, ahead_ns = time.monotonic(), int(Path(file).read_text())
+        return _true_utc_ns() + ahead_ns
+
+    time.time_ns = utc_ns
+    time.time = lambda: utc_ns() / 1e9
 
 
 class MachineClock:
@@ -39,6 +53,7 @@ class MachineClock:
 
     @contextmanager
     def ticks(self) -> Iterator[None]:
-        path = os.pathsep.join(filter(None, (str(self._site), os.environ.get("PYTHONPATH"))))
-        with mock.patch.dict(os.environ, PYTHONPATH=path, MUSTER_TEST_CLOCK=str(self._file)):
+        path = (str(self._site), str(_PROJECT), os.environ.get("PYTHONPATH", ""))
+        changed = {"PYTHONPATH": os.pathsep.join(filter(None, path)), _FILE: str(self._file)}
+        with mock.patch.dict(os.environ, changed):
             yield

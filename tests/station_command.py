@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
+import io
+import os
 import signal
-import subprocess
 import sys
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +18,36 @@ from shared.channels import channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
+from shared.errors import MusterError
 from shared.messages import Message
+from tests.set_clock import go_by_machine_clock
 from tests.waiting import PATIENCE_S, until
 
-# As ``shared.command_line.main`` does it, without the entry points of an installed program.
-RUN = """
-import sys
-from {package}.cli import app
-from shared.errors import MusterError
-try:
-    app()
-except MusterError as error:
-    print(error, file=sys.stderr)
-    sys.exit(2)
-"""
+# Each command forks off a process that has loaded the program: hundreds are started, and to load
+# it takes a core three seconds. The demo and the benches start it as it is installed.
+_LOADED = get_context("forkserver")
+_LOADED.set_forkserver_preload(
+    [__name__, "base_station.app.live", "base_station.app.replay", "edge.app"]
+)
+
+
+def _run(
+    package: str, arguments: tuple[str, ...], stdin: str, output: Path, environ: dict[str, str]
+) -> None:
+    """As ``shared.command_line.main`` does it, without the entry points of an installed program."""
+    sys.stdin = io.StringIO(stdin)
+    with output.open("ab") as written:
+        os.dup2(written.fileno(), 1)
+        os.dup2(written.fileno(), 2)
+    os.environ.clear()
+    os.environ.update(environ)
+    go_by_machine_clock()
+    sys.argv = [package, *arguments]
+    try:
+        importlib.import_module(f"{package}.cli").app()
+    except MusterError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
 
 
 class Command:
@@ -38,16 +57,10 @@ class Command:
 
     def __init__(self, output: Path, *arguments: str, stdin: str = "") -> None:
         self._output = output
-        with output.open("wb") as written:
-            self.process = subprocess.Popen(
-                [sys.executable, "-c", RUN.format(package=self.package), *arguments],
-                stdin=subprocess.PIPE,
-                stdout=written,
-                stderr=subprocess.STDOUT,
-            )
-        assert self.process.stdin is not None
-        self.process.stdin.write(stdin.encode())
-        self.process.stdin.close()
+        output.write_bytes(b"")
+        how = (self.package, arguments, stdin, output, dict(os.environ))
+        self._process = _LOADED.Process(target=_run, args=how, daemon=True)
+        self._process.start()
 
     def __enter__(self) -> Command:
         return self
@@ -55,29 +68,39 @@ class Command:
     def __exit__(self, *_: object) -> None:
         self.kill()
 
+    @property
+    def pid(self) -> int:
+        assert self._process.pid is not None
+        return self._process.pid
+
+    def runs(self) -> bool:
+        return self._process.is_alive()
+
     def said(self) -> str:
         return self._output.read_text(errors="replace")
 
     def wait_ready(self) -> str:
         """The address of the console."""
         until(
-            lambda: "\nready " in f"\n{self.said()}" or self.process.poll() is not None,
+            lambda: "\nready " in f"\n{self.said()}" or not self.runs(),
             "the station is ready or has ended",
         )
-        assert self.process.poll() is None, f"the station ended:\n{self.said()}"
+        assert self.runs(), f"the station ended:\n{self.said()}"
         (line,) = (line for line in self.said().splitlines() if line.startswith("ready "))
         return line.removeprefix("ready ")
 
     def wait(self) -> int:
-        return self.process.wait(PATIENCE_S)
+        self._process.join(PATIENCE_S)
+        assert self._process.exitcode is not None, f"it has not ended:\n{self.said()}"
+        return self._process.exitcode
 
-    def stop(self) -> int:
-        self.process.send_signal(signal.SIGTERM)
+    def stop(self, by: signal.Signals = signal.SIGTERM) -> int:
+        os.kill(self.pid, by)
         return self.wait()
 
     def kill(self) -> None:
-        self.process.kill()
-        self.process.wait()
+        self._process.kill()
+        self._process.join()
 
 
 class Agent(Command):

@@ -36,7 +36,7 @@ class StationProcess:
 
     def stop(self) -> None:
         """In order; nothing happens where it does not run."""
-        if self._command is not None and self._command.process.poll() is None:
+        if self._command is not None and self._command.runs():
             self._command.stop()
 
     def login(self) -> tuple[str, str]:

@@ -128,8 +128,7 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
         assert first_heard > 1
         boot_id = station.messages[0].header.boot_id
         assert list(station.journal(boot_id, first_heard)) == list(range(1, first_heard + 1))
-        agent.process.send_signal(signal.SIGINT)
-        assert agent.wait() == 0
+        assert agent.stop(signal.SIGINT) == 0
         until(lambda: station.of(UnitEvent))
         last = station.of(UnitEvent)[-1]
         assert isinstance(last, UnitEvent)
