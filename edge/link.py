@@ -126,6 +126,7 @@ class Link:
             if not self._failure_told:
                 logger.warning("%s; trying again every second", error)
             self._failure_told = True
+            self._tell(None)
             return False
         self._failure_told = False
         self._bus = bus

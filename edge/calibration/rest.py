@@ -37,7 +37,8 @@ class RestFinder:
 
     def __init__(self) -> None:
         self.rests: list[list[Window]] = []
-        self.moved_at_ns: int | None = None  # when it last moved
+        self.moved_at_s: float | None = None  # when it last moved, since its first sample
+        self._began_ns = 0
         self._settling = True
         self._before_mps2: Floats | None = None
         self._cell: int | None = None
@@ -55,6 +56,8 @@ class RestFinder:
                 continue
             cell = int(cells[start])
             if cell != self._cell:
+                if self._cell is None:
+                    self._began_ns = cell * WINDOW_NS
                 self._close()
                 if cell - 1 != self._cell:
                     self._settling = True  # nobody saw what was done with it meanwhile
@@ -80,7 +83,7 @@ class RestFinder:
         steady = before is not None and np.linalg.norm(mean[:3] - before) < _STEADY_MPS2
         if not (still and steady):
             if before is not None or not still:  # the first window of all has nothing before it
-                self.moved_at_ns = start_ns
+                self.moved_at_s = (start_ns - self._began_ns) / NS_PER_S
             if not self._settling and len(self.rests[-1]) > 1:
                 self.rests[-1].pop()  # a hand was perhaps reaching for it
             self._settling = True

@@ -14,7 +14,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 from edge.calibration.rest import RestFinder, Window, mean_of, seconds
 from edge.calibration.solve import tells_misalignment
 from edge.samples import Floats, ImuBatch
-from shared.clock import NS_PER_S
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 _PAIRS = ("x and y", "x and z", "y and z")
@@ -72,13 +71,10 @@ class StillStep:
         windows = self.windows()
         if seconds(windows) < _STILL_FOR_S:
             lay = f"{seconds(windows):.1f} s, and {_STILL_FOR_S:.0f} s are needed"
-            moved_ns = self._finder.moved_at_ns
-            if moved_ns is None:
+            moved_s = self._finder.moved_at_s
+            if moved_s is None:
                 return f"it lay still for only {lay}"
-            return (
-                f"moved during the still step (last at {moved_ns / NS_PER_S:.1f} s): "
-                f"it lay still for {lay}"
-            )
+            return f"moved during the still step (last at {moved_s:.1f} s): it lay still for {lay}"
         if float(np.linalg.norm(mean_of(windows).gyro_radps)) > _TURNING_RADPS:
             return "turned evenly during the whole still step: lay it on something that stands"
         return None

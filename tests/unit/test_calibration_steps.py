@@ -64,6 +64,16 @@ def test_ten_seconds_of_rest_are_needed(lay_s: float, lacks: bool) -> None:
     assert bench.step.wanted() == bench.step.missing()
 
 
+def test_when_it_moved_is_said_from_where_the_step_began_not_from_when_the_machine_did() -> None:
+    step = StillStep()
+    bench = Bench(step)
+    bench.now_s = 86_400.2
+    bench.lies(Z, 5.0)
+    bench.lies(Z, 1.0, rate_radps=1.0)
+    bench.lies(X, 5.0)
+    assert "(last at 6.5 s)" in str(step.missing())
+
+
 def test_the_longest_rest_is_taken_whichever_it_is() -> None:
     step = StillStep()
     bench = Bench(step)

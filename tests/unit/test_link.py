@@ -101,7 +101,7 @@ def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplo
 
     def open_bus():
         tries.append(1)
-        if len(tries) < 5:
+        if len(tries) < 4:
             raise BusError("the bus cannot be opened")
         return station.router.attach_unit()
 
@@ -113,6 +113,24 @@ def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplo
     assert [record.message for record in caplog.records] == [
         "the bus cannot be opened; trying again every second"
     ]
+
+
+def test_why_a_bus_cannot_be_opened_is_told_once(caplog, monkeypatch):
+    """A unit of two stations opens none before one of them is there."""
+    monkeypatch.setattr("edge.link._RETRY_S", 0.01)
+    tries: list[int] = []
+
+    def open_bus():
+        tries.append(1)
+        raise BusError("the bus cannot be opened")
+
+    with caplog.at_level(logging.WARNING):
+        link = make_link(open_bus, [])
+        until(lambda: "no link: nobody is there; messages are kept" in caplog.text)
+        more = len(tries) + 5
+        until(lambda: len(tries) > more)
+        link.close()
+    assert caplog.text.count("no link") == 1
 
 
 def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
