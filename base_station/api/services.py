@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
@@ -49,6 +50,9 @@ class Services:
     hindsight: Hindsight | None = None  # None: a station without a log
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     darkroom: Lock = field(default_factory=Lock)  # one picture at a time: each may take 400 MB
+    # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
+    # thread: those are for who acts.
+    copying: asyncio.Lock = field(default_factory=asyncio.Lock)
 
     def act(self, by: str, action: Action) -> ActionDone:
         """Have the drive take a person's action, and wait until it can be read everywhere.

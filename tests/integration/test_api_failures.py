@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
+
 import pytest
 
 from base_station.db.principals import Role
@@ -53,6 +56,29 @@ async def test_on_a_full_disk_nothing_is_exported_that_the_audit_does_not_say(
         assert answer.status_code == 503
         assert "the audit cannot say: the disk is full" in answer.json()["detail"]
         assert (await commander.get(path)).status_code == 200
+
+
+async def test_one_whole_incident_at_a_time_takes_the_stations_memory(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inside: list[int] = []
+    most = 0
+
+    def slow(*_: object) -> list[str]:
+        nonlocal most
+        inside.append(1)
+        most = max(most, len(inside))
+        time.sleep(0.05)
+        inside.pop()
+        return []
+
+    monkeypatch.setattr(Records, "track_units", slow)
+    async with station.client(Role.COMMANDER) as commander:
+        opened = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
+        paths = [f"/incidents/{opened['incident_id']}/{one}" for one in ("export/csv", "tracks")]
+        answers = await asyncio.gather(*(commander.get(path) for path in paths * 4))
+    assert {answer.status_code for answer in answers} == {200}
+    assert most == 1
 
 
 def full(*_: object) -> None:

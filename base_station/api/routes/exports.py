@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 from pydantic import BaseModel
+from starlette.concurrency import run_in_threadpool
 
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import TrailKind, trails_of
 from base_station.api.security import Viewer
-from base_station.api.services import Station
+from base_station.api.services import Services, Station
+from base_station.db.principals import Principal
 from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
 from shared.errors import StoreError
@@ -32,7 +34,7 @@ def list_formats(_: Viewer) -> list[Format]:
 
 
 @router.get("/incidents/{incident_id}/export/{format_name}", response_class=Response)
-def export_incident(
+async def export_incident(
     incident_id: Id,
     format_name: Id,
     station: Station,
@@ -40,6 +42,13 @@ def export_incident(
     kind: TrailKind = TrailKind.FUSED,
 ) -> Response:
     """``kind``: what was shown at the time, or the trails as they are known afterwards."""
+    async with station.copying:
+        return await run_in_threadpool(_export, incident_id, format_name, station, who, kind)
+
+
+def _export(
+    incident_id: str, format_name: str, station: Services, who: Principal, kind: TrailKind
+) -> Response:
     exporter = next((one for one in EXPORTERS if one.name == format_name), None)
     if exporter is None:
         known = ", ".join(one.name for one in EXPORTERS)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, Depends, Query, Response
+from starlette.concurrency import run_in_threadpool
 
 from base_station.answer import Answer, to_ms
 from base_station.api.forms import Id, UnitId, window
@@ -51,10 +52,15 @@ def unit_track(
 
 
 @router.get("/incidents/{incident_id}/tracks", response_model=list[Track])
-def incident_tracks(
+async def incident_tracks(
     incident_id: Id, station: Station, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
     """Of every unit that moved while the incident was open."""
+    async with station.copying:
+        return await run_in_threadpool(_incident_tracks, incident_id, station, every_s)
+
+
+def _incident_tracks(incident_id: str, station: Services, every_s: int) -> Response:
     when = window_of(incident_or_404(station, incident_id))
     units = station.records.track_units(when)
     return _json([_track(station, unit_id, when, every_s) for unit_id in units])
