@@ -41,11 +41,17 @@ _token_scheme = HTTPBearer(auto_error=False)
 
 def principal_of(connection: HTTPConnection, services: Services) -> Principal | None:
     """Whoever the cookie or the token stands for."""
-    kind, _, secret = connection.headers.get("authorization", "").partition(" ")
-    if kind.lower() == "bearer":
-        return services.accounts.of_token(secret.strip())
+    token = _token_of(connection)
+    if token is not None:
+        return services.accounts.of_token(token)
     cookie = connection.cookies.get(COOKIE)
     return None if cookie is None else services.accounts.of_session(cookie)
+
+
+def _token_of(connection: HTTPConnection) -> str | None:
+    """Where one is shown, the cookie beside it counts for nothing."""
+    kind, _, secret = connection.headers.get("authorization", "").partition(" ")
+    return secret.strip() if kind.lower() == "bearer" else None
 
 
 def is_own_origin(connection: HTTPConnection) -> bool:
@@ -70,7 +76,7 @@ def check_origin(connection: HTTPConnection) -> None:
         return
     if not is_own_origin(connection):
         raise Problem(403, "This was asked by a page that is not the station's own.")
-    by_cookie = COOKIE in connection.cookies and "authorization" not in connection.headers
+    by_cookie = COOKIE in connection.cookies and _token_of(connection) is None
     if by_cookie and "origin" not in connection.headers:
         raise Problem(403, "A browser's request must name its origin; programs use an API token.")
 

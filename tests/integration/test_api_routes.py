@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import pytest
 import pytest_asyncio
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from PIL import Image
@@ -73,6 +74,11 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "standby": {"GET /standby": V, "GET /standby/leads": NOBODY, "POST /standby/take-over": C},
 }  # fmt: skip
 SOCKETS = {"/live", "/replays/{replay_id}/live"}
+CHANGING = [r for routes in LEAST.values() for r in routes if not r.startswith("GET")]
+# Looking at the past changes nothing at the standby.
+AT_A_STANDBY = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /replays",
+                "POST /replays/{replay_id}", "DELETE /replays/{replay_id}",
+                "POST /standby/take-over"}  # fmt: skip
 # What leaves no entry: it changes nothing but what one looks at oneself.
 LOOKING_ON = {"POST /hand-over", "POST /replays/{replay_id}", "DELETE /replays/{replay_id}"}
 PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": []}
@@ -154,6 +160,37 @@ async def test_a_token_for_another_part_opens_no_route(station: DeskStation) -> 
                     assert "This token is for" in answer.json()["detail"], route
 
 
+async def test_another_sites_page_changes_nothing_by_any_route(station: DeskStation) -> None:
+    async with station.client() as browser:
+        browser.headers["origin"] = ORIGIN
+        credentials = {"username": "administrator", "password": PASSWORD}
+        assert (await browser.post("/login", json=credentials)).status_code == 200
+        for route in CHANGING:
+            method, path = route.split()
+            foreign = {"origin": "http://elsewhere"}
+            answer = await browser.request(method, concrete(path), headers=foreign)
+            assert answer.status_code == 403, route
+            assert "not the station's own" in answer.json()["detail"], route
+        del browser.headers["origin"]
+        for route in CHANGING:
+            method, path = route.split()
+            answer = await browser.request(method, concrete(path))
+            assert answer.status_code == 403, route
+            assert "must name its origin" in answer.json()["detail"], route
+
+
+async def test_a_standby_changes_nothing_by_any_route(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Standing, "refusal", lambda _: "this is the standby")
+    async with station.client(Role.ADMINISTRATOR) as client:
+        for route in CHANGING:
+            method, path = route.split()
+            answer = await client.request(method, concrete(path))
+            refused = answer.status_code == 503 and "Nothing was changed" in answer.text
+            assert refused == (route not in AT_A_STANDBY), route
+
+
 class Story:
     """Somebody who does everything once, and looks what the audit says of it."""
 
@@ -201,8 +238,7 @@ async def test_whatever_changes_something_is_in_the_audit(
         await do("POST /me/password", changed)
         await do("POST /login", {"username": "administrator", "password": f"{PASSWORD} 2"})
         await do("POST /logout")
-    changing = {r for routes in LEAST.values() for r in routes if not r.startswith("GET")}
-    assert changing - story.done == {
+    assert set(CHANGING) - story.done == {
         # They need a log: test_served_past.py and test_forgetting.py look for their entries.
         "POST /replays",
         "POST /replays/{replay_id}",

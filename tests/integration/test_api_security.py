@@ -108,6 +108,22 @@ async def test_another_site_changes_nothing(browser: httpx.AsyncClient) -> None:
     assert (await browser.get("/incidents")).json() == []
 
 
+async def test_a_cookie_changes_nothing_without_an_origin_but_beside_a_token(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
+    del browser.headers["origin"]
+    browser.headers["authorization"] = "Basic eDp4"  # which the cookie goes before
+    assert (await browser.get("/me")).json()["role"] == "commander"
+    assert (await browser.post("/logout")).status_code == 403
+    browser.headers["authorization"] = f"Bearer {made['token']}"
+    assert (await browser.get("/me")).json()["role"] == "viewer"
+    renamed = await browser.post("/people", json={"name": "Ada"})
+    assert "needs the role commander" in renamed.json()["detail"]
+    assert (await browser.delete(f"/tokens/{made['token_id']}")).status_code == 204
+    assert (await browser.get("/me")).status_code == 401  # and the cookie is good
+
+
 async def test_a_session_ends(browser: httpx.AsyncClient, clock: ManualClock) -> None:
     assert (await browser.get("/me")).json() == {"username": "commander", "role": "commander"}
     clock.advance(SESSION_S - 1.0)
@@ -191,6 +207,13 @@ async def test_over_tls_a_page_that_came_in_the_clear_changes_nothing(
 ) -> None:
     station.app.state.services = dataclasses.replace(station.services, secure=True)
     assert (await browser.post("/logout")).status_code == 403
+    ours = {"origin": ORIGIN.replace("http:", "https:")}
+    assert (await browser.post("/logout", headers=ours)).status_code == 204
+
+
+async def test_behind_a_proxy_that_serves_tls_the_stations_own_page_changes_things(
+    browser: httpx.AsyncClient,
+) -> None:
     ours = {"origin": ORIGIN.replace("http:", "https:")}
     assert (await browser.post("/logout", headers=ours)).status_code == 204
 
