@@ -1,7 +1,8 @@
 """Copies what a station cannot do without into another folder, also while the station runs.
 
 The copy is a data folder like any other: a station that is started on it goes on from there.
-What can be made again (checkpoints) or fetched again (raw recordings) stays behind.
+What can be made again (checkpoints) or fetched again (raw recordings) stays behind.  A disk that is
+failing keeps nothing from the copy but what it does not give.
 """
 
 from __future__ import annotations
@@ -10,29 +11,39 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from base_station.data_folder import DataFolder
 from base_station.db.store import copy_database, known_segments
 from base_station.pki.folder import PkiFolder
 from base_station.standby.setting_aside import APART
-from shared.errors import LogError, UserError
+from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
 
 _PRIVATE = 0o700
 _PART = ".part"  # of the name, until the copy is whole
+_BLOCK_BYTES = 4096  # a disk gives so much or none of it
 _MTIME_STEP_NS = 2_000_000_000  # some file systems of USB sticks know only every other second
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Backup:
     """What one run did."""
 
-    copied: int  # files
-    copied_bytes: int
-    unchanged: int
-    gone: int  # segments of an earlier run that the station has no more
+    copied: int = 0  # files, as a whole
+    copied_bytes: int = 0
+    unchanged: int = 0
+    gone: int = 0  # segments of an earlier run that the station has no more
+    unreadable: list[str] = field(default_factory=list)  # what the disk does not give, or in parts
+
+    def require_whole(self) -> None:
+        """LogError where something is missing in it."""
+        if self.unreadable:
+            raise LogError(
+                f"the backup lacks what the disk does not give of {', '.join(self.unreadable)}: "
+                "check that disk; all the rest is there"
+            )
 
 
 def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> Backup:
@@ -41,21 +52,23 @@ def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> B
 
     The database is copied before the log, so it never knows more than the log does.  Raises
     UserError where ``target`` is something else than a backup of this station, LogError where it
-    cannot be written.
+    cannot be written; StoreError, with all the rest copied, where the database cannot be.
     """
     source, copy = DataFolder(data), DataFolder(target)
     source.require()
     _refuse_foreign(source, copy)
     try:
         target.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
-        with _part_of(copy.database) as part:
-            copy_database(source.database, part)
-        return _copy_files(source, copy, on_progress)
+        without = _copy_database(source, copy)
+        done = _copy_files(source, copy, on_progress)
     except OSError as error:
         raise LogError(
             f"the backup to {target} is not complete ({error.strerror or error}): make room or "
             "choose another place, and give the command again; what is there stays, and is of use"
         ) from error
+    if without is not None:
+        raise without
+    return done
 
 
 def _refuse_foreign(source: DataFolder, copy: DataFolder) -> None:
@@ -72,27 +85,72 @@ def _refuse_foreign(source: DataFolder, copy: DataFolder) -> None:
         )
 
 
+def _copy_database(source: DataFolder, copy: DataFolder) -> StoreError | None:
+    """Why it cannot be copied; the log can, and knows what it knew of positions and alarms."""
+    try:
+        with _part_of(copy.database) as part:
+            copy_database(source.database, part)
+    except StoreError as error:
+        return error
+    return None
+
+
 def _copy_files(
     source: DataFolder, copy: DataFolder, on_progress: Callable[[float], None]
 ) -> Backup:
-    files = list(_files(source))
-    total = sum(path.stat().st_size for path in files) or 1
-    passed = copied = copied_bytes = 0
-    for path in files:
+    done = Backup()
+    sizes = {path: _size_of(path) for path in _files(source)}
+    total, passed = sum(sizes.values()) or 1, 0
+    for path, size in sizes.items():
         target = copy.path / path.relative_to(source.path)
-        size = path.stat().st_size
-        if not _is_current(path, target):
+        if _is_current(path, target):
+            done.unchanged += 1
+        else:
             target.parent.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
             with _part_of(target) as part:
-                shutil.copy2(path, part)
-            copied, copied_bytes = copied + 1, copied_bytes + size
+                whole = _copy_file(path, part)
+            if whole:
+                done.copied, done.copied_bytes = done.copied + 1, done.copied_bytes + size
+            else:
+                done.unreadable.append(path.name)
         passed += size
         on_progress(passed / total)
     if not source.begun.exists():
         copy.begun.unlink(missing_ok=True)  # it has names in it
     here = {path.name for path in segment_paths(source.log)}
-    gone = sum(path.name not in here for path in segment_paths(copy.log))
-    return Backup(copied, copied_bytes, len(files) - copied, gone)
+    done.gone = sum(path.name not in here for path in segment_paths(copy.log))
+    return done
+
+
+def _size_of(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:  # to copy it tells of that
+        return 0
+
+
+def _copy_file(path: Path, copy: Path) -> bool:
+    """Whether the disk gives all of it: where not, zeros stand in the copy, which whoever reads a
+    log takes for the damage that it is; of a file that it does not give at all there is none.
+    """
+    try:
+        file = path.open("rb")
+    except OSError:
+        return False
+    whole = True
+    with file, copy.open("wb") as written:
+        size = os.fstat(file.fileno()).st_size
+        for begin in range(0, size, _BLOCK_BYTES):
+            count = min(_BLOCK_BYTES, size - begin)
+            try:
+                block = os.pread(file.fileno(), count, begin)
+            except OSError:
+                whole, block = False, bytes(count)
+            written.write(block)
+    shutil.copystat(path, copy)
+    if not whole:  # it is not current: the next run tries again
+        os.utime(copy, (0, 0))
+    return whole
 
 
 def _files(source: DataFolder) -> Iterator[Path]:
@@ -105,9 +163,10 @@ def _files(source: DataFolder) -> Iterator[Path]:
 
 def _is_current(path: Path, target: Path) -> bool:
     """A segment that grows has another size; one that was rewritten, another time."""
-    if not target.exists():
+    try:
+        now, then = path.stat(), target.stat()
+    except OSError:
         return False
-    now, then = path.stat(), target.stat()
     return now.st_size == then.st_size and abs(now.st_mtime_ns - then.st_mtime_ns) < _MTIME_STEP_NS
 
 

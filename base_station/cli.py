@@ -115,6 +115,7 @@ def backup(
     )
     if done.gone:
         typer.echo(f"{done.gone} segments of the log are there that the station has no more")
+    done.require_whole()
 
 
 @app.command()

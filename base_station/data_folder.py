@@ -40,7 +40,7 @@ class DataFolder:
     def segments(self) -> Iterator[SegmentInfo]:
         """The log's, in the order of writing; the last one is open while a station writes it.
 
-        Raises LogError when one cannot be opened.
+        Raises LogError when one is taken away meanwhile.
         """
         is_written = FolderLock.is_held(self.path)
         paths = segment_paths(self.log)

@@ -21,7 +21,7 @@ _AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's house
 
 
 class LogCheck:
-    """Reads the complete segments, one a look, round after round; from any thread."""
+    """Reads the segments that nobody writes, one a look, round after round; from any thread."""
 
     def __init__(self, remedy: str) -> None:
         """``remedy``: what becomes of a damaged one, for a person."""
@@ -34,7 +34,7 @@ class LogCheck:
     def look(self, segments: Iterable[SegmentInfo]) -> None:
         """At one more of them: reading a long log is to hold up nothing."""
         with self._lock:
-            new = (one.path for one in segments if one.state is SegmentState.CLOSED)
+            new = (one.path for one in segments if one.state is not SegmentState.OPEN)
             path = next((one for one in new if one not in self._read), None)
             if path is None:
                 self._idle += 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from itertools import dropwhile
 from pathlib import Path
 
 from base_station.data_folder import DataFolder
@@ -80,10 +81,12 @@ def _new_part(data: Path, place: Place) -> Path:
 
 
 def _segments_at_or_behind(log: Path, place: Place) -> Iterator[Path]:
-    for path in segment_paths(log):
-        with SegmentReader(path) as reader:
-            if reader.info().end_ns >= place.t_ns:
-                yield path
+    return dropwhile(lambda path: _end_ns(path) < place.t_ns, segment_paths(log))
+
+
+def _end_ns(path: Path) -> int:
+    with SegmentReader(path) as reader:
+        return reader.info().end_ns
 
 
 def _kept(paths: list[Path], place: Place) -> Iterator[Record]:

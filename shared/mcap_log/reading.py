@@ -62,7 +62,7 @@ class SegmentReader:
     """
 
     def __init__(self, path: Path) -> None:
-        """Raises LogError when the file cannot be opened."""
+        """Raises LogError when there is no such file."""
         self.path = path
         self._file = SegmentFile(path)
         self._contents = contents_of(self._file)
@@ -78,9 +78,11 @@ class SegmentReader:
         return self._file.damage
 
     @property
-    def is_complete(self) -> bool:
-        """Whether the file was ended in order."""
-        return self._contents.is_complete
+    def state(self) -> SegmentState:
+        """Of nobody who writes to it anything is known here: an open one counts as torn."""
+        if not self._file.is_given:
+            return SegmentState.UNREADABLE
+        return SegmentState.CLOSED if self._contents.is_complete else SegmentState.TORN
 
     @property
     def bytes_lost(self) -> int:
@@ -101,7 +103,7 @@ class SegmentReader:
             )
         return SegmentInfo(
             self.path,
-            SegmentState.CLOSED if self.is_complete else SegmentState.TORN,
+            self.state,
             min((chunk.start_ns for chunk in chunks), default=0),
             max((chunk.end_ns for chunk in chunks), default=0),
             messages,
@@ -137,7 +139,7 @@ class SegmentReader:
 
     def is_whole(self) -> bool:
         """Whether every chunk is as it was written."""
-        return all(self._chunk_data(chunk) for chunk in self._contents.chunks)
+        return self._file.is_given and all(map(self._chunk_data, self._contents.chunks))
 
     def intact_chunks(self) -> Iterator[IntactChunk]:
         """What can be read, as it stands in the file."""
@@ -233,7 +235,7 @@ def read_log(
 
     From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
     next.  ``on_damage`` hears in words of each part that could not be read.  Raises LogError
-    when a segment cannot be opened.
+    when a segment is taken away meanwhile.
     """
     for path in segments_within(segment_paths(folder), start_ns, end_ns):
         with SegmentReader(path) as segment:

@@ -10,6 +10,7 @@ from shared.mcap_log.durable_file import sync_folder
 from shared.mcap_log.folder import segment_number, segment_paths
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment
+from shared.mcap_log.writing import SegmentState
 
 TORN = ".torn"
 MAKING = ".recovering"
@@ -60,9 +61,9 @@ def recover_log(folder: Path) -> list[Recovery]:
 
 
 def _recover_segment(path: Path) -> Recovery | None:
-    """None when the segment is complete."""
+    """None when the segment is complete, or nobody can tell."""
     with SegmentReader(path) as reader:
-        if reader.is_complete:
+        if reader.state is not SegmentState.TORN:
             return None
         clean = RebuiltSegment(path.with_name(path.name + MAKING))
         try:

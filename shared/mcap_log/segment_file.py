@@ -13,16 +13,24 @@ _BLOCK_BYTES = 4096  # a disk gives so much or none of it
 
 
 class SegmentFile:
-    """An open file; ``damage`` describes, once each, what could not be read."""
+    """An open file; ``damage`` describes, once each, what could not be read.
+
+    One that the disk does not give is as good as empty, with ``is_given`` false.
+    """
 
     def __init__(self, path: Path) -> None:
-        """Raises LogError when the file cannot be opened."""
+        """Raises LogError when there is no such file."""
         self.path = path
         self.damage: list[str] = []
+        self.is_given = True
         try:
             self._file: BinaryIO = path.open("rb")
-        except OSError as error:
+        except FileNotFoundError as error:
             raise LogError(f"{path} cannot be read: {error.strerror}") from error
+        except OSError as error:
+            self._file = Path(os.devnull).open("rb")  # noqa: SIM115 - until ``close``
+            self.is_given = False
+            self.note(f"the disk does not give it ({error.strerror})")
         self.size = os.fstat(self._file.fileno()).st_size  # what is written later is not read
 
     def close(self) -> None:

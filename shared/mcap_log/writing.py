@@ -44,6 +44,7 @@ class SegmentState(Enum):
     OPEN = "open"  # being written
     CLOSED = "closed"
     TORN = "torn"  # not ended in order; readable up to the tear
+    UNREADABLE = "unreadable"  # the disk does not even open it
 
 
 @dataclass(frozen=True, slots=True)

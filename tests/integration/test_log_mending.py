@@ -107,6 +107,18 @@ def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
     assert pair.check.problems() == ()
 
 
+def test_a_segment_that_the_disk_does_not_even_open_comes_as_a_whole(pair: Pair) -> None:
+    written = records()
+    pair.write(written, written)
+    path = pair.mine.segments()[1].path
+    path.unlink()
+    path.symlink_to(path.name)
+    pair.look_at_all()
+    pair.mending.look(Event())
+    assert pair.events() == [one for one in written if is_event(one[1])]
+    assert pair.check.problems() == ()
+
+
 def test_a_log_is_not_filled_with_another_one_s(pair: Pair) -> None:
     pair.write(records(), records(luck=2))
     pair.damage(1, 0.3)

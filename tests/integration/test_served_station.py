@@ -17,7 +17,7 @@ from base_station.bench.rig.station import free_port
 from base_station.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder
-from shared.mcap_log import SegmentReader, segment_paths
+from shared.mcap_log import SegmentReader, SegmentState, segment_paths
 from shared.messages import EventKind, UnitEvent
 from shared.messages.status import Activity
 from tests.served_station import (
@@ -83,7 +83,7 @@ def test_a_station_that_is_asked_to_stop_leaves_everything_in_order(
             assert station.stop() == 0
     for path in segment_paths(data / "log"):
         with SegmentReader(path) as reader:
-            assert reader.is_complete
+            assert reader.state is SegmentState.CLOSED
     assert (data / "first-login.txt").stat().st_mode & 0o077 == 0
     assert (data / "station.sqlite").stat().st_mode & 0o077 == 0
 

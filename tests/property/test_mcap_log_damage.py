@@ -18,6 +18,7 @@ from shared.mcap_log import (
     LogRecord,
     SegmentPolicy,
     SegmentReader,
+    SegmentState,
     SegmentWriter,
     read_log,
     recover_log,
@@ -108,7 +109,7 @@ def test_a_log_torn_anywhere_is_read_and_mended_up_to_the_tear(
     assert list(read_log(folder, on_damage=damage.append)) == found
     assert damage == []
     with SegmentReader(segment_paths(folder)[0]) as mended:
-        assert mended.is_complete
+        assert mended.state is SegmentState.CLOSED
         assert mended.info().messages == len(found)
     key = RECORDS[0][1]
     assert list(read_log(folder, keys={key})) == [record for record in found if record[1] == key]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
 import sqlite3
 from pathlib import Path
 
 import pytest
 
+from base_station import backup
 from base_station.backup import Backup, back_up
 from base_station.db.models import LogSegment
 from base_station.db.records import Records
@@ -73,14 +73,14 @@ def test_what_is_forgotten_while_it_is_made_is_forgotten_in_it_too(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A station that is started on it does what the copied log may still have to lose."""
-    copy, target = shutil.copy2, tmp_path / "backup"
+    copy, target = backup._copy_file, tmp_path / "backup"
 
-    def forget_meanwhile(source: Path, part: Path) -> None:
-        copy(source, part)
+    def forget_meanwhile(source: Path, part: Path) -> bool:
         if source.suffix == ".mcap":
             (data / "forgetting.json").write_text("[] done")
+        return copy(source, part)
 
-    monkeypatch.setattr(shutil, "copy2", forget_meanwhile)
+    monkeypatch.setattr(backup, "_copy_file", forget_meanwhile)
     run(data, target)
     assert (target / "forgetting.json").read_text() == "[]"
     (data / "forgetting-begun.json").unlink()
@@ -154,6 +154,36 @@ def test_where_it_cannot_be_written_it_says_so(data: Path, tmp_path: Path) -> No
         run(data, tmp_path / "file" / "backup")
 
 
+def test_of_a_failing_disk_all_is_copied_that_it_gives(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And it is told what that is not, by every run until it can be read."""
+    target, pread = tmp_path / "backup", os.pread
+    (data / "log" / FIRST).write_bytes(b"a" * 4096 + b"b" * 4096 + b"c" * 10)
+    (data / "log" / SECOND).unlink()
+    (data / "log" / SECOND).symlink_to(SECOND)  # nobody can open it
+
+    def failing(file: int, count: int, offset: int) -> bytes:
+        if offset == 4096:
+            raise OSError(errno.EIO, "Input/output error")
+        return pread(file, count, offset)
+
+    (data / "station.sqlite").write_bytes(b"no database")
+    for _ in range(2):
+        with monkeypatch.context() as patched:
+            patched.setattr(os, "pread", failing)
+            with pytest.raises(StoreError, match="cannot be read"):
+                run(data, target)
+        copied = (target / "log" / FIRST).read_bytes()
+        assert copied == b"a" * 4096 + bytes(4096) + b"c" * 10
+        assert files(target) >= {"pki/station.key", f"apart/{SECOND}", "forgetting.json"}
+    (data / "station.sqlite").unlink()
+    done = run(data, target)
+    assert (target / "log" / FIRST).read_bytes() == (data / "log" / FIRST).read_bytes()
+    with pytest.raises(LogError, match=f"does not give of {SECOND}: check that disk"):
+        done.require_whole()
+
+
 def full(*_: object) -> None:
     raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -162,22 +192,22 @@ def full(*_: object) -> None:
 def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, copied: int
 ) -> None:
-    target, copy, left = tmp_path / "backup", shutil.copy2, copied
+    target, copy, left = tmp_path / "backup", backup._copy_file, copied
 
-    def copy_while_there_is_room(source: Path, part: Path) -> None:
+    def copy_while_there_is_room(source: Path, part: Path) -> bool:
         nonlocal left
         left -= 1
         if left < 0:
             part.write_bytes(source.read_bytes()[:1])
             full()
-        copy(source, part)
+        return copy(source, part)
 
     with Store(data / "station.sqlite") as store:
         Records(store, ManualClock()).put_segments(
             [LogSegment(name=FIRST, first_ns=1, last_ns=2, messages=1, size_bytes=6, note="")]
         )
     with monkeypatch.context() as patched:
-        patched.setattr(shutil, "copy2", copy_while_there_is_room)
+        patched.setattr(backup, "_copy_file", copy_while_there_is_room)
         with pytest.raises(LogError, match=r"No space left on device\): make room"):
             run(data, target)
     assert not [name for name in files(target) if name.endswith(".part")]
@@ -185,12 +215,15 @@ def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
     assert run(data, target).copied == 6 - copied
 
 
-def test_a_database_for_which_there_is_no_room_leaves_nothing(data: Path, tmp_path: Path) -> None:
+def test_a_database_for_which_there_is_no_room_keeps_nothing_else_out(
+    data: Path, tmp_path: Path
+) -> None:
     target = tmp_path / "backup"
     with files_of_at_most(8000), pytest.raises(StoreError, match="see that there is room beside"):
         run(data, target)
-    assert files(target) == set()
-    assert run(data, target).copied == 6
+    assert not [name for name in files(target) if name.startswith("station.sqlite")]
+    assert run(data, target).unchanged == 6
+    assert "station.sqlite" in files(target)
 
 
 def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: Path) -> None:

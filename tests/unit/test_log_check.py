@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
+import shutil
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -53,6 +55,18 @@ def test_what_breaks_later_is_found_by_the_next_round(
     assert looked(check, recorder, 100).damaged == ()
     monkeypatch.setattr("base_station.log_check._AGAIN_LOOKS", 50)
     assert looked(check, recorder, 60).damaged == (path,)
+
+
+def test_what_the_disk_does_not_open_is_told_and_keeps_no_station_from_its_start(
+    recorder: Recorder, tmp_path: Path
+) -> None:
+    shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
+    path = tmp_path / "elsewhere" / "log" / recorder.segments()[0].path.name
+    path.unlink()
+    path.symlink_to(path.name)
+    with closing(Recorder(tmp_path / "elsewhere", SystemClock())) as again:
+        assert path.name in looked(LogCheck(""), again).problems()[0]
+        assert sum(1 for _ in LogFeed(again.folder).records()) > 0
 
 
 def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:

@@ -68,6 +68,26 @@ def test_records_of_one_time_on_both_sides_of_a_border_are_found(tmp_path: Path)
     assert list(read_log(tmp_path, t_ns + 1)) == list(read_log(tmp_path, None, t_ns)) == []
 
 
+def test_what_the_disk_does_not_open_keeps_nobody_from_the_rest(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for number in range(3):
+        writer.write(T0_NS + number * NS_PER_S, KEY, bytes([number]))
+        writer.end_segment()
+    writer.close()
+    path = segment_paths(tmp_path)[1]
+    path.unlink()
+    path.symlink_to(path.name)  # to open it is an error of the file system
+    damage: list[str] = []
+    found = [payload for _, _, payload in read_log(tmp_path, on_damage=damage.append)]
+    assert found == [b"\0", b"\2"]
+    (said,) = damage
+    assert said.startswith(f"{path.name}: the disk does not give it (")
+    assert recover_log(tmp_path) == [], "it may be there again tomorrow"
+    with SegmentReader(path) as reader:
+        assert reader.info().state is SegmentState.UNREADABLE
+        assert not reader.is_whole()
+
+
 def test_a_damaged_length_takes_no_memory_for_what_is_not_there(tmp_path: Path) -> None:
     path = tmp_path / "short"
     path.write_bytes(b"123")
