@@ -119,6 +119,46 @@ def test_another_reference_somewhere_else_moves_nobody() -> None:
     assert barometers.weather.rise_m == 0.0
 
 
+def test_a_reference_that_is_carried_upstairs_moves_nobody() -> None:
+    """Its height is no weather; where it is put down, it tells of the weather again."""
+    barometers, seq, way_m = Barometers(), 0, 0.0
+
+    def hear(height_m: float) -> AirHeight | None:
+        nonlocal seq
+        seq += 1
+        header = Header("REF", 1, seq, said.mono_ns(0.2 * seq))
+        position = said.position(header, distance_m=way_m, pressure_pa=pressure_pa_at(height_m))
+        return barometers.hear("REF", seq * NS_PER_S // 5, position, is_outside=True)
+
+    barometers.refer_to("REF", 0.0)
+    for _ in range(100):
+        hear(SITE_M)
+    for step in range(100):
+        way_m += 0.6 if step % 5 == 0 else 0.0  # a stride
+        air = hear(SITE_M + 0.08 * step)
+    assert barometers.weather.rise_m == pytest.approx(0.0, abs=0.05)
+    assert air is not None
+    assert not air.referenced
+    for step in range(450):
+        air = hear(SITE_M + 8.0 + 0.01 * max(step - 50, 0))
+    assert barometers.weather.rise_m == pytest.approx(4.0, abs=0.6)
+    assert air is not None
+    assert air.referenced
+
+
+def test_a_reference_that_is_switched_on_again_goes_on_telling() -> None:
+    """Its path begins anew with it, and goes nowhere."""
+    barometers = Barometers()
+    barometers.refer_to("REF", 0.0)
+    for second in range(60):
+        header = Header("REF", 1 + second // 30, second, said.mono_ns(second))
+        distance_m = 3.0 if second < 30 else 7.0
+        pressure_pa = pressure_pa_at(SITE_M + 0.1 * second)
+        position = said.position(header, distance_m=distance_m, pressure_pa=pressure_pa)
+        barometers.hear("REF", second * NS_PER_S, position, is_outside=True)
+    assert barometers.weather.rise_m == pytest.approx(5.0, abs=0.4)
+
+
 def test_who_is_heard_late_takes_no_word_back() -> None:
     weather = Weather()
     told(weather, range(60))

@@ -3,7 +3,8 @@
 The change of air pressure that everybody shares is kept as the height that it feigns.  It is told
 by one barometer that stays where it is (the reference), or by those of people outside, whose own
 paths say how they climb.  Every barometer has an offset of its own, so that only changes count:
-one that joins begins at what is held already, and nobody moves by its joining or leaving.
+one that joins begins at what is held already, and nobody moves by its joining or leaving.  So does
+a reference that was carried elsewhere, once it stays there.
 """
 
 from __future__ import annotations
@@ -62,10 +63,13 @@ class Barometers(msgspec.Struct):
 
     reference_id: str | None = None  # the unit whose barometer stays where it is
     reference_down_m: float = 0.0
+    reference_walked: tuple[int, float] = 0, 0.0  # which run of its program, and how far in that
+    carried_ns: int | None = None  # when that grew last
     weather: Weather = msgspec.field(default_factory=Weather)
 
     def refer_to(self, unit_id: str | None, down_m: float) -> None:
         self.reference_id, self.reference_down_m = unit_id, down_m
+        self.reference_walked, self.carried_ns = (0, 0.0), None
         self.weather.sources.clear()
 
     def hear(
@@ -77,7 +81,9 @@ class Barometers(msgspec.Struct):
             return None
         altitude_m = pressure_altitude_m(pressure_pa)
         if self.reference_id == unit_id:
-            self.weather.note(unit_id, t_ns, altitude_m, self.reference_down_m)
+            self._watch_reference(position, t_ns)
+            if self.carried_ns is None or t_ns - self.carried_ns > FRESH_NS:
+                self.weather.note(unit_id, t_ns, altitude_m, self.reference_down_m)
         elif self.reference_id is None and is_outside:
             name = f"{unit_id} {position.header.boot_id}"  # its own height begins anew with it
             self.weather.note(name, t_ns, altitude_m, position.down_m)
@@ -86,3 +92,11 @@ class Barometers(msgspec.Struct):
             down_m=self.weather.rise_m - altitude_m,
             referenced=self.weather.is_known(t_ns),
         )
+
+    def _watch_reference(self, position: Position, t_ns: int) -> None:
+        """Somebody may take it along: what is then felt are stairs."""
+        walked = position.header.boot_id, position.distance_m
+        if walked[0] == self.reference_walked[0] and walked[1] > self.reference_walked[1]:
+            self.carried_ns = t_ns
+            self.weather.sources.clear()
+        self.reference_walked = walked
