@@ -8,7 +8,7 @@ import hashlib
 import io
 import warnings
 
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
 
 from shared.errors import ConfigError
 
@@ -18,6 +18,15 @@ SIDE_PX = 320
 MOST_MAP_BYTES = 10_000_000
 MAP_SIDE_PX = 4096
 _FORMATS = ("JPEG", "PNG", "WEBP")
+_UPRIGHT: dict[object, Image.Transpose] = {  # by EXIF's orientation, of which 1 is upright already
+    2: Image.Transpose.FLIP_LEFT_RIGHT,
+    3: Image.Transpose.ROTATE_180,
+    4: Image.Transpose.FLIP_TOP_BOTTOM,
+    5: Image.Transpose.TRANSPOSE,
+    6: Image.Transpose.ROTATE_270,
+    7: Image.Transpose.TRANSVERSE,
+    8: Image.Transpose.ROTATE_90,
+}
 
 
 def clean_photo(upload: bytes) -> tuple[bytes, str]:
@@ -67,8 +76,10 @@ def _square(upload: bytes) -> Image.Image:
         if opened.width * opened.height > MOST_PIXELS:
             raise ConfigError(_too_many_pixels())
         opened.draft("RGB", (2 * SIDE_PX, 2 * SIDE_PX))
-        upright = ImageOps.exif_transpose(opened).convert("RGB")
-        return ImageOps.fit(upright, (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
+        # Not ``ImageOps.exif_transpose``: it writes all metadata anew, and fails where that is odd.
+        turning = _UPRIGHT.get(opened.getexif().get(ExifTags.Base.Orientation))
+        picture = ImageOps.fit(opened.convert("RGB"), (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
+        return picture if turning is None else picture.transpose(turning)
 
 
 def _too_many_pixels(what: str = "photo") -> str:
