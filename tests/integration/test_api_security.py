@@ -329,6 +329,57 @@ async def test_an_administrator_ends_sessions(
     assert (await browser.get("/me")).status_code == 401
 
 
+async def test_the_only_administrator_stays_one(station: DeskStation) -> None:
+    async with station.client(Role.ADMINISTRATOR) as administrator:
+        path = "/users/administrator"
+        lower = await administrator.put(path, json={"role": "commander"})
+        for answer in (lower, await administrator.delete(path)):
+            assert answer.status_code == 409
+            assert "the only administrator" in answer.json()["detail"]
+        same = {"role": "administrator"}
+        assert (await administrator.put(path, json=same)).status_code == 204
+        assert (await administrator.put("/users/viewer", json=same)).status_code == 204
+        assert (await administrator.put(path, json={"role": "commander"})).status_code == 204
+        assert (await administrator.get("/users")).status_code == 403
+        users = {one.username: one.role for one in station.services.accounts.users()}
+        assert users["administrator"] == "commander"
+
+
+async def test_a_new_password_ends_the_tokens_and_another_role_does_not(
+    station: DeskStation,
+) -> None:
+    async with (
+        station.client(Role.ADMINISTRATOR) as administrator,
+        station.client(Role.COMMANDER) as program,
+        station.client(Role.VIEWER) as other,
+    ):
+        change = {"role": "viewer"}
+        assert (await administrator.put("/users/commander", json=change)).status_code == 204
+        assert (await program.get("/me")).status_code == 200
+        change = {"password": f"{PASSWORD} 2"}
+        assert (await administrator.put("/users/commander", json=change)).status_code == 204
+        assert (await program.get("/me")).status_code == 401
+        assert (await other.get("/me")).status_code == 200
+
+
+async def test_a_login_lasts_half_a_day_and_a_ticket_ten_minutes(
+    browser: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+) -> None:
+    accounts = station.services.accounts
+    answer = await browser.post("/login", json={"username": "viewer", "password": PASSWORD})
+    assert "max-age=43200" in answer.headers["set-cookie"].lower()
+    late, in_time = [(await browser.post("/hand-over")).json() for _ in range(2)]
+    assert late["lasts_s"] == 600
+    clock.advance(599.0)
+    assert accounts.take_over(in_time["ticket"]) is not None
+    clock.advance(1.0)
+    assert accounts.take_over(late["ticket"]) is None
+    clock.advance(43_199.0 - 600.0)
+    assert (await browser.get("/me")).status_code == 200
+    clock.advance(1.0)
+    assert (await browser.get("/me")).status_code == 401
+
+
 async def test_another_role_ends_the_logins_and_binds_the_tokens(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
