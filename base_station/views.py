@@ -24,6 +24,7 @@ from base_station.commands.state import Delivery, SentCommand
 from base_station.db.models import Alarm as StoredAlarm
 from base_station.live.sinks import PhotoUrls
 from base_station.live_state import Alarm, Incident, StationState
+from base_station.pins.evidence import at_of
 from base_station.pins.pin import WAITING, Pin
 from base_station.unit_losses import unkept_problem
 from base_station.unit_views import unit_views
@@ -107,17 +108,16 @@ def pin_views(state: StationState) -> tuple[PinView, ...]:
 
 def _pin_view(state: StationState, pin: Pin) -> PinView:
     verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
-    beacon = state.beacons.get(pin.other_id)
-    seen_at = pin if pin.north_m is not None or beacon is None else beacon
+    at = at_of(state, pin)
     return PinView(
         pin_id=pin.pin_id,
         kind=pin.kind,
         unit_id=pin.unit_id,
         other_id=pin.other_id,
         t_ms=to_ms(pin.t_ns),
-        north_m=seen_at.north_m,
-        east_m=seen_at.east_m,
-        floor=seen_at.floor,
+        north_m=at.north_m,
+        east_m=at.east_m,
+        floor=at.floor,
         std_m=pin.std_m,
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,

@@ -22,6 +22,7 @@ from base_station.assessment.tally import TrustTally
 from base_station.db.records import TrackSample
 from base_station.fusion.smoother.port import Verdict
 from base_station.live_state import StationState
+from base_station.pins.evidence import at_of
 from shared.clock import NS_PER_S
 
 AWAY_M = 15.0  # somebody who was so far from the beginning
@@ -185,7 +186,7 @@ def _pin_residuals(
         verdict = verdicts.get(pin.pin_id)
         if pin.unit_id != unit_id or verdict is None:
             continue
-        place = state.beacons.get(pin.other_id, pin)
+        place = at_of(state, pin)
         shown = _at(live, pin.t_ns)
         shown_m = None
         if shown is not None and place.north_m is not None and place.east_m is not None:

@@ -11,6 +11,7 @@ import msgspec
 
 from base_station.assessment.tally import LONGEST_S
 from base_station.live_state import StationState, UnitState
+from base_station.pins.book import units_of
 from base_station.site.roaming import RADII_95
 from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
@@ -60,7 +61,7 @@ def conflicts_of(state: StationState) -> Counter[str]:
         unit_id
         for pin_id, verdict in state.pin_verdicts.items()
         if verdict.state == "conflict" and pin_id in state.pins
-        for unit_id in {state.pins[pin_id].unit_id, state.pins[pin_id].other_id}
+        for unit_id in units_of(state.pins[pin_id])
     )
 
 

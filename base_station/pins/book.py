@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 import msgspec
 
 from base_station.live_state import StationState
-from base_station.pins.pin import WAITING, Beacon, Pin
+from base_station.pins.pin import WAITING, Beacon, Pin, reach_std_m
 from base_station.site.plan import Plan
 from shared.clock import NS_PER_S
 from shared.errors import UserError
@@ -165,27 +165,31 @@ def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]
     if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
         raise UserError("how far a beacon reaches is a number of metres, 0 or more")
     earlier = state.beacons.get(action.beacon_id)
+    for pin in _passings(state, action.beacon_id):
+        if not pin.is_ranged:
+            std_m = reach_std_m(action.reach_m)
+            state.pins[pin.pin_id] = msgspec.structs.replace(pin, std_m=std_m)
     state.beacons[action.beacon_id] = Beacon(
         **msgspec.structs.asdict(action),
         placed_ns=state.t_ns,
         by=by,
         seen_ns=earlier.seen_ns if earlier is not None else None,
     )
-    return _who_saw(state, action.beacon_id)
+    return {pin.unit_id for pin in _passings(state, action.beacon_id)}
 
 
 def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:
     if state.beacons.pop(beacon_id, None) is None:
         raise UserError(f"there is no beacon {beacon_id}; it may have been removed already")
-    return _who_saw(state, beacon_id)
+    return {pin.unit_id for pin in _passings(state, beacon_id)}
 
 
-def _who_saw(state: StationState, beacon_id: str) -> set[str]:
-    return {
-        pin.unit_id
+def _passings(state: StationState, beacon_id: str) -> list[Pin]:
+    return [
+        pin
         for pin in state.pins.values()
         if pin.kind in {"beacon", "tag"} and pin.other_id == beacon_id
-    }
+    ]
 
 
 def _check_unit(state: StationState, unit_id: str) -> None:

@@ -57,7 +57,7 @@ def floors_said(state: StationState) -> list[FloorSaid]:
     unpacked: dict[str, PathArrays] = {}
     for pin in state.pins.values():
         history = state.paths.get(pin.unit_id)
-        floor = _floor_said(state, pin)
+        floor = at_of(state, pin).floor
         if floor is None or history is None or history.begin_ns is None:
             continue
         t_ns = time_of(history, pin)
@@ -71,9 +71,9 @@ def floors_said(state: StationState) -> list[FloorSaid]:
     return said
 
 
-def _floor_said(state: StationState, pin: Pin) -> int | None:
-    at = pin if pin.kind == "meeting" else state.beacons.get(pin.other_id, pin)
-    return at.floor
+def at_of(state: StationState, pin: Pin) -> Pin | Beacon:
+    """What says where a pin is: the beacon that was seen, where somebody has placed it."""
+    return pin if pin.kind == "meeting" else state.beacons.get(pin.other_id, pin)
 
 
 def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:

@@ -30,6 +30,7 @@ class Pin(msgspec.Struct, frozen=True):
     heading_rad: float | None = None  # which way the wearer looked or went
     heading_std_rad: float = 0.0
     other_id: str = ""  # the beacon or tag, or the other unit of a meeting
+    is_ranged: bool = True  # else anywhere within reach of that
 
 
 class PinVerdict(msgspec.Struct, frozen=True):
@@ -55,6 +56,11 @@ class Beacon(msgspec.Struct):
     placed_ns: int
     by: str
     seen_ns: int | None = None  # when a unit last saw it
+
+
+def reach_std_m(reach_m: float) -> float:
+    """Each axis, of somewhere within reach: a quarter of its square."""
+    return max(reach_m / 2.0, 0.3)
 
 
 WAITING = PinVerdict("waiting", text="not solved yet")

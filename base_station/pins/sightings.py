@@ -12,7 +12,7 @@ from collections import Counter
 from base_station.boot_state import captured_ns
 from base_station.live_state import StationState, UnitState
 from base_station.pins.book import MOST_PINS, drop, put, units_of
-from base_station.pins.pin import Pin, PinKind
+from base_station.pins.pin import Pin, PinKind, reach_std_m
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 
@@ -50,6 +50,7 @@ def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> s
         set_ns=state.t_ns,
         by=unit.unit_id,
         other_id=sighting.seen_id,
+        is_ranged=sighting.range_m is not None,
     )
     replaced = _same_visit(state, pin)
     if replaced is not None and pin.std_m > NEARER * replaced.std_m:
@@ -83,9 +84,7 @@ def _reason_against(
 
 
 def _std_m(state: StationState, sighting: Sighting) -> float:
-    """Each axis.  Somewhere on a circle of known range: half its square; anywhere within reach: a
-    quarter.
-    """
+    """Each axis.  Somewhere on a circle of known range: half its square."""
     if sighting.range_m is not None:
         return math.hypot(sighting.range_m / math.sqrt(2.0), sighting.range_std_m or 0.5)
     beacon = state.beacons.get(sighting.seen_id)
@@ -93,7 +92,7 @@ def _std_m(state: StationState, sighting: Sighting) -> float:
         SightingKind.BEACON: REACH_M if beacon is None else beacon.reach_m,
         SightingKind.TAG: TAG_REACH_M if beacon is None else beacon.reach_m,
     }.get(sighting.kind, MEETING_REACH_M)
-    return max(reach_m / 2.0, 0.3)
+    return reach_std_m(reach_m)
 
 
 def _same_visit(state: StationState, pin: Pin) -> Pin | None:

@@ -15,7 +15,7 @@ from base_station.assessment.trust import conflicts_of, trust_of
 from base_station.bench.rig import said
 from base_station.db.records import TrackSample
 from base_station.live_state import StationState, UnitState
-from base_station.pins.pin import Pin, PinVerdict
+from base_station.pins.pin import Pin, PinKind, PinVerdict
 from shared.messages import FusedPosition, Header
 from shared.quality import Quality
 
@@ -105,3 +105,13 @@ def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
     assert (trust.level, trust.reason) == ("amber", "a pin contradicts the trail")
     state.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
     assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"
+
+
+@pytest.mark.parametrize(("kind", "both"), [("meeting", True), ("beacon", False)])
+def test_a_pin_contradicts_the_trails_of_whom_it_is_about(kind: PinKind, both: bool) -> None:
+    """And not that of a unit after which somebody has named a beacon."""
+    state = StationState()
+    state.pins["p"] = Pin("p", kind, "FF-01", 1, 1.0, 1, "FF-01", other_id="FF-02")
+    state.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    conflicts = conflicts_of(state)
+    assert (conflicts["FF-01"], conflicts["FF-02"]) == (1, int(both))

@@ -12,6 +12,7 @@ from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
 from base_station.pins.evidence import floors_said
+from base_station.views import pin_views
 from shared.channels import SIGHTING, backfilled_key
 from shared.clock import NS_PER_S
 from shared.codec import encode
@@ -65,6 +66,19 @@ def test_a_radio_beacon_that_is_placed_later_counts_for_who_passed_it(walk: Walk
     assert walk.state(pin) == "waiting"
     walk.script.act(PlaceBeacon("b1", "door", *truth(walk.walked_s), None, 0.2, 3.0))
     assert walk.state(pin) == "used"
+
+
+def test_whoever_saw_a_beacon_before_it_was_placed_was_somewhere_within_its_reach(
+    walk: Walk,
+) -> None:
+    sighting(walk, SightingKind.BEACON, "b1")
+    sighting(walk, SightingKind.BEACON, "b2", 4.0)
+    for reach_m in (30.0, 12.0):
+        for beacon_id in ("b1", "b2"):
+            walk.script.act(PlaceBeacon(beacon_id, "mast", 0.0, 0.0, None, 0.2, reach_m))
+        somewhere, ranged = walk.script.pipeline.state.pins.values()
+        assert somewhere.std_m == reach_m / 2.0
+        assert ranged.std_m == pytest.approx(math.hypot(4.0 / math.sqrt(2.0), 0.5))
 
 
 def test_a_beacon_that_was_passed_out_of_reach_counts_when_the_journal_tells_of_it(
@@ -142,6 +156,8 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
     state = walk.script.pipeline.state
     assert state.beacons["FF-02"].seen_ns is None
     assert floors_said(state) == []
+    (met,) = pin_views(state)
+    assert (met.kind, met.north_m, met.floor) == ("meeting", None, None)
     sighting(walk, SightingKind.BEACON, "FF-02")
     assert [said.floor for said in floors_said(state)] == [3]
 
