@@ -76,8 +76,8 @@ class Disk:
                 self.roster.forget_photo(done.subject_id)
             save_soon()
 
-        def obstacle(wish: Forgetting) -> str:
-            if not wish.told and not leads():
+        def obstacle(job: Forgetting) -> str:
+            if not job.told and not leads():
                 return "this station is the standby; ask the one that leads"
             # One may have opened since it was wished; of what it follows, the other one has asked.
             is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())

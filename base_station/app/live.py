@@ -29,7 +29,7 @@ from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig
 from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
-from base_station.db.kept import KeptTables
+from base_station.db.replicated_tables import ReplicatedTables
 from base_station.ended_threads import EndedThreads
 from base_station.fair_share import FairShare
 from base_station.forgetting.forgetter import BY_OTHER_STATION
@@ -156,7 +156,7 @@ class _LiveStation:
             check=disk.check,
             live=resources.feed,
             clock=disk.clock,
-            tables=KeptTables(disk.store),
+            tables=ReplicatedTables(disk.store),
             records=disk.records,
             pki=resources.pki,
             on_people=disk.roster.read_again,

@@ -3,7 +3,7 @@
 A long log takes minutes to be written anew, so nobody waits for it with an open request: what was
 asked for, and how far it is, is kept in a file beside the log until it is done.  Ended at any
 instant, the whole is done again and ends as it would have (``forgetter``).  What the other one of
-two stations has forgotten is a wish like any other, and done here too.
+two stations has forgotten is a job like any other, and done here too.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from threading import Event, Thread
 import msgspec
 
 from base_station.forgetting.forgetter import Forgetter, Tally
-from base_station.wishes import Wishes
+from base_station.jobs import Jobs
 from shared.errors import MusterError, UserError
 
 _log = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ class ForgettingState(StrEnum):
 
 
 class Forgetting(msgspec.Struct):
-    """What is to be forgotten, at whose wish, and how far it is.  It has no name in it."""
+    """What is to be forgotten, at whose job, and how far it is.  It has no name in it."""
 
     forgetting_id: str
     by: str
@@ -74,7 +74,7 @@ class ForgettingDesk:
         forgotten.
         """
         self._forgetter = forgetter
-        self._wishes = Wishes(kept, Forgetting)
+        self._jobs = Jobs(kept, Forgetting)
         self._obstacle = obstacle
         self._on_done = on_done
         self._told = ""  # why it waits, as last logged
@@ -97,17 +97,17 @@ class ForgettingDesk:
         Raises StoreError where the disk does not take it.
         """
 
-        def wish(under_way: list[Forgetting]) -> Forgetting:
+        def job(under_way: list[Forgetting]) -> Forgetting:
             same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
             return next(same, Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told))
 
-        added = self._wishes.add(wish)
+        added = self._jobs.add(job)
         self._changed.set()
         return added
 
     def all(self) -> tuple[Forgetting, ...]:
         """The last that are over, and those under way."""
-        return self._wishes.all()
+        return self._jobs.all()
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console, while something is under way."""
@@ -121,57 +121,57 @@ class ForgettingDesk:
     def _run(self) -> None:
         while not self._closed.is_set():
             self._changed.clear()
-            wishes = self._wishes.under_way()
-            if not wishes:
+            jobs = self._jobs.under_way()
+            if not jobs:
                 self._changed.wait()
-            elif not self._work_on_one(wishes):
+            elif not self._work_on_one(jobs):
                 self._changed.wait(_AGAIN_S)
 
-    def _work_on_one(self, wishes: list[Forgetting]) -> bool:
+    def _work_on_one(self, jobs: list[Forgetting]) -> bool:
         """The first that need not wait; False where it is to be tried again later."""
-        for wish in wishes:
-            problem = self._obstacle(wish)
+        for job in jobs:
+            problem = self._obstacle(job)
             if not problem:
-                return self._work(wish)
-            self._note(wish, problem=problem)
+                return self._work(job)
+            self._note(job, problem=problem)
         return False
 
-    def _work(self, wish: Forgetting) -> bool:
+    def _work(self, job: Forgetting) -> bool:
         """False where it is to be tried again later."""
-        tally = Tally(wish.records, wish.files, wish.began, wish.damaged)
-        self._note(wish, state=ForgettingState.WORKING, problem="", began=True)
-        forget = self._forgetter.person if wish.kind == "person" else self._forgetter.incident
+        tally = Tally(job.records, job.files, job.began, job.damaged)
+        self._note(job, state=ForgettingState.WORKING, problem="", began=True)
+        forget = self._forgetter.person if job.kind == "person" else self._forgetter.incident
         problem = ""
         try:
-            forget(wish.by, wish.subject_id, lambda share: self._go_on(wish, share, tally), tally)
+            forget(job.by, job.subject_id, lambda share: self._go_on(job, share, tally), tally)
         except _Ended:
             return False
         except UserError as error:
             problem = str(error)
-            if not wish.told:  # else nothing was left to be done
-                self._note(wish, state=ForgettingState.FAILED, problem=problem)
+            if not job.told:  # else nothing was left to be done
+                self._note(job, state=ForgettingState.FAILED, problem=problem)
                 return True
         except (MusterError, OSError) as error:
             if str(error) != self._told:
                 _log.warning("forgetting waits, and is tried again: %s", error)
                 self._told = str(error)
-            self._note(wish, problem=f"it is tried again: {error}", **_so_far(tally))
+            self._note(job, problem=f"it is tried again: {error}", **_so_far(tally))
             return False
         self._told = ""
-        self._on_done(msgspec.structs.replace(wish))
+        self._on_done(msgspec.structs.replace(job))
         problem = problem or ". ".join(tally.damaged)
-        self._note(wish, state=ForgettingState.DONE, share=1.0, problem=problem, **_so_far(tally))
+        self._note(job, state=ForgettingState.DONE, share=1.0, problem=problem, **_so_far(tally))
         return True
 
-    def _go_on(self, wish: Forgetting, share: float, tally: Tally) -> None:
+    def _go_on(self, job: Forgetting, share: float, tally: Tally) -> None:
         """What was taken out is on the disk before more is: the audit is to say it in the end."""
-        more = (tally.files, tally.damaged) != (wish.files, wish.damaged)
-        self._wishes.note(wish, save=more, share=share, **_so_far(tally))
+        more = (tally.files, tally.damaged) != (job.files, job.damaged)
+        self._jobs.note(job, save=more, share=share, **_so_far(tally))
         if self._closed.is_set():
             raise _Ended
 
-    def _note(self, wish: Forgetting, **now: object) -> None:
-        self._wishes.note(wish, save=True, **now)
+    def _note(self, job: Forgetting, **now: object) -> None:
+        self._jobs.note(job, save=True, **now)
 
 
 def _so_far(tally: Tally) -> dict[str, object]:

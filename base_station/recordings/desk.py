@@ -10,8 +10,8 @@ from threading import Event, Thread
 import msgspec
 
 from base_station.api.wire import RecordingView
+from base_station.jobs import Jobs
 from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
-from base_station.wishes import Wishes
 from shared.clock import Clock
 from shared.errors import MusterError, StoreError, UserError
 
@@ -39,7 +39,7 @@ class RecordingDesk:
         self._ask = ask
         self._folder = folder
         self._clock = clock
-        self._pulls = Wishes(folder / _LIST, Pull)
+        self._pulls = Jobs(folder / _LIST, Pull)
         self._running: dict[str, Fetch] = {}
         self._changed = Event()
         self._closed = Event()

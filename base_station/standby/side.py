@@ -10,8 +10,8 @@ from typing import Protocol
 
 from base_station.api.standing import Standing
 from base_station.config import StandbyConfig
-from base_station.db.kept import KeptTables
 from base_station.db.records import Records
+from base_station.db.replicated_tables import ReplicatedTables
 from base_station.feed import LiveFeed, LogFeed
 from base_station.live.drive_ports import Feed, Log
 from base_station.live.sinks import OperatorGate
@@ -20,13 +20,13 @@ from base_station.log_check import LogCheck
 from base_station.pki.folder import PkiFolder
 from base_station.standby.asking import Rounds
 from base_station.standby.confirming import LeadersGate
-from base_station.standby.kept_copy import KeptCopy, KeptServer
 from base_station.standby.mending import EventServer, LogFiles, Mending
 from base_station.standby.merging import Merging, PartServer
 from base_station.standby.pair import Around, Pair
 from base_station.standby.places import Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
+from base_station.standby.table_replication import TableReplication, TableServer
 from base_station.steady_clock import SteadyClock
 from shared.bus import Bus
 from shared.messages import STATION_ID
@@ -44,7 +44,7 @@ class Parts:
     check: LogCheck
     live: LiveFeed
     clock: SteadyClock
-    tables: KeptTables
+    tables: ReplicatedTables
     records: Records
     pki: PkiFolder
     on_people: Callable[[], None]  # people or photos may have changed
@@ -183,12 +183,12 @@ class OneOfTwo:
     def start(self, gate: OperatorGate, closing: ExitStack) -> None:
         parts, pair, name = self._parts, self._pair, self._config.name
         for server in (
-            KeptServer(name, parts.bus, parts.tables, parts.pki),
+            TableServer(name, parts.bus, parts.tables, parts.pki),
             PartServer(name, parts.bus, parts.data),
             EventServer(name, parts.bus, parts.disk),
         ):
             closing.callback(server.close)
-        copying = KeptCopy(
+        copying = TableReplication(
             parts.bus,
             parts.tables,
             parts.pki,
@@ -210,7 +210,7 @@ class OneOfTwo:
         mending = Mending(parts.bus, parts.files, parts.check, pair.other_there, parts.step_again)
         threads = (
             pair,
-            Rounds("kept-copy", 1.0, copying.look, "the other station's accounts are not copied"),
+            Rounds("replication", 1.0, copying.look, "the other station's accounts are not copied"),
             Rounds("mending", 5.0, mending.look, "the log is not mended from the other station"),
             Rounds("merging", 2.0, merging.look, "what the other one set aside is not taken"),
         )

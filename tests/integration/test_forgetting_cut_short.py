@@ -76,9 +76,9 @@ def forgotten_in_tries(folder: Path, kind: str, subject_id: str, cut_at: Collect
         for step in cut_at:
             with pytest.MonkeyPatch.context() as patched:
                 patched.setattr(*BROKEN[step](store, records))
-                assert not desk._work_on_one(desk._wishes.under_way())
+                assert not desk._work_on_one(desk._jobs.under_way())
             desk = ForgettingDesk(forgetter, data.forgettings, lambda _: "", lambda _: None)
-        assert desk._work_on_one(desk._wishes.under_way())
+        assert desk._work_on_one(desk._jobs.under_way())
         (said,) = [one for one in records.audit_entries(EVER) if one.action.startswith("Forgot")]
         return said.detail
 

@@ -102,7 +102,7 @@ def test_what_all_tries_took_out_is_counted(
         one = desk(worker, tmp_path)
         one.add("ada", "person", "p-1")
         with pytest.raises(SystemExit):
-            one._work_on_one(one._wishes.under_way())
+            one._work_on_one(one._jobs.under_way())
         worker.fails = [StoreError("the disk is full")]
     with desk(worker, tmp_path) as one:
         one.add("ada", "person", "p-1")
@@ -141,8 +141,8 @@ def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
     worker = Worker()
     worker.go.set()
 
-    def obstacle(wish: Forgetting) -> str:
-        return "" if wish.told else "this is the standby"
+    def obstacle(job: Forgetting) -> str:
+        return "" if job.told else "this is the standby"
 
     with desk(worker, tmp_path, obstacle) as one:
         one.add("ada", "person", "p-1")

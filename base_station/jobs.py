@@ -16,44 +16,44 @@ from shared.errors import ConfigError, StoreError
 _KEPT = 20  # of those that are over
 
 
-class WishState(Protocol):
+class JobState(Protocol):
     @property
     def is_over(self) -> bool: ...
 
 
-class Wish(Protocol):
+class Job(Protocol):
     """A msgspec.Struct."""
 
     @property
-    def state(self) -> WishState: ...
+    def state(self) -> JobState: ...
 
 
-W = TypeVar("W", bound=Wish)
+J = TypeVar("J", bound=Job)
 
 
-class Wishes(Generic[W]):
+class Jobs(Generic[J]):
     """In the order of asking.  Thread-safe."""
 
-    def __init__(self, path: Path, kind: type[W]) -> None:
-        """What is no list of wishes is taken for an empty one."""
+    def __init__(self, path: Path, kind: type[J]) -> None:
+        """What is no list of jobs is taken for an empty one."""
         self._path = path
         self._lock = Lock()  # never held while the disk is waited for
         self._saving = Lock()  # taken before the other one
-        self._all: list[W] = []
+        self._all: list[J] = []
         with suppress(OSError, msgspec.DecodeError):
             self._all = msgspec.json.decode(path.read_bytes(), type=list[kind])  # type: ignore[valid-type]
 
-    def all(self) -> tuple[W, ...]:
+    def all(self) -> tuple[J, ...]:
         """Copies: of those under way and the last that are over."""
         with self._lock:
             return tuple(map(_copy, self._all))
 
-    def under_way(self) -> list[W]:
+    def under_way(self) -> list[J]:
         """Themselves: change them with ``note``."""
         with self._lock:
             return self._under_way()
 
-    def add(self, make: Callable[[list[W]], W]) -> W:
+    def add(self, make: Callable[[list[J]], J]) -> J:
         """A copy of what ``make`` gives, which is on the disk when this returns.  It is told what
         is under way, may give one of those, and may raise.
 
@@ -62,45 +62,45 @@ class Wishes(Generic[W]):
         with self._saving:
             with self._lock:
                 under_way = self._under_way()
-                wish = make(under_way)
-                is_new = not any(wish is one for one in under_way)
+                job = make(under_way)
+                is_new = not any(job is one for one in under_way)
                 over = [one for one in self._all if one.state.is_over]
-                wanted = [*over[1 - _KEPT :], *under_way, wish] if is_new else self._all
+                wanted = [*over[1 - _KEPT :], *under_way, job] if is_new else self._all
                 said = msgspec.json.encode(wanted)
             if is_new:
                 try:
                     write_atomically(self._path, said)
                 except ConfigError as error:
                     raise StoreError(
-                        f"the wish cannot be kept, so nothing is done: {error}"
+                        f"what was asked for cannot be kept, so nothing is done: {error}"
                     ) from error
             with self._lock:
                 self._all = wanted
-                return _copy(wish)
+                return _copy(job)
 
-    def note(self, wish: W, *, save: bool, **now: object) -> bool:
+    def note(self, job: J, *, save: bool, **now: object) -> bool:
         """How it stands now; False where it was over before, and stays as it is.
 
         Whether a disk that fails keeps it does not matter: at worst it is done once more.
         """
         with self._lock:
-            if wish.state.is_over:
+            if job.state.is_over:
                 return False
             for name, value in now.items():
-                setattr(wish, name, value)
+                setattr(job, name, value)
         if save:
             self._save()
         return True
 
-    def note_each(self, which: Callable[[W], bool], **now: object) -> None:
+    def note_each(self, which: Callable[[J], bool], **now: object) -> None:
         """Of those that are over, too."""
         with self._lock:
-            for wish in filter(which, self._all):
+            for job in filter(which, self._all):
                 for name, value in now.items():
-                    setattr(wish, name, value)
+                    setattr(job, name, value)
         self._save()
 
-    def _under_way(self) -> list[W]:
+    def _under_way(self) -> list[J]:
         return [one for one in self._all if not one.state.is_over]
 
     def _save(self) -> None:
@@ -112,6 +112,6 @@ class Wishes(Generic[W]):
                 write_atomically(self._path, said)
 
 
-def _copy(wish: W) -> W:
-    copied: W = msgspec.structs.replace(wish)  # type: ignore[type-var]
+def _copy(job: J) -> J:
+    copied: J = msgspec.structs.replace(job)  # type: ignore[type-var]
     return copied

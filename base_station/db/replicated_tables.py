@@ -31,7 +31,7 @@ _PICTURES = frozenset({"photo", "image"})
 _NUMBER = "number"  # of an audit entry, at the station that is asked
 
 
-class Kept(msgspec.Struct, frozen=True):
+class ReplicatedRows(msgspec.Struct, frozen=True):
     """Rows by column; pictures only as their hashes."""
 
     users: tuple[Row, ...]
@@ -42,16 +42,16 @@ class Kept(msgspec.Struct, frozen=True):
     base_map: tuple[Row, ...]  # one or none
 
 
-class KeptTables:
+class ReplicatedTables:
     """Thread-safe; every method is one transaction."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
         self._copied_sessions: set[str] = set()
 
-    def read(self) -> Kept:
+    def read(self) -> ReplicatedRows:
         with self._store.read() as session:
-            return Kept(
+            return ReplicatedRows(
                 users=_rows(session, User),
                 tokens=_rows(session, ApiToken),
                 sessions=_rows(session, LoginSession),
@@ -60,7 +60,7 @@ class KeptTables:
                 base_map=_rows(session, BaseMap),
             )
 
-    def copy(self, kept: Kept) -> tuple[str, ...]:
+    def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
         """Make these tables like the active station's.  Gives who and what was only here.
 
         Sessions that began here stay; photos are kept where their hash is the same, and a base map
@@ -68,17 +68,17 @@ class KeptTables:
         """
         with self._store.write() as session:
             dropped = (
-                *_only_here(session, User.username, "user", kept.users),
-                *_only_here(session, ApiToken.token_id, "token", kept.tokens),
-                *_only_here(session, Person.person_id, "person", kept.people),
+                *_only_here(session, User.username, "user", active.users),
+                *_only_here(session, ApiToken.token_id, "token", active.tokens),
+                *_only_here(session, Person.person_id, "person", active.people),
             )
-            _replace(session, User, User.username, kept.users)
-            _replace(session, ApiToken, ApiToken.token_id, kept.tokens)
-            _put_people(session, kept.people)
-            self._copy_sessions(session, kept.sessions)
-            if kept.hand_overs:
-                session.execute(insert(HandOver).on_conflict_do_nothing(), list(kept.hand_overs))
-            if not kept.base_map:
+            _replace(session, User, User.username, active.users)
+            _replace(session, ApiToken, ApiToken.token_id, active.tokens)
+            _put_people(session, active.people)
+            self._copy_sessions(session, active.sessions)
+            if active.hand_overs:
+                session.execute(insert(HandOver).on_conflict_do_nothing(), list(active.hand_overs))
+            if not active.base_map:
                 session.execute(delete(BaseMap))
         return dropped
 

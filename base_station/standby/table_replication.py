@@ -13,7 +13,7 @@ from threading import Event
 
 import msgspec
 
-from base_station.db.kept import Kept, KeptTables, Row
+from base_station.db.replicated_tables import ReplicatedRows, ReplicatedTables, Row
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.pki.folder import PkiFolder
 from base_station.pki.registry import Registry
@@ -25,21 +25,21 @@ _AUDIT_ENTRIES = 500
 _FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting.forgetter says it
 
 
-class KeptServer(Answers):
-    """Serves ``kept/all``, ``kept/photo``, ``kept/base-map``, ``kept/audit``, ``kept/enrolled``."""
+class TableServer(Answers):
+    """Serves ``tables/`` all, photo, base-map, audit and enrolled."""
 
-    def __init__(self, station: str, bus: Bus, tables: KeptTables, pki: PkiFolder) -> None:
+    def __init__(self, station: str, bus: Bus, tables: ReplicatedTables, pki: PkiFolder) -> None:
         self._tables = tables
         self._pki = pki
         super().__init__(
             station,
             bus,
             {
-                "kept/all": self._all,
-                "kept/photo": self._photo,
-                "kept/base-map": self._base_map,
-                "kept/audit": self._audit,
-                "kept/enrolled": self._enrolled,
+                "tables/all": self._all,
+                "tables/photo": self._photo,
+                "tables/base-map": self._base_map,
+                "tables/audit": self._audit,
+                "tables/enrolled": self._enrolled,
             },
         )
 
@@ -50,7 +50,7 @@ class KeptServer(Answers):
             yield said
 
     def _enrolled(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
-        """As ``kept/all``."""
+        """As ``tables/all``."""
         said = pack(self._pki.registry()) if self._pki.exists() else payload
         if said != payload and _hash(said) != payload:
             yield said
@@ -70,13 +70,13 @@ class KeptServer(Answers):
         yield msgspec.msgpack.encode(entries)
 
 
-class KeptCopy:
+class TableReplication:
     """Copies in rounds, for as long as another station is there."""
 
     def __init__(
         self,
         bus: Bus,
-        tables: KeptTables,
+        tables: ReplicatedTables,
         pki: PkiFolder,
         leader: Callable[[], str | None],
         other: Callable[[], str | None],
@@ -122,9 +122,9 @@ class KeptCopy:
     def _copy(self, leader: str, stop: Event) -> None:
         said = self._ask(leader, "all", self._known)
         if said is not None:
-            kept = unpack(said, Kept)
-            dropped = self._tables.copy(kept)
-            self._base_map = kept.base_map
+            rows = unpack(said, ReplicatedRows)
+            dropped = self._tables.copy(rows)
+            self._base_map = rows.base_map
             if dropped and not self._known:  # else the active station has removed them
                 self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
             self._known = _hash(said)
@@ -170,7 +170,7 @@ class KeptCopy:
             self._known_enrolled = _hash(said)
 
     def _ask(self, station: str, what: str, payload: bytes) -> bytes | None:
-        return next(iter(ask(self._bus, station, f"kept/{what}", payload)), None)
+        return next(iter(ask(self._bus, station, f"tables/{what}", payload)), None)
 
 
 def _hash(said: bytes) -> bytes:

@@ -11,15 +11,15 @@ import pytest
 
 from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts
 from base_station.db.base_maps import BaseMaps
-from base_station.db.kept import KeptTables
 from base_station.db.principals import Role
 from base_station.db.records import EVER, Records
+from base_station.db.replicated_tables import ReplicatedTables
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.pki.folder import PkiFolder
 from base_station.site.base_map import Corners
-from base_station.standby.kept_copy import KeptCopy, KeptServer
+from base_station.standby.table_replication import TableReplication, TableServer
 from shared.bus_memory import MemoryRouter
 from shared.clock import ManualClock
 from shared.errors import StoreError
@@ -33,7 +33,7 @@ class Side:
 
     def __init__(self, folder: Path, store: Store) -> None:
         self.clock = clock = ManualClock()
-        self.tables = KeptTables(store)
+        self.tables = ReplicatedTables(store)
         self.accounts = Accounts(store, clock, QUICK_HASH)
         self.roster, self.records = Roster(store, clock), Records(store, clock)
         self.base_maps = BaseMaps(store)
@@ -172,9 +172,9 @@ def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
 
 def copy_over_the_bus(
     active: Side, standby: Side, on_forgotten: Callable[[str], None] = lambda _: None
-) -> KeptCopy:
+) -> TableReplication:
     router = MemoryRouter()
-    KeptServer("active", router.attach_station(), active.tables, active.pki)
+    TableServer("active", router.attach_station(), active.tables, active.pki)
     return copy_from(router, standby, on_forgotten)
 
 
@@ -183,8 +183,8 @@ def copy_from(
     standby: Side,
     on_forgotten: Callable[[str], None] = lambda _: None,
     others_run: Callable[[], int] = lambda: 1,
-) -> KeptCopy:
-    return KeptCopy(
+) -> TableReplication:
+    return TableReplication(
         router.attach_station(),
         standby.tables,
         standby.pki,
@@ -226,7 +226,7 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
     router = MemoryRouter()
     run = 1
     copying = copy_from(router, standby, others_run=lambda: run)
-    serving = KeptServer("active", router.attach_station(), gone.tables, gone.pki)
+    serving = TableServer("active", router.attach_station(), gone.tables, gone.pki)
     for number in range(3):
         gone.records.audit("ada", "LoggedIn", f"login {number}")
     copying.look(Event())
@@ -235,7 +235,7 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
         new = Side(tmp_path, store)
         new.records.audit("ada", "LoggedIn", "at the new machine")
         new.tables.add_audit(standby.tables.audit_behind(0, 9))  # so it has as many, and more
-        KeptServer("active", router.attach_station(), new.tables, new.pki)
+        TableServer("active", router.attach_station(), new.tables, new.pki)
         run = 2
         copying.look(Event())
         assert "at the new machine" in audit_of(standby)
