@@ -11,7 +11,7 @@ from fastapi import Depends, FastAPI
 from base_station.api.console_files import serve_console
 from base_station.api.forms import MOST_BYTES
 from base_station.api.headers import SecurityHeaders
-from base_station.api.problems import ProblemDocument, handle_problems
+from base_station.api.problems import Mistakes, ProblemDocument, handle_problems
 from base_station.api.routes import ROUTERS
 from base_station.api.security import LoginThrottle, check_origin, check_standing
 from base_station.api.services import Services
@@ -51,7 +51,8 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
     app.state.services = services
     app.state.login_throttle = LoginThrottle()
     standing = services.standing
-    app.add_middleware(
+    app.add_middleware(Mistakes)
+    app.add_middleware(  # the last one is the outer one
         SecurityHeaders,
         secure=services.secure,
         other_console=lambda: "" if standing is None else standing.view().other_url,

@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from base_station.api.field_errors import sentence_of
 from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
@@ -46,7 +47,7 @@ def problem_response(
 
 
 def handle_problems(app: FastAPI) -> None:
-    """Every error of a route becomes a problem document."""
+    """Every error of a route becomes a problem document; for others see ``Mistakes``."""
 
     @app.exception_handler(HTTPException)
     async def refused(request: Request, error: HTTPException) -> JSONResponse:
@@ -71,10 +72,32 @@ def handle_problems(app: FastAPI) -> None:
             _log.warning("%s %s: %s", request.method, request.url.path, error)
         return problem_response(status, str(error))
 
-    @app.exception_handler(Exception)
-    async def broke(request: Request, error: Exception) -> JSONResponse:
-        _log.error("%s %s failed", request.method, request.url.path, exc_info=error)
-        return problem_response(500, "The station made a mistake; its log says which.")
+
+class Mistakes:
+    """ASGI middleware: what nobody foresaw is answered like every problem, and logged.
+
+    The framework's own handler stands outside of all other middleware, whose headers it misses.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        begun = False
+
+        async def noting(message: Message) -> None:
+            nonlocal begun
+            begun = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, noting)
+        except Exception as error:
+            if scope["type"] != "http" or begun:
+                raise
+            _log.error("%s %s failed", scope["method"], scope["path"], exc_info=error)
+            answer = problem_response(500, "The station made a mistake; its log says which.")
+            await answer(scope, receive, send)
 
 
 def _status_of(error: MusterError) -> int:

@@ -33,6 +33,24 @@ async def test_a_failure_of_the_station_is_503_and_logged(
     assert f"GET /api/v1/incidents: {error}" in caplog.text
 
 
+async def test_a_mistake_of_the_station_is_answered_like_every_problem(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(*_: object) -> None:
+        raise ValueError("of the program")
+
+    monkeypatch.setattr(Records, "incidents", fail)
+    async with station.client(Role.VIEWER) as viewer:
+        answer = await viewer.get("/incidents")
+    assert answer.status_code == 500
+    assert answer.json()["detail"] == "The station made a mistake; its log says which."
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.headers["cache-control"] == "no-store"
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    assert "GET /api/v1/incidents failed" in caplog.text
+    assert caplog.text.count("ValueError: of the program") == 1
+
+
 async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskStation) -> None:
     with station.store.write() as session:
         session.connection().exec_driver_sql("DROP TABLE incidents")
