@@ -163,6 +163,37 @@ async def test_a_token_may_do_no_more_than_its_maker(
         assert (await program.get("/me")).status_code == 401
 
 
+async def test_a_token_is_its_owners_to_see_and_to_remove(
+    station: DeskStation, browser: httpx.AsyncClient
+) -> None:
+    made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
+    async with station.client(Role.ADMINISTRATOR) as other:
+        assert made["token_id"] not in {
+            one["token_id"] for one in (await other.get("/tokens")).json()
+        }
+        assert (await other.delete(f"/tokens/{made['token_id']}")).status_code == 404
+    assert [one["token_id"] for one in (await browser.get("/tokens")).json()] == [made["token_id"]]
+
+
+async def test_what_is_over_is_not_kept(
+    station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
+) -> None:
+    def kept() -> list[int]:
+        connection = sqlite3.connect(tmp_path / "station.sqlite")
+        tables = ("sessions", "hand_overs")
+        counts = [connection.execute(f"SELECT count(*) FROM {one}").fetchone()[0] for one in tables]
+        connection.close()
+        return counts
+
+    await browser.post("/hand-over")
+    clock.advance(601.0)
+    await browser.post("/hand-over")
+    assert kept() == [1, 1]
+    clock.advance(SESSION_S)
+    assert station.services.accounts.log_in("viewer", PASSWORD) is not None
+    assert kept() == [1, 0]
+
+
 async def test_security_headers_are_on_every_answer(station: DeskStation) -> None:
     async with station.client() as client:
         for path in ("/me", "/nothing", f"{ORIGIN}/", f"{ORIGIN}/nothing"):
