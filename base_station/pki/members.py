@@ -77,6 +77,8 @@ class EnrolledUnits:
 def _said_of(entry: Entry) -> Iterator[tuple[str, tuple[str, str]]]:
     who = f"{entry.holder.value} {entry.name} as {entry.common_name}"
     until = f"until {entry.valid_to:%Y-%m-%d}"
+    for serial in entry.earlier:  # of one that was renewed before a station saw it
+        yield f"issued-{serial}", ("IssuedCertificate", f"{who}, renewed since")
     yield f"issued-{entry.serial}", ("IssuedCertificate", f"{who}, {until}")
     if entry.revoked is not None:
         at = f"at {entry.revoked:%Y-%m-%dT%H:%M:%SZ}"

@@ -24,6 +24,7 @@ class Entry(msgspec.Struct, frozen=True):
     valid_from: datetime
     valid_to: datetime
     revoked: datetime | None = None
+    earlier: tuple[str, ...] = ()  # serials of those that it was renewed in the place of
 
     @staticmethod
     def of(holder: Holder, name: str, common_name: str, certificate: Certificate) -> Entry:
@@ -55,7 +56,8 @@ class Registry(msgspec.Struct, frozen=True):
     def with_entry(self, entry: Entry) -> Registry:
         """Add ``entry``, or put it in the place of the one with its common name."""
         others = tuple(e for e in self.entries if e.common_name != entry.common_name)
-        return msgspec.structs.replace(self, entries=(*others, entry))
+        before = (e for e in self.entries if e.common_name == entry.common_name)
+        return msgspec.structs.replace(self, entries=(*others, _behind(entry, *before)))
 
     def merged(self, other: Registry) -> Registry:
         """With what another station of the same authority knows: the newer certificate of each
@@ -66,6 +68,7 @@ class Registry(msgspec.Struct, frozen=True):
             mine = entries.get(theirs.common_name)
             newer = theirs if mine is None or theirs.valid_from > mine.valid_from else mine
             revoked = newer.revoked or theirs.revoked or (mine.revoked if mine else None)
+            newer = newer if mine is None else _behind(newer, mine, theirs)
             entries[theirs.common_name] = msgspec.structs.replace(newer, revoked=revoked)
         connect = tuple(dict.fromkeys((*self.connect, *other.connect)))
         return msgspec.structs.replace(self, entries=tuple(entries.values()), connect=connect)
@@ -86,6 +89,13 @@ class Registry(msgspec.Struct, frozen=True):
                 plain = name
         before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
         return plain if before == 0 else f"{plain}#{before + 1}"
+
+
+def _behind(entry: Entry, *others: Entry) -> Entry:
+    """``entry`` as the newest of a row; the audit tells of all of them."""
+    serials = dict.fromkeys(s for one in (*others, entry) for s in (*one.earlier, one.serial))
+    earlier = tuple(serial for serial in serials if serial != entry.serial)
+    return msgspec.structs.replace(entry, earlier=earlier)
 
 
 def load_registry(path: Path) -> Registry:

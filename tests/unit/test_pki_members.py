@@ -118,7 +118,19 @@ def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):
     ]
     assert sorted(audited()[3:]) == [
         ("IssuedCertificate", "unit FF-01 as FF-01#2"),
+        ("IssuedCertificate", "unit FF-01 as FF-01#2"),
         ("RevokedCertificate", "operator chief as operator:chief"),
         ("RevokedCertificate", "unit FF-01 as FF-01"),
     ]
     assert {one.by for one in records.audit_entries(EVER)} == {"muster pki"}
+
+
+def test_what_was_renewed_before_the_station_saw_it_is_in_the_audit_too(pki, records):
+    for issue in (pki.enroll, pki.renew, pki.renew):
+        issue("FF-01")
+    EnrolledUnits(pki, Gate(), list, records).update()
+    pki.renew("FF-01")
+    EnrolledUnits(pki, Gate(), list, records).update()
+    said = [e.detail for e in records.audit_entries(EVER) if "FF-01" in e.detail]
+    assert len(said) == 4
+    assert sum("renewed since" in detail for detail in said) == 2

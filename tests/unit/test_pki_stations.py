@@ -94,6 +94,7 @@ def test_the_newer_certificate_stands_whoever_heard_of_it_first(
     later.renew("FF-01")
     for registry in (first.registry().merged(old), old.merged(first.registry())):
         assert set(registry.entries) == set(first.registry().entries)
+        assert [len(entry.earlier) for entry in registry.entries if entry.name == "FF-01"] == [1]
 
 
 def test_a_station_is_enrolled_again_for_a_new_certificate(
