@@ -189,10 +189,10 @@ def show(data: Data = _DATA) -> None:
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
     from base_station.pki.table import print_registry  # noqa: PLC0415
 
-    registry = PkiFolder(data).registry()
-    now = datetime.now(UTC)
+    folder, now = PkiFolder(data), datetime.now(UTC)
+    registry = folder.registry()
     print_registry(registry, now)
-    for sentence in about_to_expire(registry, now, EXPIRY_WARNING):
+    for sentence in about_to_expire(registry, now, EXPIRY_WARNING, folder.own_common_name()):
         typer.secho(sentence, fg=typer.colors.YELLOW)
 
 

@@ -39,7 +39,9 @@ class ExpiryWatch:
             registry = self._pki.registry()
         except ConfigError as error:
             return (str(error),)
-        return (*not_yet_valid(registry, now), *about_to_expire(registry, now, EXPIRY_WARNING))
+        here = self._pki.own_common_name()
+        ending = about_to_expire(registry, now, EXPIRY_WARNING, here)
+        return (*not_yet_valid(registry, now), *ending)
 
 
 def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
@@ -53,22 +55,29 @@ def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
     )
 
 
-def about_to_expire(registry: Registry, now: datetime, within: timedelta) -> tuple[str, ...]:
+def about_to_expire(
+    registry: Registry, now: datetime, within: timedelta, here: str | None
+) -> tuple[str, ...]:
     """A sentence for each certificate in use that has ended or ends ``within``, the first
-    to end first.
+    to end first.  ``here``: the common name of this machine's station.
     """
     ending = sorted(
         (e for e in registry.entries if e.revoked is None and e.valid_to <= now + within),
         key=lambda entry: (entry.valid_to, entry.common_name),
     )
-    return tuple(_expiry_sentence(entry, now) for entry in ending)
+    return tuple(_expiry_sentence(entry, now, here) for entry in ending)
 
 
-def _expiry_sentence(entry: Entry, now: datetime) -> str:
+def _expiry_sentence(entry: Entry, now: datetime, here: str | None) -> str:
     if entry.holder is Holder.STATION and entry.name == STATION_NAME:
-        who, command = "this station", "muster pki renew-station"
+        who = "this station" if entry.common_name == here else "the first station"
+        command = "muster pki renew-station" + ("" if entry.common_name == here else " there")
     elif entry.holder is Holder.STATION:
-        who, command = f"station {entry.name}", f"muster pki enroll-station {entry.name}"
+        who = "this station" if entry.common_name == here else f"station {entry.name}"
+        command = (
+            f"muster pki enroll-station {entry.name} --host ADDRESS at the first station, and "
+            f"muster pki join at {entry.name}"
+        )
     elif entry.holder is Holder.OPERATOR:
         who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
     elif entry.holder is Holder.TRACKER:

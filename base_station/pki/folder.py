@@ -205,12 +205,8 @@ class PkiFolder:
                 f"{self._folder} belongs to another authority; move it away, or give another "
                 "folder with --data"
             )
-        try:
-            own = TlsIdentity(enrolment.identity.authority, self._read("station.pem"), b"")
-            common_name = own.common_name()
-        except ConfigError:
-            return  # missing or damaged: what is joined takes its place
-        names = [e.name for e in self.registry().entries if e.common_name == common_name]
+        own = self.own_common_name()  # where there is none, what is joined takes its place
+        names = [e.name for e in self.registry().entries if e.common_name == own]
         if names not in ([], [enrolment.name]):
             raise ConfigError(
                 f"{self._folder} is that of another station, and the file is for "
@@ -251,10 +247,23 @@ class PkiFolder:
             ) from error
         return identity
 
+    def own_common_name(self) -> str | None:
+        """Which station's folder this is; None: its certificate is missing or damaged."""
+        try:
+            return TlsIdentity(b"", self._read("station.pem"), b"").common_name()
+        except ConfigError:
+            return None
+
     def require_valid_station(self) -> None:
         """Nothing can link with a station whose certificate is not valid by its own clock."""
+        identity = self.station_identity()
         renewal = "make a new one with `muster pki renew-station`"
-        problem = validity_problem(self.station_identity(), self._now(), renewal)
+        if identity.common_name() != STATION_NAME:
+            renewal = (
+                "make a new one with `muster pki enroll-station` at the first station, and take it "
+                "in here with `muster pki join`"
+            )
+        problem = validity_problem(identity, self._now(), renewal)
         if problem is not None:
             raise ConfigError(problem)
 

@@ -285,7 +285,7 @@ def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, cloc
     clock.now += 11.5 * DAY
 
     def said(within: timedelta) -> tuple[str, ...]:
-        return about_to_expire(pki.registry(), clock.now, within)
+        return about_to_expire(pki.registry(), clock.now, within, pki.own_common_name())
 
     assert said(5 * DAY) == (
         "The certificate of unit bert expired on 2026-03-06: muster pki renew bert",

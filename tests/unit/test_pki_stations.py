@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import errno
+import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 
 from base_station.pki.access import access_control
+from base_station.pki.expiry import about_to_expire
 from base_station.pki.folder import PkiFolder
 from base_station.pki.station_enrolment import read_station_enrolment
 from shared.enrolment import Holder
@@ -103,6 +105,37 @@ def test_a_station_is_enrolled_again_for_a_new_certificate(
     second.join(first.enroll_station("second", ["10.0.0.9"], SECOND))
     assert second.station_identity().common_name() == "station:second"
     assert len(second.registry().entries) == 2
+
+
+def test_each_station_says_whose_certificate_ends_and_where_it_is_renewed(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    end = datetime.now(UTC) + timedelta(days=400)
+
+    def said(folder: PkiFolder) -> list[str]:
+        here = folder.own_common_name()
+        ending = about_to_expire(folder.registry(), end, timedelta(), here)
+        return [re.sub(r"expired on [\d-]+", "expired", one) for one in ending]
+
+    anew = "muster pki enroll-station second --host ADDRESS at the first station, and "
+    joined = f"{anew}muster pki join at second"
+    assert said(first) == [
+        "The certificate of this station expired: muster pki renew-station",
+        f"The certificate of station second expired: {joined}",
+    ]
+    assert said(second) == [
+        "The certificate of the first station expired: muster pki renew-station there",
+        f"The certificate of this station expired: {joined}",
+    ]
+
+
+def test_a_further_station_whose_certificate_has_ended_says_where_to_get_another(
+    second: PkiFolder, tmp_path: Path
+) -> None:
+    later = PkiFolder(tmp_path / "second", lambda: datetime.now(UTC) + timedelta(days=400))
+    assert later.path == second.path
+    with pytest.raises(ConfigError, match=r"expired on .*enroll-station` at the first station"):
+        later.require_valid_station()
 
 
 def test_a_file_that_is_taken_to_the_wrong_machine_changes_nothing(
