@@ -9,7 +9,6 @@ import pytest
 from pwdlib import PasswordHash
 
 from base_station.db.passwords import Passwords
-from tests.station import QUICK_HASH
 
 SECRET = "long enough"
 
@@ -26,9 +25,9 @@ def test_only_two_passwords_are_worked_on_at_once(monkeypatch: pytest.MonkeyPatc
         inside.pop()
         return SECRET
 
-    passwords = Passwords(QUICK_HASH)
     for name in ("hash", "verify"):
         monkeypatch.setattr(PasswordHash, name, work)
+    passwords = Passwords()
     with ThreadPoolExecutor(8) as pool:
         pool.map(lambda _: passwords.is_right(SECRET, SECRET), range(8))
         pool.map(lambda _: passwords.hash(SECRET), range(8))
