@@ -27,7 +27,11 @@ from tests.waiting import PATIENCE_S, until
 # it takes a core three seconds. The demo and the benches start it as it is installed.
 _LOADED = get_context("forkserver")
 _LOADED.set_forkserver_preload(
-    [__name__, "base_station.app.live", "base_station.app.replay", "edge.app"]
+    [
+        __name__,
+        *("base_station.cli", "base_station.app.live", "base_station.app.replay"),
+        *("edge.cli", "edge.app"),
+    ]
 )
 
 

@@ -30,7 +30,7 @@ from base_station.db import models
 from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.db.roster import Roster
 from base_station.live.sinks import ActionDone, LiveSink, Trails
-from base_station.site.roaming import RADII_95
+from base_station.site.roaming import RADII_95, roamed_m
 from base_station.trouble import Trouble
 from base_station.views import alarm_view, anchor_view
 from shared.clock import NS_PER_S, Clock
@@ -90,9 +90,11 @@ class LastKnown:
 
     def whole(self) -> tuple[Snapshot, Trails]:
         stored, trails = self._stored = self._stored or self._read()
+        now_ms = to_ms(self._clock.utc_ns())
         shown = msgspec.structs.replace(
             stored,
-            now_ms=to_ms(self._clock.utc_ns()),
+            now_ms=now_ms,
+            units=tuple(_widened(unit, now_ms) for unit in stored.units),
             health=msgspec.structs.replace(stored.health, reading=self._share),
         )
         return shown, trails
@@ -191,6 +193,16 @@ def _position(sample: TrackSample) -> PositionView:
         floor_probability=None,
         reach=(),
     )
+
+
+def _widened(unit: UnitView, now_ms: int) -> UnitView:
+    """Where somebody can be grows, as of everybody who is not heard."""
+    position = unit.position
+    if position is None:
+        return unit
+    radius_m = position.ellipse_major_m + roamed_m((now_ms - position.t_ms) / 1000.0)
+    grown = msgspec.structs.replace(position, ellipse_major_m=radius_m, ellipse_minor_m=radius_m)
+    return msgspec.structs.replace(unit, position=grown)
 
 
 def _points(trail: list[TrackSample]) -> msgspec.Raw:

@@ -28,6 +28,7 @@ from base_station.live.recovering import recovering
 from base_station.live.sinks import Projection, Trails
 from base_station.recorder import Recorder
 from base_station.server import bind
+from base_station.site.roaming import roamed_m
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.errors import StoreError
@@ -136,6 +137,28 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
         assert (shown.position.north_m, shown.position.east_m) == (3.0, 4.0)
         assert [points[1:3] for points in json.loads(bytes(trails["FF-01"]))] == [[3.0, 4.0]]
         assert [one.text for one in picture.alarms] == ["MAYDAY"]
+
+
+def test_where_they_can_be_by_now_grows_while_nobody_is_heard(
+    tmp_path: Path, clock: ManualClock
+) -> None:
+    with ExitStack() as closing:
+        recorder = Recorder(tmp_path, clock)
+        closing.callback(recorder.close)
+        disk = open_disk(DataFolder(tmp_path), recorder, clock, lambda _: None, closing)
+        disk.store.hangs = lambda: False
+        store_what_happened(disk)
+        known = LastKnown(disk.roster, disk.records, clock, Nobody())
+        radii_m = []
+        for waited_s in (1.0, 30.0, 60.0):
+            clock.advance(waited_s)
+            (shown,) = known.whole()[0].units
+            assert shown.position is not None
+            assert shown.position.ellipse_major_m == shown.position.ellipse_minor_m
+            radii_m.append(shown.position.ellipse_major_m)
+    first_m, second_m, third_m = radii_m
+    assert second_m - first_m == pytest.approx(roamed_m(31.0))
+    assert third_m - first_m == pytest.approx(roamed_m(91.0))
 
 
 class Consoles:
