@@ -33,6 +33,11 @@ async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
         yield client
 
 
+def shown(secret: str) -> dict[str, str]:
+    """As the browser shows a cookie."""
+    return {"cookie": f"{COOKIE}={secret}"}
+
+
 # What each role may do at least; everything else of the API is in the OpenAPI test.
 ROLES = [
     ("GET", "/people", None, Role.VIEWER),
@@ -97,6 +102,24 @@ async def test_the_cookie_is_for_the_station_alone(station: DeskStation) -> None
     cookie = answer.headers["set-cookie"].lower()
     assert "httponly" in cookie
     assert "samesite=strict" in cookie
+    assert "secure" not in cookie
+    station.app.state.services = dataclasses.replace(station.services, secure=True)
+    async with station.client() as client:
+        credentials = {"username": "viewer", "password": PASSWORD}
+        answer = await client.post("/login", json=credentials)
+    assert "secure" in answer.headers["set-cookie"].lower()
+
+
+async def test_who_logs_in_and_who_is_refused_is_in_the_audit_with_the_place(
+    station: DeskStation,
+) -> None:
+    async with station.client() as client:
+        for password in ("guess", PASSWORD):
+            await client.post("/login", json={"username": "viewer", "password": password})
+    entries = station.services.records.audit_entries(EVER)
+    assert [(one.by, one.action, one.detail) for one in entries] == [
+        ("viewer", "LoggedIn", "127.0.0.1"), ("viewer", "LoginRefused", "127.0.0.1"),
+    ]  # fmt: skip
 
 
 async def test_another_site_changes_nothing(browser: httpx.AsyncClient) -> None:
@@ -134,9 +157,9 @@ async def test_a_session_ends(browser: httpx.AsyncClient, clock: ManualClock) ->
 
 async def test_logging_out_ends_the_session_at_the_station(browser: httpx.AsyncClient) -> None:
     secret = browser.cookies[COOKIE]
+    assert (await browser.get("/me", headers=shown(secret))).status_code == 200
     assert (await browser.post("/logout")).status_code == 204
-    browser.cookies.set(COOKIE, secret, domain="station")
-    assert (await browser.get("/me")).status_code == 401
+    assert (await browser.get("/me", headers=shown(secret))).status_code == 401
 
 
 async def test_secrets_are_not_in_the_database(browser: httpx.AsyncClient, tmp_path: Path) -> None:
@@ -212,8 +235,8 @@ async def test_a_login_ends_the_one_before_it_in_the_same_browser(
     after = browser.cookies[COOKIE]
     assert after != before  # nobody chooses another's session
     browser.cookies.clear()
-    browser.cookies.set(COOKIE, before, domain="station")
-    assert (await browser.get("/me")).status_code == 401
+    assert (await browser.get("/me", headers=shown(after))).json()["role"] == "viewer"
+    assert (await browser.get("/me", headers=shown(before))).status_code == 401
 
 
 async def test_a_new_password_ends_the_logins_elsewhere(
