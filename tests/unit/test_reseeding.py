@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from base_station.fusion.kernels import Placed
 from base_station.fusion.parameters import Parameters
+from base_station.fusion.plane.compassed_filter import CompassedFilter
 from base_station.fusion.plane.recent_stretch import AGAIN, COSTS, KEPT_M, Move, RecentStretch
 from base_station.fusion.plane.sampling import draw
 from base_station.fusion.plane.state import STATES
 from base_station.fusion.plane.wall_particles import TOGETHER_M, SavedParticles, WallParticles
+from base_station.fusion.plane.walled_filter import WalledFilter
 from base_station.fusion.position_quality import quality_of
 from base_station.site.crossing import WALL
 from base_station.site.floor_grid import FloorGrid
@@ -35,8 +37,10 @@ WALK = [(0.0, 1.0)] * 12 + [(1.0, 0.0)] * 7 + [(0.0, 1.0)] * 12 + [(0.0, -1.0)] 
 WALK += [(0.0, 1.0)] * 12 + [(-1.0, 0.0)] * 7 + [(0.0, 1.0)] * 8
 
 
-def building(*doors_m: float) -> FloorGrid:
-    """A corridor from west to east, and rooms to the north of it."""
+def building(*doors_m: float, aside_m: float = 0.0) -> FloorGrid:
+    """A corridor from west to east, and rooms to the north of it; ``aside_m``: drawn so much too
+    far east.
+    """
     (south_m, north_m), ends_m = CORRIDOR_M, [0.0]
     for door_m in doors_m:
         ends_m += [door_m - 0.5, door_m + 0.5]
@@ -46,7 +50,8 @@ def building(*doors_m: float) -> FloorGrid:
     walls = [ring]
     walls += [[[a, north_m], [b, north_m]] for a, b in zip(ends_m[::2], ends_m[1::2], strict=True)]
     walls += [[[east_m, north_m], [east_m, DEPTH_M]] for east_m in (8.5, 21.5)]
-    return walled_grid(ring, walls)
+    moved = [[[east_m + aside_m, up_m] for east_m, up_m in line] for line in (ring, *walls)]
+    return walled_grid(moved[0], moved[1:])
 
 
 def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:
@@ -88,6 +93,54 @@ def test_whoever_is_held_beside_the_door_comes_to_the_right_room(off_east_m: flo
     assert off_m(held, place_m) > 2.0 * std_m(held)
     found, place_m = walked(building(*DOOR_M), off_east_m)
     assert off_m(found, place_m) < 1.5
+
+
+def test_whom_a_plan_drawn_aside_had_led_aside_comes_back_with_the_right_one() -> None:
+    """Of that plan the walls all fitted; by the right one he has walked through some."""
+    cloud, place_m = walked(building(*DOOR_M, aside_m=4.0), 4.0)
+    right = building(*DOOR_M)
+    assert off_m(cloud, place_m) > 3.0
+    cloud.consider(right)
+    place_m = place_m + np.array((0.0, STEP_M))
+    cloud.walk((0.0, STEP_M, 0.5, 0.0), NOISE, right, 0)
+    assert cloud.is_doubtful
+    cloud.look_elsewhere(known(place_m, KNOWN_STD_M), right)
+    assert off_m(cloud, place_m) < 1.5
+
+
+def test_the_same_plan_again_changes_nothing_of_what_walls_have_told() -> None:
+    grid = building(*DOOR_M)
+    cloud, _ = walked(grid, 0.0)
+    before, place_m = cloud.save(), cloud.moments()[0][:2].copy()
+    cloud.consider(grid)
+    after = cloud.save()
+    assert sum(move.told for move in after.stretch) == pytest.approx(
+        sum(move.told for move in before.stretch), abs=1.5
+    )
+    assert off_m(cloud, place_m) == 0.0
+    assert (after.particles, after.weights) == (before.particles, before.weights)
+
+
+def test_what_nothing_had_told_of_is_told_evenly() -> None:
+    last = RecentStretch([Move(0.5, 0.0, 0.5, False, 0, 0.0)] * 4)
+    last.retell(-8.0)
+    assert [move.told for move in last.save()] == [-2.0] * 4
+    nobody = RecentStretch([])
+    nobody.retell(-8.0)
+    assert nobody.save() == []
+
+
+def test_a_filter_holds_its_cloud_against_another_plan_than_it_was_saved_with() -> None:
+    cloud, _ = walked(building(*DOOR_M, aside_m=4.0), 4.0)
+    kind = Parameters()
+    walled = WalledFilter(CompassedFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps))
+    walled.load(msgspec.structs.replace(walled.save(), cloud=cloud.save()))
+    walled.consider(building(*DOOR_M, aside_m=4.0))
+    assert walled.save().cloud == cloud.save()
+    walled.consider(building(*DOOR_M))
+    again = walled.save().cloud
+    assert again is not None
+    assert sum(move.told for move in again.stretch) < -10.0
 
 
 def test_while_two_places_are_open_it_says_so_and_where() -> None:

@@ -53,9 +53,14 @@ class RecentStretch:
             self._way_m -= _way_m(self._moves.pop(0))
 
     def retell(self, told: float) -> None:
-        """The cloud is another now, and would have found them as likely as this."""
-        part = told / self.told
-        self._moves = [msgspec.structs.replace(move, told=part * move.told) for move in self._moves]
+        """The cloud is another now, or the walls are, and it would have found them as likely as
+        this.
+        """
+        whole, even = self.told, told / max(len(self._moves), 1)
+        self._moves = [
+            msgspec.structs.replace(move, told=told * move.told / whole if whole else even)
+            for move in self._moves
+        ]
 
     def met_behind(self, particles: Floats, scale: float, grid: FloorGrid, least: float) -> Floats:
         """Log likelihood (n,) of the walls met on the way to particles (n, 4) of north, east, turn

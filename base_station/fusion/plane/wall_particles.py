@@ -172,6 +172,13 @@ class WallParticles:
         self._resample()
         return math.log(float(before @ np.exp(all_lost)))
 
+    def consider(self, grid: FloorGrid) -> None:
+        """Other walls stand in the way than did: the way of late is held against them."""
+        met = self._stretch.met_behind(self._particles, self._scale, grid, -math.inf)
+        shares = self._log_weights - np.logaddexp.reduce(self._log_weights)
+        self._stretch.retell(float(np.logaddexp.reduce(shares + met)))
+        self._to_doubt_m = 0.0
+
     @property
     def is_doubtful(self) -> bool:
         """It has just moved, and walls stood in the way of late."""

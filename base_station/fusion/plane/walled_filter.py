@@ -67,9 +67,14 @@ class WalledFilter:
         return () if self._grid is None else self._grid.plan.storeys_down_m
 
     def consider(self, grid: FloorGrid | None) -> None:
-        self._grid = grid
+        """Of another plan than before, the cloud goes on as far as it fits that: one that a wrong
+        plan held in the wrong rooms is asked for elsewhere.
+        """
         if grid is None:
             self._cloud = None
+        elif self._grid is not None and self._cloud is not None:
+            self._cloud.consider(grid)
+        self._grid = grid
 
     def stand_at(self, down_m: float) -> None:
         """The height says on which storey the wearer is, and whose walls stand in the way."""
