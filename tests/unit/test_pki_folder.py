@@ -13,6 +13,7 @@ import pytest
 from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from base_station.pki.certificates import make_authority
 from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
 from base_station.pki.folder import CERTIFICATE_VALID, PkiFolder
 from base_station.pki.renewal import Renewal
@@ -115,6 +116,24 @@ def test_a_unit_cannot_pose_as_a_station_or_an_authority(pki: PkiFolder) -> None
     assert list(uses) == [ExtendedKeyUsageOID.CLIENT_AUTH]
     assert not extensions.get_extension_for_class(x509.BasicConstraints).value.ca
     assert not extensions.get_extension_for_class(x509.KeyUsage).value.key_cert_sign
+
+
+def test_the_authority_signs_certificates_and_no_further_authority(pki: PkiFolder) -> None:
+    extensions = x509.load_pem_x509_certificate(
+        (pki.path / "authority.pem").read_bytes()
+    ).extensions
+    constraints = extensions.get_extension_for_class(x509.BasicConstraints).value
+    assert (constraints.ca, constraints.path_length) == (True, 0)
+    usage = extensions.get_extension_for_class(x509.KeyUsage).value
+    assert (usage.key_cert_sign, usage.digital_signature) == (True, False)
+
+
+def test_a_certificate_is_good_by_a_clock_that_is_behind_by_less_than_a_day(
+    pki: PkiFolder, clock: Clock
+) -> None:
+    identity = pki.enroll("anna").identity
+    assert validity_problem(identity, clock.now - 0.99 * DAY) is None
+    assert "set the clock" in str(validity_problem(identity, clock.now - 1.01 * DAY))
 
 
 def test_an_enrolment_holds_together_and_says_where_to_connect(
@@ -259,6 +278,14 @@ def test_a_damaged_file_is_named(pki: PkiFolder, name: str) -> None:
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     with pytest.raises(ConfigError, match="damaged"):
         pki.enroll("anna")
+
+
+def test_the_key_of_another_authority_issues_nothing(pki: PkiFolder, clock: Clock) -> None:
+    other = make_authority("Other", clock.now, DAY)
+    (pki.path / "authority.key").write_bytes(other.key_pem())
+    with pytest.raises(ConfigError, match="does not belong to its certificate"):
+        pki.enroll("anna")
+    assert pki.registry().current(Holder.UNIT, "anna") is None
 
 
 def test_a_missing_authority_key_is_named(pki: PkiFolder) -> None:
