@@ -27,7 +27,7 @@ from base_station.positioning.frame import reframe
 from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.lost_contact import LostContact
-from base_station.positioning.unit_starts import begin
+from base_station.positioning.unit_starts import begin, unlearn
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import BEGAN_M, Landing
 from base_station.site.plan import Plan, Ring
@@ -143,7 +143,13 @@ class Positioning:
         state.start_set = True
         if unit.unit_id == state.barometers.reference_id:
             state.sky = Sky()
-        begin(state, unit, self._fuser(unit), _history(state, unit), start)
+        history = _history(state, unit)
+        if history.is_before_incident and unit.link != "live":  # of the run that is to come
+            self._fusers.pop(unit.unit_id, None)
+            self._pinned.forget(unit)
+            history = state.paths[unit.unit_id] = history.of_next_run()
+            unlearn(state, unit.unit_id)
+        begin(state, unit, self._fuser(unit), history, start)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Where its wearers were, and what was learnt of their walk."""

@@ -72,6 +72,41 @@ def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
     assert begin_ns == script.t_ns - (39 if is_on else 29) * NS_PER_S
 
 
+@pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "out of reach"])
+def test_a_start_that_is_said_before_a_unit_is_heard_in_the_incident_is_of_what_it_says_next(
+    is_on: bool,
+) -> None:
+    """It was checked in the morning, and left 60 m off; or its radio did not reach the station."""
+    script = Script()
+    script.register("FF-01")
+    go_north(script, 60)
+    script.now_s += 3600.0
+    script.tick()
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(SetStart("FF-01", 100.0, 5.0, 0.0, 0.0, 0.5, 0.05))
+    if not is_on:
+        script.boot_ids["FF-01"] = 8
+    since_m = 60.0 if is_on else 0.0
+    go_north(script, 20, since_m)
+    fused = fused_of(script)
+    assert fused.north_m == pytest.approx(100.0 + since_m + 19.0, abs=0.5)
+    assert fused.east_m == pytest.approx(5.0, abs=2.0)
+    assert fused.heading_std_rad < 0.1
+    assert fused.quality is Quality.GOOD
+
+
+def test_a_start_of_a_unit_that_was_heard_in_the_incident_is_of_that_run() -> None:
+    """Though it is silent now: its trail is put right."""
+    script = Script()
+    script.register("FF-01")
+    script.act(OpenIncident("i1", "Mill Lane"))
+    go_north(script, 60)
+    script.now_s += 3600.0
+    script.tick()
+    script.act(SetStart("FF-01", 100.0, 5.0, 0.0, 0.0, 0.5, 0.05))
+    assert fused_of(script).north_m == pytest.approx(159.0, abs=0.5)
+
+
 def test_all_start_here_may_be_said_before_the_run_that_it_is_about() -> None:
     """The commander is quicker than those who switch on their units."""
     script = Script()

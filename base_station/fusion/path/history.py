@@ -89,6 +89,15 @@ class PathHistory(msgspec.Struct):
         """The path has come to where a pin waits for it."""
         return self.awaited_ns is not None and (self.end_ns or 0) >= self.awaited_ns
 
+    @property
+    def is_before_incident(self) -> bool:
+        """Nothing of it has come since the incident was opened."""
+        return self.end_ns is not None and self.end_ns < self.opened_ns
+
+    def of_next_run(self) -> PathHistory:
+        """Empty: the run that is known is over."""
+        return PathHistory(since_ns=self.since_ns, opened_ns=self.opened_ns)
+
     def note(self, position: Position, t_ns: int, jumped: bool) -> bool:
         """The own path went on; ``jumped``: not from where it was.  Whether it begins here."""
         if self.points:
