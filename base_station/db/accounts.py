@@ -28,6 +28,7 @@ from shared.errors import UserError
 
 SESSION_S = 12 * 3600
 HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
+MOST_TOKENS = 100  # of one user: the other station copies all of them
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
 
 
@@ -216,9 +217,15 @@ class Accounts:
         expires_ns: int | None,
         scopes: Collection[str] = (),
     ) -> tuple[str, str]:
-        """``(token_id, secret)``; the secret is never to be had again."""
+        """``(token_id, secret)``; the secret is never to be had again.  What has ended goes."""
         secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
         with self._store.write() as session:
+            mine = ApiToken.username == username
+            session.execute(
+                delete(ApiToken).where(mine, ApiToken.expires_ns <= self._clock.utc_ns())
+            )
+            if (session.scalar(select(func.count()).where(mine)) or 0) >= MOST_TOKENS:
+                raise UserError(f"{username} has {MOST_TOKENS} tokens; remove one that is not used")
             if role > Role.of(_user(session, username).role):
                 raise UserError("a token can have its owner's role or a lower one, not a higher")
             session.add(

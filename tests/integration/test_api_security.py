@@ -14,10 +14,10 @@ import pytest_asyncio
 
 from base_station.api.routes import ROUTERS
 from base_station.api.security import COOKIE, Scope
-from base_station.db.accounts import SESSION_S
+from base_station.db.accounts import MOST_TOKENS, SESSION_S
 from base_station.db.principals import Role
 from base_station.db.records import EVER
-from shared.clock import ManualClock
+from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
@@ -196,6 +196,23 @@ async def test_a_token_is_its_owners_to_see_and_to_remove(
         }
         assert (await other.delete(f"/tokens/{made['token_id']}")).status_code == 404
     assert [one["token_id"] for one in (await browser.get("/tokens")).json()] == [made["token_id"]]
+
+
+def test_a_user_has_only_so_many_tokens_and_those_that_have_ended_go(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    accounts = station.services.accounts
+    soon_ns = clock.utc_ns() + NS_PER_S
+    for number in range(MOST_TOKENS):
+        accounts.add_token("viewer", f"t{number}", Role.VIEWER, soon_ns if number == 7 else None)
+    with pytest.raises(UserError, match="100 tokens"):
+        accounts.add_token("viewer", "one more", Role.VIEWER, None)
+    accounts.add_token("commander", "another's", Role.VIEWER, None)
+    clock.advance(1.0)
+    accounts.add_token("viewer", "one more", Role.VIEWER, None)
+    names = [token.name for token in accounts.tokens("viewer")]
+    assert len(names) == MOST_TOKENS
+    assert "t7" not in names
 
 
 async def test_what_is_over_is_not_kept(
