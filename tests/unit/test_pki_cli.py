@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 
 import pytest
@@ -115,6 +116,7 @@ def test_enroll_shows_a_code_and_writes_no_file(
     said = run("enroll", "FF-01", "--data", data, "--qr", "--png", "code.png")
     assert "█" in said
     assert {path.name for path in tmp_path.iterdir()} == {"data", "code.png"}
+    assert stat.S_IMODE((tmp_path / "code.png").stat().st_mode) == 0o600  # it holds the key
 
 
 def test_a_file_in_the_way_is_seen_before_anybody_is_enrolled(data: Path, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import os
 import stat
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from threading import Event, Thread
 
 import pytest
 from cryptography import x509
@@ -15,6 +16,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from base_station.pki.certificates import make_authority
 from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
+from base_station.pki.files import locked
 from base_station.pki.folder import CERTIFICATE_VALID, PkiFolder
 from base_station.pki.renewal import Renewal
 from shared.clock import NS_PER_S, ManualClock
@@ -93,6 +95,21 @@ def test_what_root_makes_and_changes_is_the_stations(tmp_path: Path) -> None:
     pki.enroll("anna")
     pki.renew_station()
     assert {path.stat().st_uid for path in (pki.path, *pki.path.iterdir())} == {12345}
+
+
+def test_one_command_at_a_time_changes_the_folder(pki: PkiFolder) -> None:
+    enrolled = Event()
+
+    def enrol() -> None:
+        pki.enroll("bert")
+        enrolled.set()
+
+    with locked(pki.path):
+        other = Thread(target=enrol)
+        other.start()
+        assert not enrolled.wait(0.2)
+    other.join()
+    assert pki.registry().current(Holder.UNIT, "bert") is not None
 
 
 def test_a_folder_that_cannot_be_written_is_said(pki: PkiFolder) -> None:
