@@ -49,6 +49,37 @@ describe("the room of a position", () => {
     expect(word(radiusM, change)).toBe("");
   });
 
+  it.each([
+    ["on the inner side of a slanted wall", 33, 23, "in loft"],
+    ["on its outer side", 37, 27, ""],
+    ["on its outer side, further down", 31.5, 29, ""],
+    ["in the other part of the same room", 35, 53, "in loft"],
+    ["between the two parts", 33, 45, ""],
+  ])("is told %s", (_, north_m, east_m, said) => {
+    const loft: Plan = {
+      ...PLAN,
+      features: [
+        {
+          type: "Feature",
+          properties: { kind: "room", floor: 0, name: "loft" },
+          geometry: {
+            type: "MultiPolygon",
+            coordinates: [20, 50].map((east) => [
+              [
+                [east, 30],
+                [east + 10, 30],
+                [east, 40],
+                [east, 30],
+              ],
+            ]),
+          },
+        },
+      ],
+    };
+    const region: Region = { major_m: 0.5, minor_m: 0.5, heading_rad: 0 };
+    expect(roomWord(loft, position({ north_m, east_m }), region)).toBe(said);
+  });
+
   it("is not said without a plan", () => {
     expect(roomWord(null, position(), { major_m: 1, minor_m: 1, heading_rad: 0 })).toBe("");
   });
