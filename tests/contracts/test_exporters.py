@@ -11,11 +11,13 @@ from xml.etree import ElementTree as ET
 import msgspec
 import pytest
 
+from base_station.db.models import Assignment
 from base_station.db.records import TrackSample
 from base_station.exporters import EXPORTERS
 from base_station.exporters.csv_tracks import CSV
 from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
+from base_station.exporters.incident import _split
 from base_station.exporters.kml import KML
 from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
 from shared.clock import NS_PER_S
@@ -100,11 +102,29 @@ def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
     assert read(text) is not None
 
 
-def test_a_name_does_not_become_a_formula() -> None:
-    tracks = (msgspec.structs.replace(incident().tracks[0], person_name="=1+1"),)
-    table = CSV.export(msgspec.structs.replace(incident(), tracks=tracks)).decode()
-    rows = list(csv.reader(io.StringIO(table)))
-    assert rows[1][1] == "'=1+1"
+@pytest.mark.parametrize("name", ["=1+1", "+1", "-1+1", "@SUM(1)", "\t=1+1", "\r=1+1"])
+def test_a_name_does_not_become_a_formula(name: str) -> None:
+    track = msgspec.structs.replace(incident().tracks[0], person_name=name, crew=name)
+    table = CSV.export(msgspec.structs.replace(incident(), tracks=(track,))).decode()
+    rows = list(csv.reader(io.StringIO(table, newline="")))
+    assert rows[1][1:3] == [f"'{name}"] * 2
+
+
+def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
+    def worn(name: str, from_s: int, until_s: int | None) -> Assignment:
+        until_ns = None if until_s is None else T0_NS + until_s * NS_PER_S
+        return Assignment(
+            unit_id="FF-01", person_name=name, crew="A", from_ns=T0_NS + from_s * NS_PER_S,
+            until_ns=until_ns,
+        )  # fmt: skip
+
+    points = incident(points=8).tracks[0].points
+    hands = [worn("Ada", 1, 3), worn("Bea", 3, 5), worn("Ada", 6, None)]
+    tracks = [(one.person_name, len(one.points)) for one in _split("FF-01", points, hands)]
+    assert tracks == [("", 1), ("Ada", 2), ("Bea", 2), ("", 1), ("Ada", 2)]
+    # Assigned anew, as with another name: from the same instant on the later one counts.
+    again = [worn("Ada", 0, None), worn("Ada B.", 0, None)]
+    assert [one.person_name for one in _split("FF-01", points, again)] == ["Ada B."]
 
 
 def test_gpx_goes_north_with_the_wearer() -> None:
