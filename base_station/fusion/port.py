@@ -29,6 +29,7 @@ class PlaceFix(msgspec.Struct, frozen=True):
     horizontal_std_m: float
     vertical_std_m: float | None  # None: a fix without height
     common_m2: float | None = None  # what all receivers err by, each axis, as far as it was learnt
+    seen_m: tuple[float, float] | None = None  # north and east before that was taken off
 
 
 class AirHeight(msgspec.Struct, frozen=True):

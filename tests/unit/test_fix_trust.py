@@ -11,7 +11,13 @@ import pytest
 
 from base_station.bench.rig import said
 from base_station.fusion.fixes.sky import common_m2
-from base_station.fusion.fixes.trust import FRESH_LEAST, FRESH_PART, SURPRISE_MOST, FixTrust
+from base_station.fusion.fixes.trust import (
+    FRESH_KEPT,
+    FRESH_LEAST,
+    FRESH_PART,
+    SURPRISE_MOST,
+    FixTrust,
+)
 from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.gps_inertial import GpsInertial, GpsInertialFuser
 from base_station.fusion.parameters import Parameters
@@ -50,6 +56,17 @@ def test_how_much_is_new_with_every_fix_is_learnt_whatever_the_heading(
     assert after_walk(fresh_part, turn_rad).fresh_part == pytest.approx(fresh_part, rel=0.35)
 
 
+@pytest.mark.parametrize(("north_mps", "east_mps"), [(0.0, 0.0), (1.5, 0.0), (0.0, 1.5)])
+def test_who_goes_fast_has_no_receiver_that_jumps(north_mps: float, east_mps: float) -> None:
+    """The way between two fixes is none of their errors."""
+    trust = FixTrust()
+    for second in range(0, 600, 2):
+        place = OwnPlace(second * NS_PER_S, north_mps * second, east_mps * second, 0.0)
+        fix = fix_at(float(second), north_mps * second, east_mps * second)
+        trust.compare_pair(fix, place)
+    assert trust.fresh_sum == pytest.approx(FixTrust().fresh_sum * (1.0 - 1.0 / FRESH_KEPT) ** 299)
+
+
 def test_a_few_fixes_hardly_tell_and_gaps_nothing() -> None:
     known = FixTrust().fresh_part
     assert known == FRESH_PART
@@ -85,6 +102,18 @@ def test_who_stands_still_has_no_receiver_that_hangs_nor_has_who_came_a_long_way
     assert not trust.is_stuck(kind, fix_at(21, 7.1), 500.0 + 2.0 * kind.stuck_m)
     twice = trust.is_stuck(kind, fix_at(22, 7.1), 500.0 + 5.0 * kind.stuck_m)
     assert not twice, "it gave it twice"
+
+
+def test_the_same_place_five_times_is_a_receiver_that_hangs() -> None:
+    trust, kind = FixTrust(), Parameters()
+    hangs = [trust.is_stuck(kind, fix_at(second, 7.0), 100.0 * second) for second in range(6)]
+    assert hangs == [False] * 4 + [True] * 2
+
+
+def test_who_was_wrong_once_is_believed_with_the_second_that_fits() -> None:
+    trust = FixTrust()
+    trust.misses(Parameters(), fix_at(0, 0.0), (0.0, 0.0))
+    assert [trust.fits() for _ in range(2)] == [False, True]
 
 
 def test_a_receiver_that_was_wrong_fits_twice_as_often_before_it_is_believed() -> None:

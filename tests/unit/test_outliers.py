@@ -78,6 +78,23 @@ def test_who_hardly_went_anywhere_walked_no_shape() -> None:
     assert shape_of(turned(2.2 * own_m, 0.3), 2.2 * own_m) is not None
 
 
+@pytest.mark.parametrize(("unlike", "is_walk"), [(0.2, True), (0.3, False)])
+def test_a_quarter_of_what_fixes_draw_may_be_no_walk(unlike: float, is_walk: bool) -> None:
+    """The rest of their scatter lies across a straight way, to and fro."""
+    north_m = 2.0 * np.arange(BELIEVED)
+    across_m = north_m.std() * math.sqrt(unlike / (1.0 - unlike)) * (-1.0) ** np.arange(BELIEVED)
+    own_m = np.column_stack((north_m, np.zeros(BELIEVED)))
+    assert (shape_of(np.column_stack((north_m, across_m)), own_m) is not None) is is_walk
+
+
+def test_of_what_was_cleared_nothing_is_drawn() -> None:
+    outliers, own_m = Outliers(), bent(BELIEVED, step_m=2.0).tolist()
+    for place_m in own_m[:-1]:
+        outliers.add(tuple(place_m), tuple(place_m))
+    outliers.clear()
+    assert outliers.add(tuple(own_m[-1]), tuple(own_m[-1])) is None
+
+
 def test_what_is_longer_ago_than_a_minute_is_forgotten() -> None:
     """First the receiver rests, then it comes along."""
     outliers, shape = Outliers(), None

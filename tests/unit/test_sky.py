@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from base_station.fusion.fixes.sky import COMMON_MOST_M, OWN_PART, Sky, common_m2
+from base_station.fusion.fixes.trust import FixTrust
+from base_station.fusion.parameters import Parameters
 from base_station.fusion.port import PlaceFix
 from base_station.pins.evidence import evidence_of_all, receiver_of_station
 from shared.clock import NS_PER_S
@@ -36,6 +38,16 @@ def test_what_the_station_s_receiver_errs_by_is_mostly_everybody_s() -> None:
     assert 10.0 < fix.north_m < 11.6
     assert 9.0 < fix.east_m < 10.0
     assert 0.74 * STD_M < fix.horizontal_std_m < 0.95 * STD_M
+
+
+def test_a_receiver_that_hangs_is_noticed_beside_one_at_the_station() -> None:
+    """What is taken off its fixes changes; what it says does not."""
+    sky, trust, verdicts = Sky(), FixTrust(), []
+    for second in range(20):
+        sky.note(second * NS_PER_S, (3.0 + 0.01 * second, -2.0), STD_M, 0.3)
+        fix = sky.corrected(fix_at(13.0, 8.0), second * NS_PER_S)
+        verdicts.append(trust.is_stuck(Parameters(), fix, 1.0 * second))
+    assert verdicts == [False] * 9 + [True] * 11
 
 
 def test_what_is_everybody_s_is_part_of_a_good_receiver_s_error_and_little_of_a_bad_one_s() -> None:

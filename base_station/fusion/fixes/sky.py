@@ -80,6 +80,7 @@ class Sky(msgspec.Struct):
             east_m=fix.east_m - float(mean[_COMMON, 1]),
             horizontal_std_m=math.sqrt(fix.horizontal_std_m**2 - was_m2 + is_m2),
             common_m2=is_m2,
+            seen_m=(fix.north_m, fix.east_m),
         )
 
     def _begin(self, std_m: float, place_std_m: float) -> None:

@@ -45,7 +45,7 @@ class FixTrust(msgspec.Struct):
 
     def is_stuck(self, kind: Parameters, fix: PlaceFix, walked_m: float) -> bool:
         """The very same place again and again while the wearer walks on."""
-        place = (fix.north_m, fix.east_m)
+        place = fix.seen_m or (fix.north_m, fix.east_m)
         if self.last_fix_m != place:
             self.last_fix_m, self.same_fixes, self.same_since_m = place, 1, walked_m
             return False
