@@ -37,6 +37,13 @@ def test_a_rate_is_set_once_however_often_it_is_asked(desk, rates):
     assert second.header.seq == first.header.seq + 1
 
 
+@pytest.mark.parametrize("rate_hz", [0.1, 50.0])
+def test_the_least_and_the_most_that_the_station_offers_are_taken(desk, rates, rate_hz):
+    asked = command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz)
+    assert desk.take(asked).state is CommandState.RECEIVED
+    assert rates == [rate_hz]
+
+
 @pytest.mark.parametrize("rate_hz", [0.0, 0.01, 51.0])
 def test_a_rate_out_of_range_is_refused_with_the_reason(desk, rates, rate_hz):
     reply = desk.take(command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz))

@@ -95,6 +95,18 @@ def test_what_a_disk_refuses_is_written_when_it_has_room(spool, journal, full_di
     assert journal.fault is None
 
 
+def test_nobody_waits_for_longer_than_the_disk_takes(spool, journal, monkeypatch, full_disk):
+    """What is said would be on the air a second late, all of it."""
+    monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 1e6)
+    journal.write([mayday(1)])
+    assert kept(spool) == [1]
+    with full_disk():
+        journal.write([mayday(2)])
+        journal.write([mayday(3)])
+        assert journal.fault is not None
+    assert kept(spool) == [1]
+
+
 def test_a_disk_that_has_just_refused_is_not_asked_at_every_message(spool, journal, monkeypatch):
     """Thousands wait: to offer them ten times a second leaves the tracker no processor."""
     offered: list[int] = []

@@ -85,6 +85,19 @@ def test_a_coarse_sensor_that_lies_still_repeats_itself_and_is_well(hung: slice)
     assert told(SensorHealth(), imu_of(rows)) == []
 
 
+@pytest.mark.parametrize("hung", [slice(0, 3), slice(3, 6)])
+def test_what_moved_in_a_hole_is_not_known(hung: slice) -> None:
+    """It lies as it did before, on a coarse sensor, and was turned while nobody saw it."""
+    rows = 0.1 * np.random.default_rng(3).normal(size=(4 * RATE_HZ, 6))
+    rows[:, hung] = 1.0
+    turned = slice(200, 205)
+    rows[turned, slice(3, 6) if hung.start == 0 else slice(0, 3)] += 5.0
+    imu = imu_of(rows)
+    imu.t_ns[turned.start :] += 3 * NS_PER_S
+    (hole,) = told(SensorHealth(), imu)
+    assert hole.startswith("no inertial sample for 3.0 s")
+
+
 def test_an_axis_in_which_nothing_was_made_to_move_is_well() -> None:
     rows = moving()
     rows[:, (1, 5)] = 0.0  # a walk in a plane

@@ -334,7 +334,7 @@ def test_a_journal_of_which_nobody_can_be_told_what_is_in_it_is_begun_anew(tmp_p
     assert spool.damage == ""
     with pytest.raises(StoreError, match="malformed"):
         spool.boots()
-    spool.append([entry(2)])
+    spool.append([entry(2, EVENT)])
     assert "malformed" in spool.damage
     assert [(boot.boot_id, boot.first_seq, boot.last_seq) for boot in spool.boots()] == [(2, 2, 2)]
     assert spool.first_seq == 2
