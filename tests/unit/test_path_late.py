@@ -14,6 +14,14 @@ from shared.quality import Quality
 from tests.walked_path import at, fill
 
 
+def test_what_is_later_than_the_path_has_come_to_fills_nothing() -> None:
+    """Its clock was judged otherwise meanwhile."""
+    history = walked(60)
+    before = history.arrays()
+    fill(history, at(70.0, 70.0))
+    assert np.array_equal(history.arrays().t_ns, before.t_ns)
+
+
 def test_what_comes_late_fills_a_gap() -> None:
     history = PathHistory()
     for t_s in (0, 1, 2, 22, 23):
