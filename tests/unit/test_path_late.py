@@ -11,7 +11,7 @@ from base_station.fusion.path.points import DOUBTFUL, RESTART
 from base_station.fusion.port import Start
 from shared.clock import NS_PER_S
 from shared.quality import Quality
-from tests.walked_path import at, fill
+from tests.walked_path import at, fill, walked
 
 
 def test_what_is_later_than_the_path_has_come_to_fills_nothing() -> None:
