@@ -7,8 +7,11 @@ describe("words", () => {
     [-50, "0.0 s"],
     [440, "0.4 s"],
     [9_990, "9.9 s"],
+    [10_000, "10 s"],
     [42_900, "42 s"],
+    [60_000, "1 min 00 s"],
     [185_000, "3 min 05 s"],
+    [3_600_000, "1 h 00 min"],
     [4_320_000, "1 h 12 min"],
   ])("say %i ms as %s", (ms, text) => {
     expect(words.duration(ms)).toBe(text);
@@ -17,6 +20,29 @@ describe("words", () => {
   it("say an age no finer than it is worth", () => {
     expect(words.age(42_900)).toBe("42 s");
     expect(words.age(185_000)).toBe("3 min");
+  });
+
+  it.each([
+    [-1, "< 1 min"],
+    [59_999, "< 1 min"],
+    [60_000, "1 min"],
+    [3_599_000, "59 min"],
+    [7_500_000, "2 h 05 min"],
+  ])("say %i ms without seconds as %s", (ms, text) => {
+    expect(words.minutes(ms)).toBe(text);
+  });
+
+  it("say a date as everybody writes it", () => {
+    expect(words.dateAndTime(new Date(2026, 0, 9, 8, 5, 59).getTime())).toBe("2026-01-09 08:05");
+    expect(words.dateAndTime(new Date(2026, 11, 31, 23, 0).getTime())).toBe("2026-12-31 23:00");
+  });
+
+  it("say what a sensor says, and that it says nothing", () => {
+    expect(words.temperature(21.6)).toBe("22\u00a0°C");
+    expect(words.temperature(-0.6)).toBe("-1\u00a0°C");
+    expect(words.temperature(null)).toBe("no reading");
+    expect(words.percent(0.64)).toBe("64\u00a0%");
+    expect(words.percent(null)).toBe("unknown");
   });
 
   it("say how sure a position is", () => {
