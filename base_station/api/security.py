@@ -28,8 +28,8 @@ from base_station.networks import network_of
 
 COOKIE = "muster_session"
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-# What a standby lets people do all the same: log in, look, and make it lead.
-_AT_A_STANDBY = ("login", "logout", "replays", "standby")
+# What a station that changes nothing lets people do all the same: log in, look, and make it lead.
+_WITHOUT_CHANGES = ("login", "logout", "replays", "standby")
 _LOGINS_OF_ONE = 10  # a minute: one name from one place
 _LOGINS_OF_ALL = 60  # any name from one place
 _MINUTE_S = 60.0
@@ -82,12 +82,18 @@ def check_origin(connection: HTTPConnection) -> None:
 
 
 def check_standing(connection: HTTPConnection) -> None:
-    """Dependency of every route: of two stations, things are changed at the one that leads."""
-    standing = services_of(connection).standing
-    if standing is None or connection.scope.get("method", "GET") in _SAFE_METHODS:
+    """Dependency of every route: of two stations, things are changed at the one that leads, and at
+    one that only replays nothing is.
+    """
+    services = services_of(connection)
+    if connection.scope.get("method", "GET") in _SAFE_METHODS:
         return
     resource = connection.scope["path"].removeprefix("/api/v1/").partition("/")[0]
-    refusal = None if resource in _AT_A_STANDBY else standing.refusal()
+    if resource in _WITHOUT_CHANGES:
+        return
+    if services.only_replays:
+        raise Problem(409, "This station only replays; nothing can be changed here.")
+    refusal = None if services.standing is None else services.standing.refusal()
     if refusal is not None:
         raise Problem(503, f"Nothing was changed: {refusal}.")
 

@@ -46,6 +46,7 @@ class Services:
     clock: Clock
     secure: bool  # the console is served over TLS
     standing: Standing | None = None  # None: this is the only station
+    only_replays: bool = False  # what is changed would be lost with its copy of the database
     recordings: RecordingDesk | None = None  # None: a station that only replays
     hindsight: Hindsight | None = None  # None: a station without a log
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)

@@ -75,6 +75,7 @@ def run_replay_station(
             forgettings=None,
             clock=clock,
             secure=config.http.certificate is not None,
+            only_replays=True,
             hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
         )
         app = create_app(

@@ -76,7 +76,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
 SOCKETS = {"/live", "/replays/{replay_id}/live"}
 CHANGING = [r for routes in LEAST.values() for r in routes if not r.startswith("GET")]
 # Looking at the past changes nothing at the standby.
-AT_A_STANDBY = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /replays",
+WITHOUT_CHANGES = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /replays",
                 "POST /replays/{replay_id}", "DELETE /replays/{replay_id}",
                 "POST /standby/take-over"}  # fmt: skip
 # What leaves no entry: it changes nothing but what one looks at oneself.
@@ -188,7 +188,20 @@ async def test_a_standby_changes_nothing_by_any_route(
             method, path = route.split()
             answer = await client.request(method, concrete(path))
             refused = answer.status_code == 503 and "Nothing was changed" in answer.text
-            assert refused == (route not in AT_A_STANDBY), route
+            assert refused == (route not in WITHOUT_CHANGES), route
+
+
+async def test_a_station_that_only_replays_takes_nothing_that_would_be_lost(
+    station: DeskStation,
+) -> None:
+    services = dataclasses.replace(station.services, only_replays=True)
+    station.app.state.services = services
+    async with station.client(Role.ADMINISTRATOR) as client:
+        for route in CHANGING:
+            method, path = route.split()
+            answer = await client.request(method, concrete(path))
+            refused = answer.status_code == 409 and "only replays" in answer.text
+            assert refused == (route not in WITHOUT_CHANGES), route
 
 
 class Story:

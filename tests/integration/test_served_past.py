@@ -106,8 +106,8 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
                 assert shown["replay"]["speed"] == 20.0
                 assert shown["alarms"][0]["alarm_id"] == alarms[0]["alarm_id"]
                 assert [one["incident_id"] for one in onlooker.call("GET", "/replays")]
-                refused = onlooker.status("POST", "/incidents", json={"name": "x"})
-                assert refused == 409
+                for what in ("/incidents", "/people"):
+                    assert onlooker.status("POST", what, json={"name": "x"}) == 409
             assert replaying.stop() == 0
         made = {path.suffix for path in set(data.rglob("*")) - before}
         assert made <= {".checkpoint", ".mcap", ".sqlite-wal", ".sqlite-shm"}  # by the live one
