@@ -27,7 +27,8 @@ async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> No
             await Request(scope, receive).body()
         except ClientDisconnect:
             return
-        await PlainTextResponse("here")(scope, receive, send)
+        asks = f"{scope['client'][0]} {scope['scheme']} " if scope["path"] == "/who" else ""
+        await PlainTextResponse(f"{asks}here")(scope, receive, send)
 
 
 @pytest_asyncio.fixture
@@ -103,6 +104,26 @@ async def test_one_place_has_only_so_many(port: int) -> None:
         while not (answer := await asked(port)):
             await asyncio.sleep(0.02)
     assert answer == b"HTTP/1.1 200 OK"
+
+
+async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "_MOST_CONNECTIONS", 3)
+    streams = [await connect(port, f"127.0.0.{number}") for number in range(1, 6)]
+    for _, writer in streams:
+        writer.write(GET + b"\r\n")
+    answers = await asyncio.gather(*map(answer_of, streams), return_exceptions=True)
+    assert sum(isinstance(one, bytes) for one in answers) == 3
+    for _, writer in streams:
+        writer.close()
+
+
+async def test_who_asks_is_who_connected_whatever_a_header_says(port: int) -> None:
+    stream = await connect(port)
+    said = b"X-Forwarded-For: 192.0.2.1\r\nX-Forwarded-Proto: https\r\n\r\n"
+    stream[1].write(GET.replace(b"/ ", b"/who ") + said)
+    answer = await stream[0].readuntil(b"here")
+    assert b"127.0.0.1 http here" in answer
+    stream[1].close()
 
 
 def test_a_network_of_ipv6_is_one_place() -> None:
