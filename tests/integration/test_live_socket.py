@@ -16,7 +16,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from base_station.api.routes import live
-from base_station.api.security import COOKIE
+from base_station.api.security import COOKIE, Scope
 from base_station.db.principals import Role
 from base_station.server import ConsoleServer, bind
 from shared.errors import StoreError
@@ -97,6 +97,30 @@ async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: s
 async def test_without_a_login_there_is_a_code_for_it(address: str) -> None:
     async with connect(f"ws://{address}/api/v1/live") as console:
         assert await close_code(console) == live.NOT_LOGGED_IN
+
+
+@pytest.mark.parametrize("path", ["live", "replays/none/live"])
+async def test_a_token_for_another_part_of_the_api_sees_nothing_live(
+    station: DeskStation, address: str, path: str
+) -> None:
+    accounts, url = station.services.accounts, f"ws://{address}/api/v1/{path}"
+    others = {scope.value for scope in Scope} - {"live"}
+    for scopes, code in ((others, live.NOT_LOGGED_IN), ({"live"}, live.NOT_FOUND)):
+        _, secret = accounts.add_token("viewer", "t", Role.VIEWER, None, scopes)
+        headers = {"Authorization": f"Bearer {secret}"}
+        async with connect(url, additional_headers=headers) as console:
+            if path == "live" and scopes == {"live"}:
+                assert (await heard(console))["type"] == "snapshot"
+            else:
+                assert await close_code(console) == code
+
+
+async def test_nothing_large_is_read_from_a_console(station: DeskStation, address: str) -> None:
+    url = f"ws://{address}/api/v1/live"
+    async with connect(url, additional_headers=token_of(station)) as console:
+        await heard(console)
+        await console.send('{"type": "snapshot"}' + " " * 5000)
+        assert await close_code(console) == 1009
 
 
 async def test_a_replay_that_is_not_there(station: DeskStation, address: str) -> None:
