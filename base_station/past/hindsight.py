@@ -23,6 +23,7 @@ from base_station.fusion.path.points import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
 from base_station.past.playback import Archive, Playback
+from base_station.pins.book import units_of
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pinning import floors_along
 from base_station.site.floor_grid import FloorGrid
@@ -210,7 +211,7 @@ def _read_report(kept: bytes) -> IncidentReport | None:
 
 def _smoothed_tracks(incident: Incident, known: Known) -> Tracks:
     return {
-        unit_id: _samples(incident, known.state, known.state.paths[unit_id].arrays(), path)
+        unit_id: _samples(incident, known, unit_id, path)
         for unit_id, path in known.solution.paths.items()
     }
 
@@ -223,10 +224,12 @@ def _raw_tracks(incident: Incident, known: Known) -> Tracks:
 
 
 def _samples(
-    incident: Incident, state: StationState, points: PathArrays, path: SmoothedPath
+    incident: Incident, known: Known, unit_id: str, path: SmoothedPath
 ) -> list[TrackSample]:
     """With the floors that were known at the end; they may have been learnt late."""
-    floors = floors_along(state, points, path.places_m)
+    points = known.state.paths[unit_id].arrays()
+    is_placed = _is_placed(known, unit_id, points)
+    floors = floors_along(known.state, points, path.places_m)
     heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
     return [
         TrackSample(
@@ -239,10 +242,19 @@ def _samples(
             std_down_m=float(path.std_down_m[row]),
             heading_rad=float(heading_rad[row]),
             floor=floors[row],
-            quality=_quality(path, row),
+            quality=_quality(path, row, is_placed=is_placed),
         )
         for row in _rows_within(incident, path)
     ]
+
+
+def _is_placed(known: Known, unit_id: str, points: PathArrays) -> bool:
+    """Whether anything ties its path to the incident frame; else it lies about its own start."""
+    verdicts, state = known.solution.verdicts, known.state
+    pins = (pin_id for pin_id, pin in state.pins.items() if unit_id in units_of(pin))
+    is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)
+    has_start = state.paths[unit_id].start_in_path is not None
+    return has_start or is_pinned or len(points.fix_t_ns) > 0
 
 
 def _raw(incident: Incident, points: PathArrays, path: SmoothedPath) -> list[TrackSample]:
@@ -284,9 +296,10 @@ def _floor(points: PathArrays, row: int) -> int | None:
     return None if floor == NO_FLOOR else floor
 
 
-def _quality(path: SmoothedPath, row: int) -> str:
+def _quality(path: SmoothedPath, row: int, *, is_placed: bool) -> str:
     spread_m = np.hypot(path.std_north_m[row], path.std_east_m[row])
-    return (Quality.GOOD if spread_m <= UNSURE_M else Quality.DEGRADED).name.lower()
+    is_good = is_placed and spread_m <= UNSURE_M
+    return (Quality.GOOD if is_good else Quality.DEGRADED).name.lower()
 
 
 def _without_empty(tracks: Tracks) -> Tracks:

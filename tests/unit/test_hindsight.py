@@ -26,7 +26,8 @@ from base_station.past.playback import Archive, Record
 from base_station.past.rebuild import project_log
 from shared.clock import ManualClock
 from shared.errors import StoreError
-from shared.messages.station import CloseIncident, OpenIncident, SetStart
+from shared.messages.pins import SetPin
+from shared.messages.station import CloseIncident, OpenIncident, SetAnchor, SetStart
 from tests.live_station import make_pipeline
 from tests.round_walk import Walk, truth
 from tests.station_script import START_NS, Script
@@ -260,6 +261,67 @@ def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Pat
         assert raw[end].heading_rad == pytest.approx(math.atan2(went_m[1], went_m[0]) % math.tau)
     assert raw[0].heading_rad == pytest.approx(1.0, abs=0.05), "as its start says"
     assert {one.quality for one in smoothed[:again]} == {"good"}
+
+
+def test_trails_are_of_the_incident_and_of_whom_it_heard(store: Store, tmp_path: Path) -> None:
+    """Both were on before, and one was switched off by then."""
+    script = Script()
+    script.register("FF-01", "FF-02")
+    for second in range(50):
+        script.now_s += 1.0
+        if second == 20:
+            script.act(OpenIncident("i1", "Mill Lane"))
+            opened_ns = script.t_ns
+        for unit_id in ("FF-01", "FF-02") if second < 20 else ("FF-01",):
+            script.position(unit_id, 1.0 * second, 0.0)
+    script.act(CloseIncident("i1"))
+    archive = Archive(
+        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
+        Checkpoints(tmp_path / "checkpoints"),
+        make_pipeline,
+    )
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    incident = Incident(
+        incident_id="i1", name="Mill Lane", opened_ns=opened_ns, closed_ns=script.t_ns
+    )
+    for tracks in (hindsight.smoothed(incident).tracks, hindsight.raw(incident)):
+        (track,) = tracks.values()
+        assert list(tracks) == ["FF-01"]
+        assert opened_ns <= track[0].t_ns < opened_ns + 3 * 10**9
+        assert track[-1].t_ns == script.t_ns
+    assert {one.quality for one in hindsight.smoothed(incident).tracks["FF-01"]} == {"degraded"}
+
+
+@pytest.mark.parametrize("told", ["start", "pin", "fix", "nothing"])
+def test_whose_beginning_nothing_told_is_not_called_well_known(
+    told: str, store: Store, tmp_path: Path
+) -> None:
+    """As it was shown live: about the unit's own start."""
+    script = Script()
+    script.register("FF-01")
+    script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    if told == "start":
+        script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
+    for second in range(40):
+        script.now_s += 1.0
+        script.position("FF-01", 1.0 * second, 0.0, distance_m=1.0 * second)
+        if told == "fix":
+            script.gps("FF-01", 52.0 + second / 111_275.0, 4.0, horizontal_std_m=1.5)
+    if told == "pin":
+        script.act(SetPin("p", "FF-01", script.t_ns, 40.0, 0.0, 0.5, None, None, 0.0, ""))
+    script.act(CloseIncident("i1"))
+    archive = Archive(
+        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
+        Checkpoints(tmp_path / "checkpoints"),
+        make_pipeline,
+    )
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    incident = Incident(
+        incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
+    )
+    last = hindsight.smoothed(incident).tracks["FF-01"][-1]
+    assert last.quality == ("degraded" if told == "nothing" else "good")
 
 
 def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(past: Past) -> None:
