@@ -101,6 +101,19 @@ def read_issued(certificate_pem: bytes, key_pem: bytes) -> Issued:
     return Issued(certificate, key)
 
 
+def stands_for(certificate_pem: bytes, host: str) -> bool:
+    """Whether who reaches a station as ``host`` believes it by this certificate."""
+    certificate = parse_certificate(certificate_pem, "station's certificate")
+    try:
+        names = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    except x509.ExtensionNotFound:
+        return False
+    wanted = _general_name(host.encode("idna").decode().lower())
+    if isinstance(wanted, x509.IPAddress):
+        return wanted in names
+    return wanted.value in [one.lower() for one in names.get_values_for_type(x509.DNSName)]
+
+
 def _builder(
     subject: x509.Name,
     issuer: x509.Name,

@@ -12,7 +12,9 @@ import secrets
 import time
 from pathlib import Path
 
+from base_station.config import endpoint_address
 from base_station.pki.access import access_control, seldom_asked
+from base_station.pki.certificates import stands_for
 from base_station.pki.folder import PkiFolder
 from base_station.router.neighbour import Neighbour, listens
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
@@ -42,9 +44,20 @@ def endpoint_of(
 
 
 def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
-    """How the station itself joins its router; over TLS with a right to everything."""
+    """How the station itself joins its router; over TLS with a right to everything.
+
+    Raises ConfigError where it could not: Zenoh would only say that time ran out.
+    """
     own = listen[0].replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
-    identity = PkiFolder(data).station_identity() if _is_secure(listen) else None
+    if not _is_secure(listen):
+        return ClientEndpoint((own,))
+    identity, (host, _) = PkiFolder(data).station_identity(), endpoint_address(own)
+    if not stands_for(identity.certificate, host):
+        raise ConfigError(
+            f"the station's certificate does not stand for {host}, where the bus listens: listen "
+            "on all addresses, tls/0.0.0.0:PORT, or make one that does with `muster pki "
+            f"renew-station --host {host}`, with a --host for each other address that units use"
+        )
     return ClientEndpoint((own,), identity)
 
 

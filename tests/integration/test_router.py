@@ -188,3 +188,13 @@ def test_the_station_finds_its_router_on_the_loopback(tmp_path: Path) -> None:
         (("tcp/192.0.2.7:7447", "tcp/0.0.0.0:1"), "tcp/192.0.2.7:7447"),
     ):
         assert station_endpoint(tmp_path, listen).connect == (found,)
+
+
+def test_a_station_that_its_own_certificate_keeps_out_is_told_at_once(tmp_path: Path) -> None:
+    pki = PkiFolder(tmp_path)
+    pki.create("Test", hosts=["192.0.2.7", "Station.local", "fd00::7"], connect=[])
+    for host in ("0.0.0.0", "[::]", "192.0.2.7", "station.LOCAL", "[fd00:0::7]", "localhost"):
+        station_endpoint(tmp_path, (f"tls/{host}:7447",))
+    for host in ("192.0.2.8", "other.local", "m\u00fcller.local", "[fd00::8]"):
+        with pytest.raises(ConfigError, match=r"does not stand for .*renew-station --host"):
+            station_endpoint(tmp_path, (f"tls/{host}:7447",))
