@@ -12,6 +12,7 @@ import httpx
 import pytest
 import pytest_asyncio
 
+from base_station.api.app import create_app
 from base_station.api.routes import ROUTERS
 from base_station.api.security import COOKIE, Scope
 from base_station.db.accounts import MOST_TOKENS, SESSION_S
@@ -239,8 +240,22 @@ async def test_security_headers_are_on_every_answer(station: DeskStation) -> Non
         for path in ("/me", "/nothing", f"{ORIGIN}/", f"{ORIGIN}/nothing"):
             headers = (await client.get(path)).headers
             assert headers["content-security-policy"].startswith("default-src 'self'")
+            assert "frame-ancestors 'none'" in headers["content-security-policy"]
             assert headers["x-content-type-options"] == "nosniff"
             assert headers["x-frame-options"] == "DENY"
+            assert headers["cross-origin-resource-policy"] == "same-origin"
+            assert headers["referrer-policy"] == "no-referrer"
+            assert "strict-transport-security" not in headers
+        assert (await client.get("/me")).headers["cache-control"] == "no-store"
+
+
+async def test_over_tls_browsers_are_told_to_stay_with_it(station: DeskStation) -> None:
+    services = dataclasses.replace(station.services, secure=True)
+    app = create_app(services, started=lambda _: None)
+    transport = httpx.ASGITransport(app)
+    async with httpx.AsyncClient(transport=transport, base_url=ORIGIN) as client:
+        answer = await client.get("/api/v1/me")
+    assert answer.headers["strict-transport-security"] == "max-age=31536000"
 
 
 async def test_a_login_ends_the_one_before_it_in_the_same_browser(
