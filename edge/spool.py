@@ -12,6 +12,7 @@ new one is begun beside it, and takes its name at the next start.
 from __future__ import annotations
 
 import heapq
+import logging
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing
@@ -24,6 +25,8 @@ from edge.journal_file import DAMAGE, NO_JOURNAL, REFUSAL, anew, code_of, connec
 from shared.channels import GPS, IMU, POSITION, Channel, Qos
 from shared.errors import StoreError
 from shared.messages import JournalBoot, JournalEntry
+
+logger = logging.getLogger(__name__)
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS boot (
@@ -115,22 +118,26 @@ class Spool:
     ) -> Iterator[JournalEntry]:
         """What is kept of these sequence numbers, in order; both ends belong to the range.
 
-        Of all, or of ``URGENT`` or ``RAW`` messages only.
+        Of all, or of ``URGENT`` or ``RAW`` messages only.  What damage hides is not kept any more:
+        else nothing behind it would ever be asked for.
 
         Reads while it is iterated, beside the writer.
         """
         with in_words(self._path), closing(connect(self._path)) as reader:
-            parts = [
-                reader.execute(
-                    "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
-                    "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
-                    "seq BETWEEN ? AND ? ORDER BY seq",
-                    (worth, boot_id, from_seq, to_seq),
-                )
-                for worth in worths
-            ]
-            for row in heapq.merge(*parts, key=itemgetter(0)):
-                yield JournalEntry(*row)
+            past = 1
+            while from_seq <= to_seq:
+                try:
+                    for entry in _entries(reader, boot_id, from_seq, to_seq, worths):
+                        yield entry
+                        from_seq, past = entry.seq + 1, 1
+                except sqlite3.Error as error:
+                    if code_of(error) not in DAMAGE:
+                        raise
+                    if past == 1:
+                        logger.warning("the journal is damaged at message %d: %s", from_seq, error)
+                    from_seq, past = from_seq + past, 2 * past
+                else:
+                    return
 
     def boots(self) -> tuple[JournalBoot, ...]:
         """What can be served, oldest boot first; boots of which nothing is left are not named."""
@@ -288,6 +295,26 @@ def open_spool(
     with in_words(path):
         rename(path, aside)
     return Spool(path, new_boot_id, started_utc_ns, limit_bytes), aside
+
+
+def _entries(
+    connection: sqlite3.Connection,
+    boot_id: int,
+    from_seq: int,
+    to_seq: int,
+    worths: Sequence[int],
+) -> Iterator[JournalEntry]:
+    parts = [
+        connection.execute(
+            "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
+            "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
+            "seq BETWEEN ? AND ? ORDER BY seq",
+            (worth, boot_id, from_seq, to_seq),
+        )
+        for worth in worths
+    ]
+    for row in heapq.merge(*parts, key=itemgetter(0)):
+        yield JournalEntry(*row)
 
 
 def _boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import logging
+import sqlite3
+from contextlib import closing
 
 import pytest
 
@@ -12,6 +14,11 @@ from edge.spool import Journaled, Spool
 from shared.channels import EVENT, IMU, POSITION
 from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalIndex
+
+SOME_LEAF = (
+    "SELECT pageno FROM dbstat WHERE name = 'message' AND pagetype = 'leaf' ORDER BY path "
+    "LIMIT 1 OFFSET 20"
+)
 
 
 @pytest.fixture
@@ -92,6 +99,30 @@ def test_of_a_boot_of_which_nothing_is_left_all_is_called_gone(tmp_path):
     (chunk,) = chunks(spool, "epoch=1234;from=1;to=5")
     assert (chunk.from_seq, chunk.to_seq, chunk.entries) == (1, 5, ())
     spool.close()
+
+
+def test_what_lies_behind_damage_is_given_all_the_same(spool, tmp_path):
+    """A page that cannot be read would be asked for every second, and nothing else of that boot."""
+    spool.append([Journaled(seq, POSITION, 0, bytes(100)) for seq in range(101, 2001)])
+    spool.close()
+    file = tmp_path / "journal.sqlite"
+    with closing(sqlite3.connect(file)) as journal:
+        (page,) = journal.execute(SOME_LEAF).fetchone()
+        (page_bytes,) = journal.execute("PRAGMA page_size").fetchone()
+    content = bytearray(file.read_bytes())
+    content[(page - 1) * page_bytes : page * page_bytes] = b"\xff" * page_bytes
+    file.write_bytes(content)
+    damaged = Spool(file, lambda: 10, 123, 10**8)
+    answers = chunks(damaged, "epoch=9;from=1;to=2000")
+    assert (answers[0].from_seq, answers[-1].to_seq) == (1, 2000)
+    assert [chunk.from_seq for chunk in answers[1:]] == [c.to_seq + 1 for c in answers[:-1]]
+    kept = [entry.seq for chunk in answers for entry in chunk.entries]
+    (hole,) = [
+        after - before for before, after in itertools.pairwise(kept[49:]) if after > before + 1
+    ]
+    assert 10 < hole < 100
+    assert len(kept) == 2000 - hole
+    damaged.close()
 
 
 def test_the_alerts_of_a_range_are_given_by_themselves(spool):
