@@ -199,6 +199,26 @@ def test_a_reader_that_is_gone_is_opened_again(slashes: str) -> None:
     assert 0 < found[0][1].t_ns <= time.monotonic_ns()
 
 
+def test_that_a_reader_is_gone_is_told_once_until_it_is_back(caplog) -> None:
+    reader = SightingReader("/dev/nowhere", SystemClock())
+    cable_is_out = FileNotFoundError(2, "No such file or directory")
+    reader.gone(cable_is_out)
+    reader.gone(cable_is_out)
+    reader.gone(None)  # whoever said the last line has closed a pipe, as is usual
+    assert len(caplog.records) == 1
+    reader.opened()
+    reader.gone(cable_is_out)
+    assert [one.levelname for one in caplog.records].count("WARNING") == 2
+
+
+def test_a_reader_that_is_closed_reads_no_more(tmp_path: Path) -> None:
+    before = set(threading.enumerate())
+    reader = SightingReader(str(tmp_path / "nowhere"), SystemClock())
+    reader.start()
+    reader.close()
+    assert set(threading.enumerate()) <= before
+
+
 def test_a_reader_that_is_not_there_delays_nothing(tmp_path: Path) -> None:
     source = beside(SightingReader(str(tmp_path / "nowhere"), SystemClock()), is_live=True)
     source.start()
