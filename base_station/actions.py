@@ -213,6 +213,7 @@ def _open(state: StationState, by: str, action: OpenIncident) -> Iterable[UnitSt
         unit.trail.clear()
         unit.trust = TrustTally()
         unit.inside_since_ns = None
+        unit.heat_dose = 0.0
         accountability.begin(state, unit, by)
     return state.units.values()
 

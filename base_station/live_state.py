@@ -91,7 +91,7 @@ class UnitState(Sender):
     status_ns: int = 0
     temperature: Temperature | None = None
     temperature_ns: int = 0
-    heat_dose: float = 0.0  # 1: the equipment's heat budget is used up
+    heat_dose: float = 0.0  # in this incident; 1: the equipment's heat budget is used up
     position: Position | None = None
     position_ns: int = 0
     degraded_since_ns: int | None = None

@@ -62,7 +62,7 @@ def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> N
     if unit.temperature is not None:
         elapsed_s = (temperature.header.t_mono_ns - unit.temperature.header.t_mono_ns) / NS_PER_S
         if temperature.header.boot_id == unit.temperature.header.boot_id:
-            lasted_s = min(elapsed_s, LONGEST_DOSE_STEP_S)
+            lasted_s = min(max(elapsed_s, 0.0), LONGEST_DOSE_STEP_S)  # its clock may be set back
             unit.heat_dose += dose_of(unit.temperature.ambient_degc, lasted_s)
     unit.temperature, unit.temperature_ns = temperature, t_ns
 

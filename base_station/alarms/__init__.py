@@ -14,6 +14,7 @@ from base_station.alarms.calibration import Calibration
 from base_station.alarms.cloned_unit import ClonedUnit
 from base_station.alarms.fall import Fall
 from base_station.alarms.heat import Heat
+from base_station.alarms.heat_dose import HeatDose
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.mayday import Mayday
 from base_station.alarms.missed_check_in import MissedCheckIn
@@ -32,6 +33,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     NoMotion(),
     MissedCheckIn(),
     Heat(),
+    HeatDose(),
     Battery(),
     LinkLost(),
     TrackerDegraded(),

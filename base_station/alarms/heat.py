@@ -1,4 +1,4 @@
-"""The air around the equipment is hot, or has been for so long that the unit may fail.
+"""The air around the equipment is hot.
 
 Thermal classes and the dose: ``base_station.thermal``.
 """
@@ -21,7 +21,6 @@ class Heat:
     warning_degc: float = WARNING_DEGC
     critical_degc: float = CRITICAL_DEGC
     hysteresis_degc: float = 10.0
-    warning_dose: float = 1.0
     name: str = "heat"
     levels: tuple[str, ...] = ("caution", "warning", "critical")
     clear_after_s: float = 10.0
@@ -34,8 +33,6 @@ class Heat:
             return None
         ambient_degc = unit.temperature.ambient_degc
         found = self._level(ambient_degc, level)
-        if unit.heat_dose >= self.warning_dose and found in {"", "caution"}:
-            found = "warning"
         if not found:
             return Clear(unit.temperature_ns, "cooled down")
         return Finding(

@@ -65,6 +65,7 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
     unit.heard_ns = seen_ns - 60 * NS_PER_S
     unit.status = msgspec.structs.replace(unit.status, motionless_s=60.0, battery=0.05, mayday=True)
     unit.temperature = Temperature(HEADER, 300.0)
+    unit.heat_dose = 2.0
     unit.position = msgspec.structs.replace(unit.position, quality=Quality.LOST, distance_m=3000.0)
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
     unit.mayday_ns = unit.fall_ns = seen_ns

@@ -15,6 +15,8 @@ from base_station.pipeline import StationPipeline
 from shared.messages import AlarmState, EventKind, Message, Position, Status, UnitEvent
 from shared.messages.station import (
     AcknowledgeAlarm,
+    CloseIncident,
+    OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
@@ -194,11 +196,35 @@ def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
     assert changes(script, "heat") == [("RAISED", "caution")]
 
 
-def test_a_used_up_heat_budget_is_a_warning_below_the_limit(script: Script) -> None:
+def test_a_used_up_heat_budget_is_told_below_every_limit(script: Script) -> None:
     script.wait(1600, lambda: script.temperature(U, 90.0))
-    assert changes(script, "heat") == [("RAISED", "warning")]
+    assert changes(script, "heat") == []
+    assert changes(script, "heat-dose") == [("RAISED", "used up")]
     raised_s = (script.alarms[0].raised_ns - script.records[0][0]) / 1e9
     assert raised_s == pytest.approx(1501.0, abs=2.0)
+
+
+def test_a_used_up_heat_budget_hides_no_heat_and_is_whole_in_another_incident(
+    script: Script,
+) -> None:
+    def hot(degc: float, duration_s: float) -> None:
+        script.wait(duration_s, lambda: script.temperature(U, degc))
+
+    script.act(OpenIncident("i1", "Mill Lane"))
+    hot(300.0, 65.0)
+    for alarm in [one for one in script.alarms if one.rule.startswith("heat")]:
+        script.act(ResolveAlarm(alarm.alarm_id, "seen"))
+    hot(20.0, 30.0)
+    hot(200.0, 5.0)
+    assert changes(script, "heat")[-1] == ("RAISED", "warning")
+    assert changes(script, "heat-dose") == [("RAISED", "used up"), ("RESOLVED", "used up")]
+    hot(20.0, 30.0)
+    script.act(CloseIncident("i1"))
+    script.act(OpenIncident("i2", "Dock Street"))
+    hot(20.0, 5.0)
+    assert script.pipeline.state.units[U].heat_dose == 0.0
+    hot(300.0, 65.0)
+    assert changes(script, "heat-dose")[2:] == [("RAISED", "used up")]
 
 
 def test_silence_resolves_nothing(script: Script) -> None:

@@ -7,6 +7,7 @@ import pytest
 from base_station.alarms.battery import Battery
 from base_station.alarms.cloned_unit import ClonedUnit
 from base_station.alarms.heat import Heat
+from base_station.alarms.heat_dose import HeatDose
 from base_station.alarms.link_lost import LinkLost
 from base_station.alarms.no_motion import NoMotion
 from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, AlarmRule, Clear, Finding
@@ -53,28 +54,31 @@ def test_the_battery(battery: float | None, standing: str, found: str | None) ->
 
 
 @pytest.mark.parametrize(
-    ("ambient_degc", "dose", "standing", "found"),
+    ("ambient_degc", "standing", "found"),
     [
-        (99.9, 0.0, "", "over"),
-        (100.0, 0.0, "", "caution"),
-        (159.9, 0.0, "", "caution"),
-        (160.0, 0.0, "", "warning"),
-        (259.9, 0.0, "", "warning"),
-        (260.0, 0.0, "", "critical"),
-        (250.0, 0.0, "critical", "critical"),
-        (249.9, 0.0, "critical", "warning"),
-        (150.0, 0.0, "caution", "caution"),
-        (90.0, 0.0, "caution", "caution"),
-        (89.9, 0.0, "caution", "over"),
-        (20.0, 0.99, "", "over"),
-        (20.0, 1.0, "", "warning"),
-        (120.0, 1.0, "", "warning"),
-        (260.0, 1.0, "", "critical"),
+        (99.9, "", "over"),
+        (100.0, "", "caution"),
+        (159.9, "", "caution"),
+        (160.0, "", "warning"),
+        (259.9, "", "warning"),
+        (260.0, "", "critical"),
+        (250.0, "critical", "critical"),
+        (249.9, "critical", "warning"),
+        (150.0, "caution", "caution"),
+        (90.0, "caution", "caution"),
+        (89.9, "caution", "over"),
     ],
 )
-def test_heat(ambient_degc: float, dose: float, standing: str, found: str) -> None:
-    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc), heat_dose=dose)
+def test_heat(ambient_degc: float, standing: str, found: str) -> None:
+    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc))
     assert judged(Heat(), unit, standing) == found
+
+
+@pytest.mark.parametrize(("dose", "found"), [(0.99, "over"), (1.0, "used up")])
+@pytest.mark.parametrize("ambient_degc", [20.0, 300.0])
+def test_heat_dose(dose: float, ambient_degc: float, found: str) -> None:
+    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc), heat_dose=dose)
+    assert judged(HeatDose(), unit) == found
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import pytest
 
 from base_station.live_state import UnitState
 from base_station.thermal import dose_of
+from shared.messages import Temperature
 from tests.station_script import Script
 
 U = "FF-01"
@@ -49,6 +50,12 @@ def test_a_reading_counts_until_the_next_but_not_through_a_silence(
     script.now_s += 60.0
     script.temperature(U, 20.0)
     assert unit(script).heat_dose == pytest.approx(counted_s / 60.0)
+
+
+def test_a_unit_whose_clock_is_set_back_takes_nothing_from_its_dose(script: Script) -> None:
+    script.say(Temperature(script.header(U, captured_s=-500.0), 300.0))
+    assert unit(script).temperature is not None
+    assert unit(script).heat_dose == 0.0
 
 
 def test_the_time_between_two_runs_of_a_unit_is_not_known(script: Script) -> None:

@@ -1,0 +1,35 @@
+"""The equipment has been hot for so long in this incident that it may fail, however cool it is now.
+
+Thermal classes and the dose: ``base_station.thermal``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.messages import Message, Temperature
+
+
+@dataclass(frozen=True, slots=True)
+class HeatDose:
+    used_up: float = 1.0
+    name: str = "heat-dose"
+    levels: tuple[str, ...] = ("used up",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = (Temperature,)
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.temperature is None:
+            return None
+        if unit.heat_dose < self.used_up:
+            return Clear(unit.temperature_ns, "another incident")
+        return Finding(
+            "used up",
+            SOON,
+            f"The equipment of {unit.name} has used up its heat budget: it may fail",
+            seen_ns=unit.temperature_ns,
+        )
