@@ -120,7 +120,7 @@ def test_a_port_in_use_is_named(tmp_path: Path, taken: str) -> None:
 def test_plain_connections_from_elsewhere_must_be_asked_for(tmp_path: Path) -> None:
     with Command(
         tmp_path / "output.txt",
-        *("serve", "--data", str(tmp_path / "data"), "--listen", "tcp/0.0.0.0:0"),
+        *("serve", "--data", str(tmp_path / "data"), "--listen", "tcp/0.0.0.0:7447"),
     ) as station:
         assert station.wait() == 2
         assert "--insecure" in station.said()
