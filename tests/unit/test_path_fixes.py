@@ -8,8 +8,9 @@ import pytest
 from base_station.fusion.path.frame_shift import FrameShift
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import FIX_ROW
-from base_station.fusion.port import PlaceFix
+from base_station.fusion.port import Estimate, PlaceFix
 from shared.clock import NS_PER_S
+from shared.quality import Quality
 from tests.walked_path import at, fill, walked
 
 
@@ -98,6 +99,20 @@ def test_one_fix_that_lies_elsewhere_is_enough_to_place_its_unit_again() -> None
     assert history.arrays().fix_m.tolist() == [[10.0, 2.0]]
 
 
+def test_what_was_estimated_with_fixes_that_lie_elsewhere_tells_nothing() -> None:
+    """Neither of late nor long ago."""
+    history = PathHistory()
+    taken(history, 1.0)
+    for second in range(400):
+        history.note(at(second, 1.0 * second), second * NS_PER_S, jumped=False)
+        place = 1.0 * second, 0.0, 0.0, 0.5, 0.5, 0.5
+        history.show(Estimate(0, *place, 0.0, 0.0, 0.1, Quality.GOOD, "", None), None)
+    assert history.packed
+    assert (history.arrays().shown_std_m == 0.5).all()
+    assert history.move_fixes(0.0, 0.0, 2.0)
+    assert not history.arrays().shown_std_m.any()
+
+
 def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:
     history = walked(20)
     assert not history.move_fixes(0.3, 1.0, 2.0)
@@ -112,4 +127,3 @@ def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:
     expected_m = [FrameShift(-0.7, 10.0, 4.0).place(*place_m) for place_m in before.fix_m.tolist()]
     assert after.fix_m == pytest.approx(np.array(expected_m), abs=0.04)
     assert np.array_equal(after.shown_m, before.shown_m)
-    assert not after.shown_std_m.any(), "what was estimated with them tells nothing"
