@@ -23,7 +23,7 @@ from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos
 from shared.codec import decode
 from shared.errors import BusError, RecordingError, StoreError
 from shared.messages import EventKind, UnitEvent
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 
 class Station:
@@ -146,6 +146,32 @@ def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
+def test_a_link_that_is_back_before_it_is_known_why_it_was_not_is_not_called_away(
+    station, caplog, monkeypatch
+):
+    monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.01)
+    bus = station.router.attach_unit()
+    bus.link_down()
+    asked, answers = threading.Event(), threading.Event()
+
+    class Slow(OtherEnd):
+        def why_no_link(self) -> str:
+            asked.set()
+            answers.wait(PATIENCE_S)
+            return "nobody is there"
+
+    before = set(threading.enumerate())
+    with caplog.at_level(logging.INFO):
+        link = make_link(lambda: bus, [], Slow(lambda: bus))
+        assert asked.wait(PATIENCE_S)
+        bus.link_up()
+        until(lambda: "linked to the station" in caplog.text)
+        answers.set()
+        link.close()
+        until(lambda: set(threading.enumerate()) <= before)
+    assert "no link" not in caplog.text
+
+
 def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.005)
     monkeypatch.setattr("edge.link._REOPEN_AFTER_S", 0.05)
@@ -168,7 +194,9 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
 
 
 def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, monkeypatch):
+    """One that never was is given longer: connecting takes a moment."""
     monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.005)
+    monkeypatch.setattr("edge.link._REOPEN_AFTER_S", 1e6)
     opened = []
 
     def open_bus():
