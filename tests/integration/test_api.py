@@ -54,6 +54,7 @@ async def test_a_person_gets_a_photo_and_a_unit(
     picture = Image.open(io.BytesIO(got.content))
     assert (picture.format, picture.size) == ("JPEG", (320, 320))
     assert not picture.getexif()
+    assert got.headers["cache-control"] == "private, max-age=86400"  # by no proxy's cache
 
     assert (await commander.post("/units", json={"unit_id": "FF-01"})).status_code == 201
     clock.advance(1.0)

@@ -45,6 +45,7 @@ async def test_a_map_is_set_seen_and_removed(station: DeskStation) -> None:
         image = await admin.get(said["image_url"].removeprefix("/api/v1"))
         assert image.headers["content-type"] == "image/webp"
         assert image.headers["x-content-type-options"] == "nosniff"
+        assert image.headers["cache-control"] == "private, max-age=86400"
         assert Image.open(io.BytesIO(image.content)).size == (200, 100)
         assert (await admin.delete("/site/base-map")).status_code == 204
         assert (await admin.delete("/site/base-map")).status_code == 404
