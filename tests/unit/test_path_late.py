@@ -14,6 +14,25 @@ from shared.quality import Quality
 from tests.walked_path import at, fill, walked
 
 
+def test_a_gap_over_which_the_path_broke_is_not_filled() -> None:
+    """Nobody knows on which side of the leap it was."""
+    history = PathHistory()
+    for t_s in (0, 1, 2, 22, 23):
+        history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=t_s == 22)
+    before = history.arrays()
+    fill(history, at(12.0, 12.0))
+    assert np.array_equal(history.arrays().t_ns, before.t_ns)
+
+
+def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
+    history = walked(400)
+    del history.points[:30]
+    before, first_ns = history.arrays(), history.points[0].t_ns
+    assert history.packed
+    fill(history, at(first_ns / NS_PER_S - 10.0, 0.0))
+    assert np.array_equal(history.arrays().t_ns, before.t_ns)
+
+
 def test_what_is_later_than_the_path_has_come_to_fills_nothing() -> None:
     """Its clock was judged otherwise meanwhile."""
     history = walked(60)

@@ -63,6 +63,26 @@ def test_a_run_that_was_over_before_an_incident_is_no_part_of_its_path() -> None
     assert np.count_nonzero(history.arrays().flags & RESTART) == 1
 
 
+def test_of_a_run_that_went_on_in_an_incident_what_was_before_stays_when_the_next_begins() -> None:
+    """Where it led tells where the wearer was as it was opened."""
+    history = PathHistory()
+    for second in range(0, 40, 10):
+        if second == 20:
+            history.begin_incident(15 * NS_PER_S, 0)
+        history.note(at(float(second), 1.0 * second), second * NS_PER_S, jumped=False)
+    history.note(at(50.0, 0.0, boot_id=2), 50 * NS_PER_S, jumped=False)
+    assert history.begin_ns == 0
+    assert len(history.arrays()) == 5
+
+
+def test_of_a_unit_of_which_nothing_is_wanted_any_more_the_next_run_is_the_path() -> None:
+    history = walked(20)
+    history.begin_incident(30 * NS_PER_S, 25 * NS_PER_S)
+    assert history.begin_ns is None
+    assert history.note(at(40.0, 0.0, boot_id=2), 40 * NS_PER_S, jumped=False)
+    assert history.begin_ns == 40 * NS_PER_S
+
+
 def test_a_start_is_of_the_path_as_long_as_its_run_is() -> None:
     start, history, held = Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2), PathHistory(), []
     history.begin_with(start)
