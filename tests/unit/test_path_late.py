@@ -24,6 +24,18 @@ def test_a_gap_over_which_the_path_broke_is_not_filled() -> None:
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
 
+def test_of_a_run_nothing_lies_within_the_one_before() -> None:
+    """Its clock is wrong where it says so."""
+    history = PathHistory()
+    for t_s in (0, 10, 20):
+        history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
+    history.note(at(30.0, 0.0, boot_id=2), 30 * NS_PER_S, jumped=False)
+    before = history.arrays()
+    fill(history, at(15.0, 3.0, boot_id=2))
+    assert np.array_equal(history.arrays().t_ns, before.t_ns)
+    assert history.boot_begin_ns == 30 * NS_PER_S
+
+
 def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
     history = walked(400)
     del history.points[:30]

@@ -81,6 +81,23 @@ def test_it_does_what_it_says() -> None:
     assert np.mean(said2) < 0.85 * STD_M**2
 
 
+@pytest.mark.parametrize("t_s", [30, 59], ids=["out of a journal", "again"])
+def test_what_was_known_before_is_not_told_again(t_s: int) -> None:
+    sky = after(60.0)
+    sky.note(t_s * NS_PER_S, (4.0, -1.0), STD_M, 0.3)
+    assert (sky.mean_m, sky.covariance_m2) == (after(60.0).mean_m, after(60.0).covariance_m2)
+
+
+def test_a_fix_that_claims_less_tells_less() -> None:
+    moved_m = []
+    for std_m in (STD_M, 2.0 * STD_M):
+        sky = after(60.0)
+        before_m = sum(row[0] for row in sky.mean_m)
+        sky.note(60 * NS_PER_S, (4.0, -2.0), std_m, 0.3)
+        moved_m.append(sum(row[0] for row in sky.mean_m) - before_m)
+    assert moved_m[0] > 1.5 * moved_m[1] > 0.0
+
+
 def test_a_receiver_not_heard_of_tells_nothing() -> None:
     assert Sky().corrected(fix_at(1.0, 2.0), 0) == fix_at(1.0, 2.0)
     assert after(100.0).corrected(fix_at(1.0, 2.0), 200 * NS_PER_S) == fix_at(1.0, 2.0)
