@@ -83,7 +83,9 @@ class Enrolment:
 
         Raises ConfigError where one is already, or it cannot be written: then there is none.
         """
-        write_secret(path, self.to_toml(), f"`muster pki renew {self.name}`")
+        of_kind = {Holder.TRACKER: "--tracker ", Holder.OPERATOR: "--operator "}
+        again = f"`muster pki renew {of_kind.get(self.holder, '')}{self.name}`"
+        write_secret(path, self.to_toml(), again)
 
 
 class _Compact(msgspec.Struct, array_like=True):

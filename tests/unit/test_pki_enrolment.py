@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
 import re
 import stat
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 
 from base_station.pki.folder import PkiFolder
 from base_station.pki.qr import as_text, qr_code, save_png
-from shared.enrolment import Enrolment, parse_enrolment, read_enrolment
+from shared.enrolment import Enrolment, Holder, parse_enrolment, read_enrolment
 from shared.errors import ConfigError
 from shared.tls import TlsIdentity
 
@@ -26,6 +27,27 @@ def pki(tmp_path: Path) -> PkiFolder:
 @pytest.fixture
 def enrolment(pki: PkiFolder) -> Enrolment:
     return pki.enroll("FF-01")
+
+
+@pytest.mark.parametrize(
+    ("holder", "again"),
+    [
+        (Holder.UNIT, "`muster pki renew FF-01`"),
+        (Holder.TRACKER, "`muster pki renew --tracker FF-01`"),
+        (Holder.OPERATOR, "`muster pki renew --operator FF-01`"),
+    ],
+)
+def test_a_full_disk_says_how_the_same_is_made_again(
+    pki: PkiFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, holder: Holder, again: str
+) -> None:
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    enrolment = pki.enroll("FF-01", holder)
+    monkeypatch.setattr("shared.out_file.os.fsync", full)
+    with pytest.raises(ConfigError, match=f"make it again: {again}"):
+        enrolment.write(tmp_path / "FF-01.toml")
+    assert not (tmp_path / "FF-01.toml").exists()
 
 
 def test_the_file_comes_back_and_is_its_owners_alone(enrolment: Enrolment, tmp_path: Path) -> None:
