@@ -22,7 +22,7 @@ from base_station.fusion.fuser_memory import Memory
 from base_station.fusion.gps_inertial import GpsInertial, GpsInertialFuser
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path.recent_path import OwnPlace
-from base_station.fusion.port import PlaceFix
+from base_station.fusion.port import PlaceFix, Start
 from shared.clock import NS_PER_S
 from shared.messages import Header
 
@@ -253,6 +253,38 @@ def test_fixes_draw_the_walk_of_a_run_that_has_just_begun(turn_rad: float) -> No
     assert shape is not None
     assert shape.turn_rad == pytest.approx(turn_rad)
     assert trust.fits(), "they were right after all"
+
+
+@pytest.mark.parametrize(("turned_rad", "is_kept"), [(0.0, True), (1.0, False)])
+def test_a_walk_that_fixes_draw_elsewhere_takes_a_heading_along_that_it_bears_out(
+    turned_rad: float, is_kept: bool
+) -> None:
+    """It is forgotten where they draw another."""
+    fuser = GpsInertial().new()
+    fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
+    for second in range(60):
+        walk(fuser, [second])
+        way_m = second + 0.8
+        north_m, east_m = way_m * math.cos(turned_rad), 200.0 + way_m * math.sin(turned_rad)
+        verdict = fuser.correct(fix_at(way_m, north_m, east_m))
+        if verdict.reason.startswith("contradicts"):
+            break
+    assert verdict.reason.startswith("contradicts")
+    estimate = fuser.estimate()
+    assert estimate is not None
+    assert (estimate.heading_std_rad < 0.3) is is_kept
+
+
+@pytest.mark.parametrize(("std_m", "is_assumed"), [(3.0, False), (8.0, True)])
+def test_a_fix_as_from_under_the_open_sky_says_that_nobody_began_upstairs(
+    std_m: float, is_assumed: bool
+) -> None:
+    fuser = GpsInertial().new()
+    walk_with_fixes(fuser, range(5), std_m=std_m)
+    estimate = fuser.estimate()
+    assert estimate is not None
+    assert estimate.since_gps_s is not None
+    assert estimate.height_assumed is is_assumed
 
 
 def test_fixes_that_were_worse_than_they_claim_make_the_next_one_worse() -> None:
