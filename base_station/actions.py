@@ -214,6 +214,7 @@ def _open(state: StationState, by: str, action: OpenIncident) -> Iterable[UnitSt
         unit.trust = TrustTally()
         unit.inside_since_ns = None
         unit.heat_dose = 0.0
+        unit.not_used.clear()
         accountability.begin(state, unit, by)
     return state.units.values()
 

@@ -79,6 +79,14 @@ class Fault(msgspec.Struct, frozen=True):
     text: str
 
 
+class GpsUse(msgspec.Struct, frozen=True):
+    """What became of a unit's fixes; station times."""
+
+    t_ns: int  # of the last one
+    reason: str = ""  # why it is not used; empty: it is
+    faulty_since_ns: int | None = None  # since when none of them can be true
+
+
 class UnitState(Sender):
     """Times are station times of receipt unless a name says otherwise; None: never."""
 
@@ -111,7 +119,8 @@ class UnitState(Sender):
     duty: Duty | None = None  # somebody wears it and an incident is open
     off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
-    not_used: dict[str, int] = msgspec.field(default_factory=dict)  # fixes, path jumps; by reason
+    gps: GpsUse | None = None
+    not_used: dict[str, int] = msgspec.field(default_factory=dict)  # fixes, sightings; by reason
 
     @property
     def name(self) -> str:

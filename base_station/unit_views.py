@@ -79,6 +79,7 @@ def _unit_view(
         TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
         _clock_view(unit.heartbeat),
         "cloned-unit" in levels,
+        unit.gps.reason if unit.gps else None,
     )
 
 

@@ -13,6 +13,7 @@ from base_station.alarms.battery import Battery
 from base_station.alarms.calibration import Calibration
 from base_station.alarms.cloned_unit import ClonedUnit
 from base_station.alarms.fall import Fall
+from base_station.alarms.gps_unused import GpsUnused
 from base_station.alarms.heat import Heat
 from base_station.alarms.heat_dose import HeatDose
 from base_station.alarms.link_lost import LinkLost
@@ -39,6 +40,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     TrackerDegraded(),
     TrackerGone(),
     PositionLost(),
+    GpsUnused(),
     UnitFault(),
     UnknownUnit(),
     ClonedUnit(),

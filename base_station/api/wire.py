@@ -154,6 +154,7 @@ class UnitView(Answer, frozen=True):
     trust: TrustView
     clock: ClockView | None  # None: it has not heard the station's time yet
     cloned: bool  # two machines speak under its name; one of them is shown
+    gps: str | None  # why its last fix is not used; empty: it is; None: none has come
 
 
 class DeliveryView(Answer, frozen=True):

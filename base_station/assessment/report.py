@@ -68,6 +68,7 @@ class UnitReport(Answer, frozen=True):
     loop_closure_m: float | None  # by the unit's own path alone
     loop_closure_percent: float | None  # of the way walked until then
     reentry_jumps_m: tuple[float, ...]  # of what was shown, when fixes came back
+    not_used: tuple[tuple[str, int], ...] = ()  # fixes and sightings; by reason, most first
     people: tuple[str, ...] = ()  # who wore it; not kept, so that people can be forgotten
 
 
@@ -131,6 +132,7 @@ def _unit(
         loop_closure_m=None if closure is None else round(closure[0], 2),
         loop_closure_percent=None if closure is None else round(closure[1], 2),
         reentry_jumps_m=_reentry_jumps(state, unit_id, live, smoothed),
+        not_used=_not_used(state, unit_id),
     )
 
 
@@ -164,6 +166,12 @@ def _trust(state: StationState, unit_id: str) -> TrustReport:
         round(tally.red_s, 1),
         tuple((cause, round(lasted_s, 1)) for cause, lasted_s in causes),
     )
+
+
+def _not_used(state: StationState, unit_id: str) -> tuple[tuple[str, int], ...]:
+    unit = state.units.get(unit_id)
+    counts = {} if unit is None else unit.not_used
+    return tuple(sorted(counts.items(), key=lambda one: (-one[1], one[0])))
 
 
 def with_people(report: IncidentReport, people: Mapping[str, Sequence[str]]) -> IncidentReport:

@@ -58,6 +58,7 @@ def _checks_table(report: IncidentReport) -> Table:
         "loop closure",
         "jumps as fixes came back",
         "pins: shown off",
+        "fixes and sightings that were not used",
     ):
         table.add_column(heading)
     for unit in report.units:
@@ -71,6 +72,7 @@ def _checks_table(report: IncidentReport) -> Table:
                 for one in unit.pin_residuals
                 if one.shown_m is not None
             ),
+            ", ".join(f"{count} {reason}" for reason, count in unit.not_used),
         )
     return table
 

@@ -75,6 +75,7 @@ class Present(msgspec.Struct, frozen=True):
 class FixVerdict(msgspec.Struct, frozen=True):
     accepted: bool
     reason: str = ""  # why not, for a person; the same words for the same cause
+    faulty: bool = False  # it cannot be true: the receiver is wrong, or the site's place is
 
 
 class Estimate(msgspec.Struct, frozen=True):

@@ -163,6 +163,7 @@ class LastKnown:
             trust=_OLD,
             clock=None,
             cloned=False,
+            gps=None,
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:

@@ -39,7 +39,7 @@ def place_fix(
     if not boot.is_placed:
         return FixVerdict(False, "of a time that nothing else has told yet")
     if boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
-        return FixVerdict(False, "from the future")
+        return FixVerdict(False, "from the future", faulty=True)
     if state.anchor is None and not state.start_set and state.plan is None and may_anchor(fix):
         _anchor_by(state, fix, estimate())
     if state.anchor is None:

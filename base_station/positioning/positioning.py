@@ -15,7 +15,7 @@ from base_station.fusion.path.history import PathHistory
 from base_station.fusion.plane.compass import bearing_of
 from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, PlaceFix, Start
 from base_station.fusion.smoother.port import Smoother
-from base_station.live_state import StationState, UnitState
+from base_station.live_state import GpsUse, StationState, UnitState
 from base_station.pins.book import drop, has_pins, units_of
 from base_station.pins.evidence import floors_said
 from base_station.pins.late_history import note_late
@@ -136,6 +136,7 @@ class Positioning:
         """Whether the fix is used, and why not."""
         place = place_fix(state, unit, fix, self._fuser(unit).estimate)
         verdict = place if isinstance(place, FixVerdict) else self._correct(state, unit, place)
+        unit.gps = _gps_after(unit.gps, verdict, state.t_ns)
         _count(unit, verdict.reason)
         return verdict
 
@@ -294,6 +295,15 @@ def _bearing(state: StationState, position: Position) -> Bearing | None:
 def _note_late(state: StationState, unit: UnitState) -> None:
     if has_pins(state, unit.unit_id):
         note_late(state.late, unit.unit_id, state.t_ns)
+
+
+def _gps_after(before: GpsUse | None, verdict: FixVerdict, t_ns: int) -> GpsUse:
+    since_ns = before.faulty_since_ns if before is not None else None
+    if not verdict.faulty:
+        since_ns = None
+    elif since_ns is None:
+        since_ns = t_ns
+    return GpsUse(t_ns, verdict.reason, since_ns)
 
 
 def _count(unit: UnitState, reason: str) -> None:

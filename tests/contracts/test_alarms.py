@@ -12,7 +12,7 @@ from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule, Clear, Finding
 from base_station.bench.rig import said
 from base_station.boot_state import BootState
-from base_station.live_state import Duty, Fault, StationState, UnitState
+from base_station.live_state import Duty, Fault, GpsUse, StationState, UnitState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -42,6 +42,7 @@ def calm(seen_ns: int = T_NS) -> UnitState:
         fused=said.fused(HEADER, "FF-01"),
         description=said.description(HEADER),
         boots=[BootState(1, there_from_ns=seen_ns - 600 * NS_PER_S, there_to_ns=seen_ns)],
+        gps=GpsUse(seen_ns),
     )
 
 
@@ -66,6 +67,7 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
     unit.status = msgspec.structs.replace(unit.status, motionless_s=60.0, battery=0.05, mayday=True)
     unit.temperature = Temperature(HEADER, 300.0)
     unit.heat_dose = 2.0
+    unit.gps = GpsUse(seen_ns, "the receiver is stuck", seen_ns - 60 * NS_PER_S)
     unit.position = msgspec.structs.replace(unit.position, quality=Quality.LOST, distance_m=3000.0)
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
     unit.mayday_ns = unit.fall_ns = seen_ns

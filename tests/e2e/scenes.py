@@ -92,6 +92,7 @@ def unit(index: int) -> wire.UnitView:
         trust=wire.TrustView("green", ""),
         clock=wire.ClockView(1.0, 0.5),
         cloned=False,
+        gps="",
     )
 
 

@@ -9,7 +9,7 @@ import pytest
 from base_station.assessment.report import UnitReport, assess
 from base_station.db.records import TrackSample
 from base_station.fusion.smoother.port import Verdict
-from base_station.live_state import StationState
+from base_station.live_state import StationState, UnitState
 from base_station.pins.pin import Pin
 from shared.clock import NS_PER_S
 
@@ -65,6 +65,14 @@ def test_the_floor_of_somebody_at_rest_is_held_against_what_is_known_of_that_tim
 def test_nothing_shown_is_nothing_known() -> None:
     unit = assessed(())
     assert (unit.seconds, unit.walked_m, unit.stated, unit.floor_right) == (0.0, 0.0, None, None)
+
+
+def test_what_was_not_used_is_in_it_with_the_reason_that_there_was_most_first() -> None:
+    unit = UnitState("FF-01", not_used={"from the future": 2, "too far from the site": 30})
+    tracks = {"FF-01": [shown(1.0)]}
+    state = StationState(units={"FF-01": unit})
+    (report,) = assess("i1", "path-graph", 0, state, {}, tracks, tracks, tracks).units
+    assert report.not_used == (("too far from the site", 30), ("from the future", 2))
 
 
 def test_a_loop_closes_where_somebody_came_back_last() -> None:

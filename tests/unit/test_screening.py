@@ -158,6 +158,63 @@ def test_a_fix_from_the_future_is_refused(script: Script) -> None:
     assert script.fused[-1].since_gps_s is None
 
 
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"lat_deg": 0.0, "lon_deg": 0.0}, "latitude and longitude 0"),
+        ({"lat_deg": 48.0}, "too far from the site"),
+        ({"horizontal_std_m": 5000.0}, "an accuracy that cannot be used"),
+    ],
+)
+def test_who_has_a_receiver_that_is_wrong_is_told_of_until_it_is_right(
+    script: Script, wrong: dict[str, float], reason: str
+) -> None:
+    def say(fix: dict[str, float]) -> None:
+        script.position(U, 0.0, 0.0)
+        script.gps(U, **{"lat_deg": 52.0, "lon_deg": 4.0} | fix)
+
+    def told() -> list[tuple[str, str]]:
+        return [(one.state.name, one.text) for one in script.alarms if one.rule == "gps-unused"]
+
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.wait(5, lambda: say({}))
+    for _ in range(3):  # now and then one receiver or another errs so
+        script.wait(20, lambda: say(wrong))
+        script.wait(5, lambda: say({}))
+    assert told() == []
+    script.wait(31, lambda: say(wrong))
+    script.wait(60, lambda: script.position(U, 0.0, 0.0))
+    said = f"The GPS of unit {U} is not used: {reason}"
+    assert told() == [("RAISED", said)]
+    script.wait(5, lambda: say({}))
+    assert told()[1:] == [("RESOLVED", said)]
+
+
+def test_what_was_not_used_is_counted_anew_in_another_incident(script: Script) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    script.wait(2, lambda: script.position(U, 0.0, 0.0))
+    script.gps(U, 0.0, 0.0)
+    assert not_used(script) == {"latitude and longitude 0": 1}
+    script.act(OpenIncident("i1", "Mill Lane"))
+    assert not_used(script) == {}
+
+
+@pytest.mark.parametrize("wrong", [{"fix_type": FixType.NONE}, {"lat_deg": 52.002}])
+def test_who_has_no_fix_indoors_or_one_off_a_wall_is_no_alarm(
+    script: Script, wrong: dict[str, float]
+) -> None:
+    script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
+    for second in range(60):
+        script.now_s += 1.0
+        script.position(U, 0.0, 0.0)
+        script.gps(U, **{"lat_deg": 52.0, "lon_deg": 4.0} | (wrong if second > 5 else {}))
+        script.tick()
+    gps = script.pipeline.state.units[U].gps
+    assert gps is not None
+    assert gps.reason
+    assert [one for one in script.alarms if one.rule == "gps-unused"] == []
+
+
 def test_a_fix_before_any_other_word_of_its_unit_may_be_of_the_future(script: Script) -> None:
     """Its clock is not known yet: taken, all later ones would be old for an hour."""
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))

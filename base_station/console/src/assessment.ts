@@ -42,6 +42,7 @@ export interface UnitAssessment {
   loop_closure_m: number | null;
   loop_closure_percent: number | null; // of the way walked
   reentry_jumps_m: number[];
+  not_used: [string, number][]; // fixes and sightings; by reason, most first
 }
 
 export interface Assessment {

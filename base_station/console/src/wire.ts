@@ -127,6 +127,7 @@ export interface UnitView {
   trust: TrustView;
   clock: ClockView | null; // null: it has not heard the station's time yet
   cloned: boolean; // two machines speak under its name; one of them is shown
+  gps: string | null; // why its last fix is not used; empty: it is; null: none has come
 }
 
 /** What a unit knows of the station's time. */

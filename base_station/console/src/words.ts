@@ -160,9 +160,15 @@ export function problemsOf(health: HealthView): string[] {
   return [...health.problems, "Not encrypted: others on the network can listen and speak"];
 }
 
+/** Whether somebody's place goes by satellites, and why not. */
+export function gpsWord(reason: string | null): string {
+  if (reason === null) return "no fix yet";
+  return reason === "" ? "used" : `not used: ${reason}`;
+}
+
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
 export function alarmWord(alarm: AlarmView): string {
-  const rule = alarm.rule.replaceAll(/[-_]/g, " ");
+  const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
 }

@@ -24,6 +24,7 @@ const UNIT: assessment.UnitAssessment = {
   loop_closure_m: null,
   loop_closure_percent: null,
   reentry_jumps_m: [],
+  not_used: [],
 };
 
 const PIN: assessment.PinResidual = {

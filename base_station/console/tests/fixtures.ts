@@ -78,6 +78,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     alarms: [],
     clock: null,
     cloned: false,
+    gps: null,
     ...change,
   };
 }

@@ -96,6 +96,7 @@ describe("words", () => {
   it.each([
     ["no-motion", "pre-alert", "No motion: pre-alert"],
     ["no-motion", "alarm", "No motion"],
+    ["gps-unused", "unused", "GPS unused"],
     ["link-lost", "lost", "Link lost"],
     ["mayday", "mayday", "Mayday"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
@@ -107,6 +108,14 @@ describe("words", () => {
     const both = words.problemsOf({ ...HEALTH, problems: ["The disk is full"], insecure: true });
     expect(both[0]).toBe("The disk is full");
     expect(both[1]).toContain("Not encrypted");
+  });
+
+  it.each([
+    [null, "no fix yet"],
+    ["", "used"],
+    ["too far from the site", "not used: too far from the site"],
+  ])("say of a last fix with the reason %s: %s", (reason, text) => {
+    expect(words.gpsWord(reason)).toBe(text);
   });
 
   it("make initials of any name", () => {

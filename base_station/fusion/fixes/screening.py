@@ -18,9 +18,10 @@ ANCHOR_STD_M = 8.0  # the worst fix that may say where the site is
 
 def screen(fix: GpsFix) -> FixVerdict:
     """What a fix tells against itself, wherever the site is."""
+    if fix.fix_type not in {FixType.TWO_D, FixType.THREE_D}:
+        return FixVerdict(False, "the receiver has no fix")
     std_m = fix.horizontal_std_m
     doubts = {
-        "the receiver has no fix": fix.fix_type not in {FixType.TWO_D, FixType.THREE_D},
         "coordinates that are no numbers": not all(
             math.isfinite(value) for value in (fix.lat_deg, fix.lon_deg, fix.height_m)
         ),
@@ -32,7 +33,7 @@ def screen(fix: GpsFix) -> FixVerdict:
         "an accuracy that cannot be used": std_m is not None and not 0.0 < std_m <= STD_ABSURD_M,
     }
     reason = next((reason for reason, holds in doubts.items() if holds), "")
-    return FixVerdict(not reason, reason)
+    return FixVerdict(not reason, reason, faulty=bool(reason))
 
 
 def may_anchor(fix: GpsFix) -> bool:
@@ -45,7 +46,7 @@ def in_incident_frame(fix: GpsFix, anchor: Anchor) -> PlaceFix | FixVerdict:
     """The screened fix where the anchor puts it, or why it cannot be there."""
     north_m, east_m, down_m = anchor.to_incident_m(fix.lat_deg, fix.lon_deg, fix.height_m)
     if math.hypot(north_m, east_m) > FURTHEST_M:
-        return FixVerdict(False, "too far from the site")
+        return FixVerdict(False, "too far from the site", faulty=True)
     horizontal_std_m = max(fix.horizontal_std_m or STD_UNSTATED_M, STD_FLOOR_M)
     has_height = fix.fix_type is FixType.THREE_D
     return PlaceFix(

@@ -43,7 +43,7 @@ class FixTaker:
             return self._correct_past(fix, then)
         walked_m = memory.last.distance_m if memory.last else 0.0
         if memory.trust.is_stuck(self._kind, fix, walked_m):
-            return FixVerdict(False, "the receiver is stuck")
+            return FixVerdict(False, "the receiver is stuck", faulty=True)
         if memory.assumed:  # the first thing known of the incident frame
             memory.assumed = False
             self._horizontal.forget_place()

@@ -197,6 +197,7 @@ function Checks({ report }: { report: Assessment }) {
           "Own path missed the beginning by",
           "Jumps as GPS came back",
           "Off from pins",
+          "GPS and beacons not used",
         ]}
       />
       <tbody>
@@ -208,6 +209,9 @@ function Checks({ report }: { report: Assessment }) {
             <td>{closureOf(unit)}</td>
             <td>{jumpsOf(unit)}</td>
             <td class="detail">{unit.pin_residuals.map(pinWords).join("; ") || NOTHING}</td>
+            <td class="detail">
+              {unit.not_used.map(([reason, count]) => `${count} ${reason}`).join("; ") || NOTHING}
+            </td>
           </tr>
         ))}
       </tbody>

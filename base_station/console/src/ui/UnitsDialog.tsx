@@ -1,7 +1,7 @@
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { ClockView, UnitView } from "../wire";
-import { alarmWord, clockOffset, isSetWrong, linkWord, TWO_MACHINES } from "../words";
+import { alarmWord, clockOffset, gpsWord, isSetWrong, linkWord, TWO_MACHINES } from "../words";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { Recording } from "./Recording";
@@ -24,6 +24,7 @@ export function UnitsDialog() {
             "Unit",
             "Link",
             "Clock",
+            "GPS",
             "Worn by",
             "Calibration",
             "Positions a second",
@@ -72,6 +73,7 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       <td data-label="Clock">
         <UnitClock clock={unit.clock} />
       </td>
+      <td data-label="GPS">{gpsWord(unit.gps)}</td>
       <td data-label="Worn by">
         {unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}
       </td>

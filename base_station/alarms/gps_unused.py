@@ -1,0 +1,37 @@
+"""What a unit's receiver says cannot be true, so that nobody's place goes by it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.live_state import UnitState
+from shared.clock import NS_PER_S
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class GpsUnused:
+    after_s: float = 30.0
+    name: str = "gps-unused"
+    levels: tuple[str, ...] = ("unused",)
+    clear_after_s: float = 3.0
+    rearm_after_s: float | None = None
+    for_strangers: bool = False
+    heeds: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        gps = unit.gps
+        if gps is None:
+            return None
+        if gps.faulty_since_ns is None:
+            return Clear(gps.t_ns, "what the receiver says can be true again")
+        if gps.t_ns - gps.faulty_since_ns < self.after_s * NS_PER_S:
+            return None
+        return Finding(
+            "unused",
+            SOON,
+            f"The GPS of {unit.name} is not used: {gps.reason}",
+            seen_ns=gps.t_ns,
+            onset_ns=gps.faulty_since_ns,
+        )
