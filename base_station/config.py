@@ -12,6 +12,7 @@ from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
+from shared.host_names import can_be_looked_up
 from shared.log import LogLevel
 
 _ENDPOINT = re.compile(r"(?:tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):(\d{1,5})(?:[?#]\S*)?")
@@ -128,7 +129,7 @@ def endpoint_address(endpoint: str) -> tuple[str, int]:
     """Host and port of an end of a bus; raises ConfigError."""
     parts = _ENDPOINT.fullmatch(endpoint)
     host, port = ("", 0) if parts is None else (parts[1].strip("[]"), int(parts[2]))
-    if not 0 < port < 65_536 or not _can_be_looked_up(host):
+    if not 0 < port < 65_536 or not can_be_looked_up(host):
         raise ConfigError(
             f"{endpoint!r} is no end of a bus: write tls/HOST:PORT, as in tls/0.0.0.0:7447"
         )
@@ -138,15 +139,6 @@ def endpoint_address(endpoint: str) -> tuple[str, int]:
 def _check_endpoints(endpoints: tuple[str, ...]) -> None:
     for endpoint in endpoints:
         endpoint_address(endpoint)
-
-
-def _can_be_looked_up(host: str) -> bool:
-    """Whether it is a name at all; the name server may not know it yet."""
-    try:
-        host.encode("idna")
-    except UnicodeError:
-        return False
-    return True
 
 
 def _is_loopback(host: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
@@ -39,6 +40,7 @@ logger = logging.getLogger(__name__)
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
 _QUERIES_WAITING = 1024
 _REPLIES_WAITING = 1024  # to one question
+_PLACE_IN_ZENOH = re.compile(r"\s+at \S+\.rs:\d+\.?")  # which helps nobody who reads of it
 _ENDING_S = 2.0  # for a thread to see that its channel has ended; a handler may be slow
 
 _Samples = zenoh.handlers.Handler[zenoh.Sample]
@@ -60,7 +62,7 @@ class ZenohBus:
             config = zenoh.Config.from_json5(json.dumps(settings_of(endpoint)))
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
-            raise _in_words(endpoint, str(error)) from error
+            raise _in_words(endpoint, error) from error
         self._watched: dict[str, zenoh.Publisher] = {}
         self._threads: WeakSet[Thread] = WeakSet()
 
@@ -252,7 +254,8 @@ def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
     return zenoh.handlers.Callback(callback, indirect=False)
 
 
-def _in_words(endpoint: Endpoint, reason: str) -> BusError:
+def _in_words(endpoint: Endpoint, error: zenoh.ZError) -> BusError:
+    reason = _PLACE_IN_ZENOH.sub("", str(error))
     if not isinstance(endpoint, StationEndpoint):
         return BusError(f"the bus cannot be opened towards {', '.join(endpoint.connect)}: {reason}")
     where = ", ".join(endpoint.listen)

@@ -23,6 +23,8 @@ from shared.errors import ConfigError
 
 C = TypeVar("C")
 
+_MISSING = re.compile(r"Object missing required field `(.*)`")
+
 _UNITS = frozenset(
     re.findall(
         r"\w+",
@@ -131,6 +133,8 @@ def _in_words(config_class: type, problem: str) -> str:
     """``problem - at `$.a.b``` as ``a.b: problem``, with the choices where there are any."""
     what, _, at = problem.partition(" - at `$.")
     where = at.rstrip("`")
+    if missing := _MISSING.fullmatch(what):
+        return f"{f'{where}.' if where else ''}{missing[1]} is missing, and there is no usual value"
     choices = _choices(config_class, where) if "enum value" in what else []
     if choices:
         given = re.search(r"'(.*)'", what)

@@ -23,7 +23,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
     """Columns as in ``edge.samples.ImuBatch``; NaN marks a missed value, None a missing sensor.
 
     A round trip through the wire quantises (1e-5 m/s^2, 1e-6 rad/s, 1 nT, 0.01 Pa, 0.01 degC);
-    a second round trip changes nothing.
+    a second round trip changes nothing.  Without a sample it is no message.
     """
 
     header: Header
@@ -35,7 +35,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
     imu_temperature_degc: Floats | None = None  # (n,)
 
     def to_wire(self) -> imu_pb2.ImuBatch:
-        t0_ns = int(self.t_ns[0]) if len(self.t_ns) else 0
+        t0_ns = int(self.t_ns[0])
         return imu_pb2.ImuBatch(
             header=self.header.to_wire(),
             t0_ns=t0_ns,
@@ -61,7 +61,10 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
             pressure_pa=_scalars(wire.pressure_cpa, _PRESSURE_PER_PA),
             imu_temperature_degc=_scalars(wire.imu_temperature_cdegc, _TEMPERATURE_PER_DEGC),
         )
-        columns = (accel_mps2, gyro_radps, batch.mag_ut, batch.pressure_pa)
+        if len(t_ns) == 0:
+            raise ValueError("no sample")
+        aids = (batch.mag_ut, batch.pressure_pa, batch.imu_temperature_degc)
+        columns = (accel_mps2, gyro_radps, *aids)
         if any(column is not None and len(column) != len(t_ns) for column in columns):
             raise ValueError("columns of different lengths")
         return batch

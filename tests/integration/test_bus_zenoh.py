@@ -70,6 +70,12 @@ def test_an_address_that_makes_no_sense_is_said_in_words() -> None:
         ZenohBus(StationEndpoint(("nonsense",)))
 
 
+def test_an_address_of_another_machine_is_said_without_a_place_in_the_library() -> None:
+    with pytest.raises(BusError, match=r"cannot listen on tcp/192\.0\.2\.1:7447") as refused:
+        ZenohBus(StationEndpoint(("tcp/192.0.2.1:7447",)))
+    assert ".rs" not in str(refused.value)
+
+
 def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(
     address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -67,7 +67,7 @@ def test_the_wire_quantises_once_and_then_changes_nothing(channel, data):
 
 
 @given(
-    st.integers(0, 50).flatmap(
+    st.integers(1, 50).flatmap(
         lambda n: st.tuples(
             *(
                 st.lists(st.one_of(st.floats(-500, 500), st.just(math.nan)), min_size=k, max_size=k)
@@ -83,7 +83,7 @@ def test_raw_samples_survive_with_their_missed_values(columns):
         t_ns=np.cumsum(np.full(len(pressure), 5_000_000)),
         accel_mps2=accel.reshape(-1, 3),
         gyro_radps=gyro.reshape(-1, 3),
-        pressure_pa=pressure if len(pressure) else None,
+        pressure_pa=pressure,
     )
     back = decode(IMU, encode(batch))
     assert isinstance(back, RawImu)
@@ -94,6 +94,31 @@ def test_raw_samples_survive_with_their_missed_values(columns):
     assert isinstance(again, RawImu)
     np.testing.assert_array_equal(again.accel_mps2, back.accel_mps2)
     np.testing.assert_array_equal(again.gyro_radps, back.gyro_radps)
+
+
+def raw_imu(samples: int) -> RawImu:
+    t_ns, vectors, scalars = np.arange(samples), np.ones((samples, 3)), np.ones(samples)
+    return RawImu(Header("FF-01", 1, 1, 0), t_ns, vectors, vectors, vectors, scalars, scalars)
+
+
+@pytest.mark.parametrize(
+    "column",
+    ["accel_e5_mps2", "gyro_e6_radps", "mag_nt", "pressure_cpa", "imu_temperature_cdegc"],
+)
+def test_raw_samples_of_columns_that_differ_in_length_are_none(column):
+    wire = raw_imu(samples=4).to_wire()
+    getattr(wire, column).extend([1, 1, 1])
+    with pytest.raises(WireError, match="different lengths"):
+        decode(IMU, wire.SerializeToString())
+
+
+def test_a_message_without_a_sample_is_none():
+    wire = raw_imu(samples=1).to_wire()
+    for column in ("dt_ns", "accel_e5_mps2", "gyro_e6_radps", "mag_nt", "pressure_cpa"):
+        wire.ClearField(column)
+    wire.ClearField("imu_temperature_cdegc")
+    with pytest.raises(WireError, match="no sample"):
+        decode(IMU, wire.SerializeToString())
 
 
 @pytest.mark.parametrize("channel", CHANNELS, ids=lambda channel: channel.name)

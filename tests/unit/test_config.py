@@ -117,7 +117,7 @@ def test_flags_alone_suffice() -> None:
         ('unit = "a"\n[[sites]]\nnam = "x"', "sites[0].nam is not a setting; did you mean name?"),
         ('unit = "a"\n[crews.red]\nnam = "x"', "crews.red.nam is not a setting"),
         ('unit = "a"\nzzz = 1', "zzz is not a setting; known here: black_box, crews"),
-        ("", "missing required field `unit`"),
+        ("", "unit is missing, and there is no usual value"),
         ("unit = 5", "unit: Expected `str`, got `int`"),
         ('unit = "a"\nrate_hz = "5 Hz"', "rate_hz: Expected `float`, got `str`"),
         ('unit = "a"\nrate_hz = true', "rate_hz: Expected `float`, got `bool`"),
