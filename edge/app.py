@@ -22,14 +22,14 @@ from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
 from edge.journal_server import JournalServer
 from edge.journal_writer import JournalWriter
-from edge.knocker import Knocker
-from edge.last_words import answers_before, mayday_before
 from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.previous_boot import answers_before, mayday_before
 from edge.raw_stream import RawStream, sensor_of
 from edge.raw_uplink import RawUplink
+from edge.reachability_probe import ReachabilityProbe
 from edge.receivers import open_receiver
 from edge.recording_server import RecordingServer
 from edge.runtime import Agent, Parts
@@ -278,7 +278,7 @@ class ZenohStation:
 
     def __init__(self, member: Membership) -> None:
         self._member = member
-        self._knocker = Knocker(member.connect)
+        self._probe = ReachabilityProbe(member.connect)
 
     def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
@@ -294,7 +294,7 @@ class ZenohStation:
         return ZenohBus(ClientEndpoint(self._member.connect, self._member.identity, _PATIENCE_S))
 
     def is_reachable(self, timeout_s: float) -> bool:
-        return self._knocker.wait(timeout_s)
+        return self._probe.wait(timeout_s)
 
     def why_no_link(self) -> str:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load

@@ -21,7 +21,7 @@ logger = logging.getLogger(__name__)
 _RETRY_S = 1.0
 _LOOK_EVERY_S = 0.5
 _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
-_LOST_LOOKS = 2  # without the link that was there: knock until the station is back
+_LOST_LOOKS = 2  # without the link that was there: probe until the station is back
 _UNHEARD = "no station listens to this unit: it is starting, or the unit has been revoked there"
 _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 
@@ -158,7 +158,7 @@ class Link:
         logger.debug("opening the bus anew")
 
     def _is_reachable(self) -> bool:
-        """Knock at the station for as long as a look takes."""
+        """Probe for the station for as long as a look takes."""
         self._away = not self._station.is_reachable(_LOOK_EVERY_S)
         if self._away:
             self._tell(None)

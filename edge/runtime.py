@@ -18,10 +18,10 @@ import msgspec
 from edge.black_box import BlackBox
 from edge.commands import CommandDesk
 from edge.journal_writer import JournalWriter
-from edge.last_words import FAILED
 from edge.link import Link
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline
+from edge.previous_boot import FAILED
 from edge.raw_stream import RawStream, batch_of
 from edge.samples import ACKNOWLEDGE, ButtonPress
 from edge.source_reader import PlacedBatch, SourceReader

@@ -12,8 +12,8 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
-from edge.last_words import FAILED
 from edge.link import Link
+from edge.previous_boot import FAILED
 from edge.samples import SensorBatch
 from edge.sources import open_source
 from edge.sources.bench import BenchSource
@@ -49,10 +49,10 @@ class OtherEnd:
         self.open_bus = open_bus
         self.reachable = threading.Event()
         self.reachable.set()
-        self.knocked = 0
+        self.probed = 0
 
     def is_reachable(self, timeout_s: float) -> bool:
-        self.knocked += 1
+        self.probed += 1
         return self.reachable.wait(timeout_s)
 
     def why_no_link(self) -> str:
@@ -193,7 +193,7 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
-def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, monkeypatch):
+def test_a_link_that_is_lost_is_probed_for_and_opened_anew_at_once(station, monkeypatch):
     """One that never was is given longer: connecting takes a moment."""
     monkeypatch.setattr("edge.link._LOOK_EVERY_S", 0.005)
     monkeypatch.setattr("edge.link._REOPEN_AFTER_S", 1e6)
@@ -208,7 +208,7 @@ def test_a_link_that_is_lost_is_knocked_for_and_opened_anew_at_once(station, mon
     until(lambda: station.alive == [True])
     other_end.reachable.clear()
     opened[0].link_down()
-    until(lambda: other_end.knocked > 3)
+    until(lambda: other_end.probed > 3)
     assert len(opened) == 1, "no bus is opened towards nobody"
     other_end.reachable.set()
     until(lambda: station.alive == [True, False, True])

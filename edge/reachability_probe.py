@@ -17,12 +17,12 @@ _EVERY_S = 0.3
 _AT_ONCE = 8  # attempts under way; the oldest is given up first
 
 
-class Knocker:
+class ReachabilityProbe:
     """For ``proto/HOST:PORT`` endpoints; one thread, and ``close`` it."""
 
     def __init__(self, endpoints: Sequence[str]) -> None:
         self._places = [_host_and_port(endpoint) for endpoint in endpoints]
-        self._knocks: list[socket.socket] = []
+        self._attempts: list[socket.socket] = []
         self._next_s = 0.0
 
     def wait(self, timeout_s: float) -> bool:
@@ -31,46 +31,46 @@ class Knocker:
         while (now_s := time.monotonic()) < end_s:
             if now_s >= self._next_s:
                 self._next_s = now_s + _EVERY_S
-                self._knock()
+                self._begin_attempts()
             if self._is_open(min(end_s, self._next_s) - now_s):
                 self.close()
                 return True
         return False
 
     def close(self) -> None:
-        for knock in self._knocks:
-            knock.close()
-        self._knocks.clear()
+        for attempt in self._attempts:
+            attempt.close()
+        self._attempts.clear()
         self._next_s = 0.0
 
-    def _knock(self) -> None:
+    def _begin_attempts(self) -> None:
         for host, port in self._places:
             try:
                 family, kind, protocol, _, address = socket.getaddrinfo(
                     host, port, type=socket.SOCK_STREAM
                 )[0]
-                knock = socket.socket(family, kind, protocol)
+                attempt = socket.socket(family, kind, protocol)
             except OSError:
                 continue  # no such name, for now
-            knock.setblocking(False)
-            if knock.connect_ex(address) in (0, errno.EINPROGRESS):
-                self._knocks.append(knock)
+            attempt.setblocking(False)
+            if attempt.connect_ex(address) in (0, errno.EINPROGRESS):
+                self._attempts.append(attempt)
             else:
-                knock.close()  # no network at all
-        for oldest in self._knocks[: -_AT_ONCE * len(self._places)]:
+                attempt.close()  # no network at all
+        for oldest in self._attempts[: -_AT_ONCE * len(self._places)]:
             oldest.close()
-            self._knocks.remove(oldest)
+            self._attempts.remove(oldest)
 
     def _is_open(self, timeout_s: float) -> bool:
-        if not self._knocks:
+        if not self._attempts:
             time.sleep(max(timeout_s, 0.0))
             return False
-        answered = select.select([], self._knocks, [], max(timeout_s, 0.0))[1]
-        for knock in answered:
-            if knock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
+        answered = select.select([], self._attempts, [], max(timeout_s, 0.0))[1]
+        for attempt in answered:
+            if attempt.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
                 return True
-            knock.close()  # refused: the machine is there, the station is not
-            self._knocks.remove(knock)
+            attempt.close()  # refused: the machine is there, the station is not
+            self._attempts.remove(attempt)
         return False
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
-from edge.last_words import FAILED, answers_before, mayday_before
 from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.previous_boot import FAILED, answers_before, mayday_before
 from edge.samples import SensorDescription
 from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from base_station.bench.rig.station import free_port
-from edge.knocker import Knocker
+from edge.reachability_probe import ReachabilityProbe
 
 
 @pytest.fixture
@@ -26,22 +26,24 @@ def listen(port: int) -> socket.socket:
 @pytest.mark.parametrize("proto", ["tcp", "tls"])
 def test_who_listens_is_there(port: int, proto: str) -> None:
     with listen(port):
-        assert Knocker([f"{proto}/127.0.0.1:{port}"]).wait(5.0)
+        assert ReachabilityProbe([f"{proto}/127.0.0.1:{port}"]).wait(5.0)
 
 
 def test_a_machine_without_a_station_is_not(port: int) -> None:
-    knocker = Knocker([f"tcp/127.0.0.1:{port}"])
-    assert not knocker.wait(0.5)
-    knocker.close()
+    probe = ReachabilityProbe([f"tcp/127.0.0.1:{port}"])
+    assert not probe.wait(0.5)
+    probe.close()
 
 
 def test_a_name_that_nobody_knows_is_not_there() -> None:
-    assert not Knocker(["tls/station.invalid:7447"]).wait(0.2)
+    assert not ReachabilityProbe(["tls/station.invalid:7447"]).wait(0.2)
 
 
 def test_one_of_two_stations_is_enough(port: int) -> None:
     with listen(port):
-        assert Knocker([f"tcp/127.0.0.1:{free_port()}", f"tcp/127.0.0.1:{port}"]).wait(5.0)
+        assert ReachabilityProbe([f"tcp/127.0.0.1:{free_port()}", f"tcp/127.0.0.1:{port}"]).wait(
+            5.0
+        )
 
 
 def test_an_ipv6_station_is_found() -> None:
@@ -50,16 +52,16 @@ def test_an_ipv6_station_is_found() -> None:
     except OSError:
         pytest.skip("this machine has no IPv6")
     with listening:
-        assert Knocker([f"tcp/[::1]:{listening.getsockname()[1]}"]).wait(5.0)
+        assert ReachabilityProbe([f"tcp/[::1]:{listening.getsockname()[1]}"]).wait(5.0)
 
 
 def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> None:
-    knocker = Knocker([f"tcp/127.0.0.1:{port}"])
+    probe = ReachabilityProbe([f"tcp/127.0.0.1:{port}"])
     stations: list[socket.socket] = []
     later = threading.Timer(0.5, lambda: stations.append(listen(port)))
     later.start()
     began_s = time.monotonic()
-    assert knocker.wait(30.0)
+    assert probe.wait(30.0)
     assert time.monotonic() - began_s < 15.0
     later.join()
     stations[0].close()
@@ -67,9 +69,9 @@ def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> No
 
 def test_many_looks_hold_no_more_than_a_few_connections() -> None:
     """Where packets are thrown away, attempts pile up and the oldest go."""
-    knocker = Knocker(["tcp/192.0.2.1:7447"])  # nobody has this address
+    probe = ReachabilityProbe(["tcp/192.0.2.1:7447"])  # nobody has this address
     for _ in range(40):
-        knocker._knock()
-    assert len(knocker._knocks) <= 8
-    knocker.close()
-    assert knocker._knocks == []
+        probe._begin_attempts()
+    assert len(probe._attempts) <= 8
+    probe.close()
+    assert probe._attempts == []
