@@ -1,4 +1,4 @@
-"""What a unit must not forget when it is cut off in mid-sentence."""
+"""What the boot before this one said, and must not be forgotten: its mayday, and its answers."""
 
 from __future__ import annotations
 
