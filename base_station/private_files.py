@@ -1,4 +1,6 @@
-"""Files of the authority: for their owner alone, and there whole or not at all."""
+"""Files for their owner alone, such as the authority's: there whole or not at all, also after a
+power cut.
+"""
 
 from __future__ import annotations
 
