@@ -47,6 +47,7 @@ class GpsReader:
         self._last_ns = 0  # of the last report, or since the line is open
         self._has_spoken = False  # since the line is open
         self._repeats = False
+        self._loss_told = False
         self._first_garbled = ""
         self._count_anew(0)
 
@@ -140,9 +141,14 @@ class GpsReader:
         return "the line is open and nothing comes; is it on, and the cable in?"
 
     def _look(self, now_ns: int) -> None:
-        """A line that loses some of what is said, while the rest goes on."""
+        """A line that loses some of what is said, while the rest goes on: told once while it lasts,
+        until ten seconds in which nothing was lost.
+        """
         came = self._garbled + self._understood
-        if self._garbled > max(_FEW, _MANY * came):
+        if not self._garbled:
+            self._loss_told = False
+        elif self._garbled > max(_FEW, _MANY * came) and not self._loss_told:
+            self._loss_told = True
             self._say(
                 f"{self._garbled} of {came} lines in {_LOOK_NS // NS_PER_S} s could not be read, "
                 f"such as {self._first_garbled}; {self._dialect.hint}"

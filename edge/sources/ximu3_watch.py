@@ -23,6 +23,7 @@ class Watch:
     def __init__(self, rate_hz: float) -> None:
         self._rate_hz = rate_hz
         self._rate_told = False
+        self._loss_told = False
         self.garbled = 0  # since the start
         self.opened()
 
@@ -79,16 +80,19 @@ class Watch:
         return faults
 
     def _garbled_fault(self) -> list[str]:
+        """Once while it lasts: until ten seconds in which nothing was lost."""
         if not self._garbled:
+            self._loss_told = False
             return []
         came = self._garbled + self._understood
         found = (
             f"{self._garbled} of {came} messages in {_LOOK_NS // NS_PER_S} s could not be read, "
             f"such as {self._first_garbled}"
         )
-        if self._garbled <= _MANY * came:
+        if self._garbled <= _MANY * came or self._loss_told:
             logger.info(found)
             return []
+        self._loss_told = True
         return [f"{found}; look at the cable, the radio or ?baud="]
 
     def _rate_fault(self) -> list[str]:
