@@ -238,16 +238,19 @@ def _assign(state: StationState, by: str, action: Assign) -> Iterator[UnitState]
     for other in state.units.values():
         if other is not unit and other.person and other.person.person_id == action.person_id:
             yield _without_wearer(state, other)
-    same = unit.person is not None and unit.person.person_id == action.person_id
+    before = unit.person
+    same = before is not None and before.person_id == action.person_id
     unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
+        if before is not None:
+            unit.inside_since_ns = None  # that one went in, not who wears it now
         unit.worn_since_ns = state.t_ns
         accountability.begin(state, unit, by)
     yield unit
 
 
 def _without_wearer(state: StationState, unit: UnitState) -> UnitState:
-    unit.person, unit.worn_since_ns = None, state.t_ns
+    unit.person, unit.worn_since_ns, unit.inside_since_ns = None, state.t_ns, None
     accountability.end(state, unit)
     return unit
 

@@ -30,13 +30,14 @@ class MissedCheckIn:
             return Clear(unit.off_duty_ns, "off duty")
         if t_ns < duty.due_ns:
             return Clear(duty.checked_in_ns, f"heard from, says {duty.checked_in_by}")
-        silent_min = (duty.due_ns - duty.checked_in_ns) / NS_PER_S / 60.0
-        asked = "asked and " if duty.asked_ns is not None else ""
         answers_due_ns = [asked_ns + ANSWER_NS for asked_ns in duty.asks_ns]
+        onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
+        silent_min = (onset_ns - duty.checked_in_ns) / NS_PER_S / 60.0
+        asked = "asked and " if duty.asked_ns is not None else ""
         return Finding(
             "overdue",
             IMMEDIATE,
             f"{unit.name}: PAR overdue, {asked}not heard from for {silent_min:.0f} min",
             seen_ns=duty.checked_in_ns,
-            onset_ns=max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns),
+            onset_ns=onset_ns,
         )

@@ -27,7 +27,7 @@ class RestDue:
             return Clear(duty.rest_since_ns, "rests")
         if duty.work_since_ns is None or duty.rest_due_ns is None or t_ns < duty.rest_due_ns:
             return Clear(duty.checked_in_ns, "not due")
-        worked_min = (duty.rest_due_ns - duty.work_since_ns) / NS_PER_S / 60.0
+        worked_min = (t_ns - duty.work_since_ns) / NS_PER_S / 60.0
         return Finding(
             "due",
             INFORMATION,

@@ -7,6 +7,7 @@ import pytest
 from base_station.accountability import warning_s
 from base_station.checkpoint import read_checkpoint
 from base_station.live_state import Incident
+from shared.clock import NS_PER_S
 from shared.messages import (
     AlarmState,
     EventKind,
@@ -162,6 +163,28 @@ def test_who_hands_the_unit_back_is_not_waited_for(script: Script) -> None:
     mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
     assert mine[-1].state is AlarmState.RESOLVED
     assert mine[-1].by == "off duty"
+
+
+def test_who_takes_over_a_unit_has_not_been_inside_since_the_other_went_in(
+    script: Script,
+) -> None:
+    def walk() -> None:
+        script.position("FF-01", 9.0, 0.0, distance_m=9.0)
+
+    script.wait(20, walk)
+    went_in_ns = unit(script).inside_since_ns
+    assert went_in_ns == script.t_ns - 19 * NS_PER_S
+    script.act(Assign("FF-01", "p1", "Person One", "red", "officer"))
+    assert unit(script).inside_since_ns == went_in_ns, "it is the same person"
+    script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    assert unit(script).inside_since_ns is None
+    script.wait(5, walk)
+    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S
+    script.act(Unassign("FF-01"))
+    assert unit(script).inside_since_ns is None
+    script.wait(5, walk)
+    script.act(Assign("FF-01", "p1", "Person 1", "red", ""))
+    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S, "said late who wears it"
 
 
 def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:

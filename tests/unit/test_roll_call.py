@@ -79,6 +79,7 @@ def test_who_does_not_answer_the_evacuation_is_overdue_anew(
     script.wait(2)
     again = [one for one in overdue(script) if one.unit_id == "FF-01"][2:]
     assert [one.state for one in again] == [AlarmState.RAISED]
+    assert again[0].text == "Person 1: PAR overdue, asked and not heard from for 5 min"
 
 
 def test_who_has_heard_of_the_evacuation_is_not_out_yet(script: Script) -> None:

@@ -55,6 +55,7 @@ def test_who_is_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script
     assert len(rest_alarms(script)) == 2
     script.wait(1)
     assert len(rest_alarms(script)) == 3
+    assert rest_alarms(script)[-1].text == "Person 1 has worked for 12 min: send to rest"
 
 
 def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
@@ -87,6 +88,9 @@ def test_who_takes_over_a_unit_has_not_worked_yet(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(100)
     script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    script.wait(1)
+    assert duty(script).work_since_ns is None, "it was the other one who had walked in"
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)
     script.wait(1)
     assert rest_left_s(script) == 119.0
 
