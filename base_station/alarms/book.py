@@ -52,14 +52,18 @@ class AlarmBook:
             try:
                 verdict = rule.judge(unit, state.t_ns, level)
             except Exception as error:  # noqa: BLE001  # one bad rule must not silence the others
-                yield from self.problem(
-                    state,
-                    f"rule-{rule.name}",
-                    f"The alarm rule {rule.name!r} failed for {unit.unit_id} and did not judge: "
-                    f"{error!r}",
-                )
+                part = f"rule-{rule.name}"
+                if part not in state.problems:  # the same for every unit
+                    yield from self.problem(
+                        state,
+                        part,
+                        f"The alarm rule {rule.name!r} failed for {unit.unit_id} and did not "
+                        f"judge: {error!r}",
+                    )
                 continue
             if verdict is None:
+                if current is not None:  # what nobody can say has not stayed so
+                    current.clear_since_ns = current.lower_since_ns = None
                 continue
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
@@ -70,20 +74,24 @@ class AlarmBook:
         return bool(self._heeding.get(came, self._rules))
 
     def problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
-        """A part of the station itself fails or, without a text, is well again."""
+        """A part of the station itself fails, or fails in another way; without a text, it is well
+        again.
+        """
         key = f"{STATION_RULE}|{part}"
         current = state.alarms.get(key)
-        standing = current is not None and current.is_open
+        standing = current if current is not None and current.is_open else None
         if text:
             state.problems[part] = text
-            if not standing:
+            if standing is None:
                 alarm_id = f"{STATION_RULE}:{part}:{state.t_ns}"
                 finding = Finding(part, SOON, text, seen_ns=state.t_ns)
                 yield self._raise(state, key, alarm_id, STATION_RULE, "", finding)
+            elif text != standing.text:
+                yield _raise_anew(state, standing, text)
         else:
             state.problems.pop(part, None)
-            if current is not None and standing:
-                yield _resolve(state, current, "works again")
+            if standing is not None:
+                yield _resolve(state, standing, "works again")
 
     def acknowledge(self, state: StationState, alarm_id: str, by: str) -> Alarm | str:
         """The alarm, or for a person why nothing came of it."""
@@ -172,9 +180,7 @@ def _move_level(
     alarm.clear_since_ns = None
     rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
     if rank == standing and _happened_again(alarm, finding):
-        alarm.state, alarm.by, alarm.text = AlarmState.RAISED, "", finding.text
-        alarm.changed_ns = state.t_ns
-        return alarm
+        return _raise_anew(state, alarm, finding.text)
     if rank == standing or (rank < standing and alarm.latched):
         alarm.lower_since_ns = None
         return None
@@ -188,6 +194,12 @@ def _move_level(
     alarm.lower_since_ns = None
     alarm.level, alarm.priority, alarm.text = finding.level, finding.priority, finding.text
     alarm.latched = alarm.latched or finding.latched
+    alarm.changed_ns = state.t_ns
+    return alarm
+
+
+def _raise_anew(state: StationState, alarm: Alarm, text: str) -> Alarm:
+    alarm.state, alarm.by, alarm.text = AlarmState.RAISED, "", text
     alarm.changed_ns = state.t_ns
     return alarm
 
@@ -210,7 +222,8 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
         return None
     if alarm.clear_since_ns is None:
         alarm.clear_since_ns = clear.seen_ns
-    if clear.seen_ns - alarm.clear_since_ns < rule.clear_after_s * NS_PER_S:
+    has_stayed_s = (clear.seen_ns - alarm.clear_since_ns) / NS_PER_S
+    if has_stayed_s < rule.clear_after_s and not clear.at_once:
         return None
     return _resolve(state, alarm, clear.by)
 

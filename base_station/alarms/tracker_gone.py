@@ -31,16 +31,13 @@ class TrackerGone:
         if not unit.is_tracked_remotely:
             return Clear(unit.heard_ns, "the unit tracks itself")
         if unit.stopped_ns is not None:
-            return Clear(unit.stopped_ns, "the unit was switched off")
-        agent = unit.tracker
-        if agent is not None and agent.heard_ns is not None:
-            since_ns, what = agent.heard_ns, "is silent"
-        else:
-            since_ns, what = unit.boots[-1].there_from_ns, "never spoke"
-        silent_s = (t_ns - since_ns) / NS_PER_S
-        if silent_s < self.live_within_s:
-            return Clear(since_ns, "its tracking agent speaks again")
-        if silent_s < self.gone_after_s:
+            return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)
+        heard_ns = None if unit.tracker is None else unit.tracker.heard_ns
+        if heard_ns is not None and (t_ns - heard_ns) / NS_PER_S < self.live_within_s:
+            return Clear(heard_ns, "its tracking agent speaks again")
+        what = "never spoke" if heard_ns is None else "is silent"
+        since_ns = max(heard_ns or 0, unit.boots[-1].there_from_ns)  # it may start with the unit
+        if (t_ns - since_ns) / NS_PER_S < self.gone_after_s:
             return None
         return Finding(
             "gone",

@@ -22,6 +22,7 @@ from shared.messages.station import (
     ResolveAlarm,
     SetStart,
 )
+from shared.quality import Quality
 from tests.station_script import Script
 
 U = "FF-01"
@@ -308,6 +309,42 @@ def test_what_was_well_for_two_short_whiles_has_not_been_well_for_a_long_one(
     assert changes(script, "battery") == [("RAISED", "low")]
 
 
+def test_what_was_well_for_two_moments_has_not_been_well_in_between(script: Script) -> None:
+    """Nothing can be said yet of the doubt in between, which is not to say that there is none."""
+
+    def walk(seconds: int, quality: Quality) -> None:
+        script.wait(seconds, lambda: script.position(U, 0.0, 0.0, quality=quality))
+
+    walk(20, Quality.LOST)
+    for _ in range(4):
+        walk(1, Quality.GOOD)
+        walk(9, Quality.LOST)
+    assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
+    walk(12, Quality.GOOD)
+    assert changes(script, "tracker-degraded")[1:] == [("RESOLVED", "lost")]
+
+
+def test_what_was_less_bad_for_two_moments_has_not_been_so_in_between(script: Script) -> None:
+    def walk(seconds: int, quality: Quality) -> None:
+        script.wait(seconds, lambda: script.position(U, 0.0, 0.0, quality=quality))
+
+    walk(20, Quality.LOST)
+    walk(2, Quality.DEGRADED)
+    walk(1, Quality.GOOD)
+    walk(14, Quality.LOST)
+    walk(4, Quality.DEGRADED)
+    assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
+
+
+def test_two_words_far_apart_are_no_link(script: Script) -> None:
+    script.wait(5, lambda: script.status(U))
+    script.wait(31)
+    for _ in range(4):
+        script.status(U)
+        script.wait(25)
+    assert changes(script, "link-lost") == [("RAISED", "lost")]
+
+
 def test_what_is_resolved_is_not_opened_again_by_who_presses_too_late(script: Script) -> None:
     """At two consoles, one resolves it while the other is about to acknowledge it."""
     script.event(U, EventKind.MAYDAY)
@@ -387,6 +424,23 @@ def test_a_problem_that_a_person_resolved_is_none_until_it_is_reported_again(
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED"] * 2
 
 
+def test_another_problem_of_the_same_part_is_told_while_the_first_one_stands(
+    script: Script,
+) -> None:
+    script.act(ReportProblem("log", "The disk is nearly full"), by="station")
+    script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
+    for _ in range(2):
+        script.wait(1)
+        script.act(ReportProblem("log", "The log cannot be written"), by="station")
+    assert [(a.state.name, a.text, a.by) for a in script.alarms[1:]] == [
+        ("ACKNOWLEDGED", "The disk is nearly full", "chief"),
+        ("RAISED", "The log cannot be written", ""),
+    ]
+    assert len({a.alarm_id for a in script.alarms}) == 1
+    changed_ns = script.pipeline.state.alarms["station|log"].changed_ns
+    assert changed_ns == script.alarms[-1].header.t_utc_ns
+
+
 @dataclass(frozen=True)
 class Broken:
     name: str = "broken"
@@ -407,6 +461,16 @@ def test_a_failing_rule_is_reported_and_the_others_go_on() -> None:
     assert [a.rule for a in script.alarms] == ["station", "mayday"]
     assert "'broken'" in script.alarms[0].text
     assert "ZeroDivisionError" in script.alarms[0].text
+
+
+def test_a_rule_that_fails_for_every_unit_is_one_problem() -> None:
+    script = Script(StationPipeline((Broken(),), FUSERS[0]))
+    script.register(U, "FF-02")
+    script.wait(3)
+    assert [a.state.name for a in script.alarms] == ["RAISED"]
+    script.act(ResolveAlarm(script.alarms[0].alarm_id, "reported"))
+    script.wait(1)
+    assert [a.state.name for a in script.alarms] == ["RAISED", "RESOLVED", "RAISED"]
 
 
 @dataclass(frozen=True)

@@ -185,6 +185,39 @@ def test_a_unit_that_was_switched_off_needs_no_tracking(script: Remote) -> None:
     assert gone(script) == []
 
 
+def test_to_switch_the_unit_off_ends_that_nobody_tracks_it(script: Remote) -> None:
+    walk(script)
+    script.wait(40, lambda: script.status(U))
+    script.event(U, EventKind.STOPPED)
+    assert gone(script) == [AlarmState.RAISED, AlarmState.RESOLVED]
+    assert script.alarms[-1].by == "the unit was switched off"
+
+
+def test_the_agent_has_its_time_when_the_unit_is_on_again(script: Remote) -> None:
+    walk(script)
+    script.event(U, EventKind.STOPPED)
+    script.wait(600)
+    script.boot_ids[U] = 8
+    script.describe(NO_TRACKER)
+    script.wait(29, lambda: script.status(U))
+    assert gone(script) == []
+    script.wait(2, lambda: script.status(U))
+    assert gone(script) == [AlarmState.RAISED]
+
+
+def test_one_word_of_the_agent_and_another_start_of_the_unit_are_no_tracking(
+    script: Remote,
+) -> None:
+    walk(script)
+    script.wait(40, lambda: script.status(U))
+    walk(script, 1)
+    script.wait(5, lambda: script.status(U))
+    script.boot_ids[U] = 8
+    script.describe(NO_TRACKER)
+    script.wait(8, lambda: script.status(U))
+    assert gone(script) == [AlarmState.RAISED]
+
+
 def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:
     outputs = script.event(AGENT, EventKind.FALL)
     assert script.unit.fall_ns == script.t_ns
