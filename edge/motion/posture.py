@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections import deque
 
+import numpy as np
+
 from edge.motion.body_motion import WINDOW_NS, MotionWindow, cosine
 from edge.motion.strides import Stride
 from edge.samples import Floats
@@ -32,7 +34,7 @@ class Posture:
     """Takes windows of motion and strides as they come."""
 
     def __init__(self) -> None:
-        self._standing_b: Floats | None = None
+        self._standing_b: Floats | None = None  # (3,) up, of length 1 or less
         self._upright_ns: int | None = None
         self._tipped_since_ns: int | None = None
         self._now_ns = 0
@@ -76,8 +78,9 @@ class Posture:
             self._rest_ns = None
         elif self._rest_ns is None:
             self._rest_ns = start_ns
-        if self._standing_b is None and not window.moving:
-            self._standing_b = window.force_mps2
+        weight_mps2 = float(np.linalg.norm(window.force_mps2))
+        if self._standing_b is None and not window.moving and weight_mps2 > 0.0:
+            self._standing_b = window.force_mps2 / weight_mps2
         if self._standing_b is None:
             return
         cos = cosine(window.force_mps2, self._standing_b)

@@ -97,6 +97,16 @@ def test_one_quick_moment_on_the_way_down_is_a_collapse(foot: Foot) -> None:
     assert foot.posture.collapsed
 
 
+def test_who_had_crouched_for_a_while_and_goes_down_from_there_has_not_collapsed(
+    foot: Foot,
+) -> None:
+    """The heel is up by thirty degrees, which is not upright."""
+    foot.held(30.0, 3.0, 1.0)
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(90.0, 4.0)
+    assert not foot.posture.collapsed
+
+
 def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> None:
     """A walking foot is hardly ever held as when standing."""
     foot.held(25.0, 5.0, 1.0)
@@ -169,11 +179,18 @@ def test_a_unit_that_was_never_seen_standing_says_nothing() -> None:
 
 
 def test_one_tipped_step_is_a_stumble_and_two_alike_are_crawling(foot: Foot) -> None:
-    said = []
+    said = [(foot.posture.tipped_step, foot.posture.crawling)]
     for angle_deg in (KNEELING_DEG, KNEELING_DEG, -KNEELING_DEG, -KNEELING_DEG, 10.0):
         foot.steps(angle_deg)
         said.append((foot.posture.tipped_step, foot.posture.crawling))
-    assert said == [(True, False), (True, True), (True, False), (True, True), (False, False)]
+    crawling = [(True, False), (True, True)]
+    assert said == [(False, False), *crawling, *crawling, (False, False)]
+
+
+def test_two_tipped_steps_fifty_degrees_apart_are_of_somebody_who_lies_down(foot: Foot) -> None:
+    foot.steps(50.0)
+    foot.steps(100.0)
+    assert not foot.posture.crawling
 
 
 @pytest.mark.parametrize(("angle_deg", "tipped"), [(35.0, False), (45.0, True)])
@@ -182,11 +199,14 @@ def test_a_shoe_rolls_by_some_forty_degrees(foot: Foot, angle_deg: float, tipped
     assert foot.posture.tipped_step is tipped
 
 
-def test_nobody_makes_long_strides_on_hands_and_knees(foot: Foot) -> None:
+@pytest.mark.parametrize(("length_m", "crawls"), [(0.75, True), (0.85, False)])
+def test_nobody_makes_long_strides_on_hands_and_knees(
+    foot: Foot, length_m: float, crawls: bool
+) -> None:
     foot.steps(KNEELING_DEG)
     foot.steps(KNEELING_DEG)
-    foot.steps(KNEELING_DEG, length_m=0.9)
-    assert not foot.posture.crawling
+    foot.steps(KNEELING_DEG, length_m=length_m)
+    assert foot.posture.crawling is crawls
 
 
 @pytest.mark.parametrize(
@@ -265,7 +285,35 @@ def test_however_long_somebody_crawls_it_does_not_become_standing(foot: Foot) ->
     assert foot.posture.crawling
 
 
-def test_one_odd_footfall_does_not_make_standing_lying(foot: Foot) -> None:
+def test_a_foot_that_moves_does_not_show_how_it_stands() -> None:
+    """While the unit is strapped on, say."""
+    foot = Foot(stands_s=0.0)
+    foot.held(90.0, 1.0, 2.0)
+    foot.held(0.0, 1.0)
+    foot.held(90.0, 3.0)
+    assert foot.posture.lying
+
+
+def test_a_unit_switched_on_in_its_bag_has_seen_after_five_strides_how_it_is_worn() -> None:
+    foot = Foot(stands_s=0.0)
+    foot.held(120.0, 3.0)
+    for _ in range(5):
+        foot.held(10.0, 0.5, 2.0)
+        foot.steps(0.0, length_m=1.3)
+    foot.held(0.0, 3.0)
+    assert not foot.posture.lying
+
+
+def test_a_sensor_that_shows_noughts_before_it_is_awake_does_not_show_how_it_is_worn() -> None:
+    foot = Foot(stands_s=0.0)
+    foot.posture.take_window(MotionWindow(WINDOW_NS, False, np.zeros(3), 0.0), 0.5)
+    foot.held(0.0, 1.0)
+    foot.held(90.0, 3.0)
+    assert foot.posture.lying
+
+
+@pytest.mark.parametrize("held_deg", [0.0, 38.0])
+def test_one_odd_footfall_does_not_make_standing_lying(foot: Foot, held_deg: float) -> None:
     foot.steps(-70.0, length_m=1.3)
-    foot.held(0.0, 5.0)
+    foot.held(held_deg, 5.0)
     assert not foot.posture.lying
