@@ -138,10 +138,13 @@ class Backfill:
             return None if self._closed else news
 
     def _take_report(self, report: Report) -> None:
-        self._reported = report
+        before, self._reported = self._reported, report
         now_ns = self._clock.monotonic_ns()
         for unit_id, held in report.items():
-            self._journals.setdefault(unit_id, UnitJournal()).report(held, now_ns)
+            journal = self._journals.setdefault(unit_id, UnitJournal())
+            if unit_id not in before:
+                journal.note_new_link()
+            journal.report(held, now_ns)
         waiting = [one for one in self._turns if one in report]
         idle = [one for one in report if one not in waiting and one not in self._asking]
         self._turns = deque([*waiting, *idle])

@@ -25,7 +25,8 @@ from shared.sequence_set import Run, SequenceSet
 _INDEX_EVERY_NS = 30 * NS_PER_S
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
-_ENTRY_BYTES = 100.0  # of a message, as long as none has come
+_NUMBER_BYTES = 100.0  # that come for a number, as long as none have
+_GONE_BYTES = 0.1  # where the journal has none of them any more
 _OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
 _PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
 _LEARN_SHARE = 0.02
@@ -136,8 +137,9 @@ class UnitJournal:
         self._indexed: dict[int, None] = {}  # oldest boot first
         self._index_due_ns = 0
         self._pace = Pace()
-        self._entry_bytes = _ENTRY_BYTES
-        self._told = 0  # replies that make sense, to the question that is being answered
+        self._number_bytes = _NUMBER_BYTES
+        self._came_bytes = 0  # in answer to the question that is being answered
+        self._told = 0  # replies that make sense, to that question
         self._silent = False  # it did not answer, or nonsense: not before the next report again
         self._acknowledging: tuple[_Boot, int] | None = None
         self.gone = 0  # numbers that no journal has any more
@@ -154,6 +156,10 @@ class UnitJournal:
             boot.report(runs_of.get(boot_id, ()))
         if now_ns >= self._index_due_ns or not runs_of.keys() <= self._indexed.keys():
             self._index_due_ns = 0
+
+    def note_new_link(self) -> None:
+        """The unit was out of reach, and what its link carries now nobody knows."""
+        self._pace = Pace()
 
     def start_over(self) -> None:
         """Only what is reported from now on is there, whatever was fetched."""
@@ -189,26 +195,33 @@ class UnitJournal:
                 boot.note_fetched(Run(entry.seq, entry.seq))
         else:
             boot.note_fetched(run)
-            self.gone += chunk.to_seq - chunk.from_seq + 1 - len(chunk.entries)
-        for entry in chunk.entries:
-            entry_bytes = len(entry.payload) + _OVERHEAD_BYTES
-            self._entry_bytes += _LEARN_SHARE * (entry_bytes - self._entry_bytes)
+            self._note_size(chunk)
         return msgspec.structs.replace(chunk, entries=new)
 
     def end(self, question: Question, took_ns: int) -> None:
         """No more replies come to this question."""
         told, self._told = self._told, 0
+        came_bytes, self._came_bytes = self._came_bytes, 0
         self._note_answered(question, told)
         if not told:
             self._silent = True
             if question.what == "range":
                 self._pace.note_nothing()
         elif question.what == "range":
-            self._pace.note(took_ns)
+            self._pace.note(came_bytes, took_ns)
         elif question.what == "acknowledge" and self._acknowledging is not None:
             boot, last = self._acknowledging
             boot.acknowledged = last
         self._acknowledging = None
+
+    def _note_size(self, chunk: JournalChunk) -> None:
+        numbers = chunk.to_seq - chunk.from_seq + 1
+        came_bytes = sum(len(entry.payload) + _OVERHEAD_BYTES for entry in chunk.entries)
+        share = 1.0 - (1.0 - _LEARN_SHARE) ** numbers
+        learnt = self._number_bytes + share * (came_bytes / numbers - self._number_bytes)
+        self._number_bytes = max(learnt, _GONE_BYTES)
+        self._came_bytes += came_bytes
+        self.gone += numbers - len(chunk.entries)
 
     def _learn(self, index: JournalIndex, now_ns: int, *, is_first: bool) -> None:
         """Two machines under one name both answer."""
@@ -253,7 +266,7 @@ class UnitJournal:
     def _ask_piece(self) -> Question | None:
         """What the wearer did last matters most, so the newest piece of the newest boot."""
         total = self._pace.answer_bytes
-        count = max(1, int(_PIECE_SHARE * total / self._entry_bytes))
+        count = max(1, int(_PIECE_SHARE * total / self._number_bytes))
         for boot_id, boot in self._newest_first():
             piece = boot.piece(count)
             if piece is not None:

@@ -218,7 +218,7 @@ class Fetch:
                 piece = yield from self._try(question, RecordingPiece.from_bytes)
                 if piece is None:
                     continue  # for less: perhaps the link cannot carry so much
-                self._pace.note(self._took_ns)
+                self._pace.note(len(piece.data), self._took_ns)
                 if piece.gone:
                     return False
                 if piece.offset == offset and len(piece.data) <= length and _is_intact(piece):

@@ -70,6 +70,12 @@ class Bench:
         tell(self.backfill, {"FF-01": (Held(BOOT, runs),)})
 
     @property
+    def totals(self) -> list[int]:
+        """How many bytes each question was for."""
+        asked = [dict(pair.split("=") for pair in one.split(";")) for one in self.questions]
+        return [int(one["total"]) for one in asked]
+
+    @property
     def numbers(self) -> list[int]:
         assert all(key == backfilled_key("FF-01", "up/position") for key, _ in self.delivered)
         headers = [header_of(payload) for _, payload in self.delivered]
@@ -136,11 +142,28 @@ def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(t
     until(lambda: len(bench.delivered) == 299)
     bench.backfill.close()
     bench.spool.close()
-    asked = [dict(pair.split("=") for pair in one.split(";")) for one in bench.questions if one]
-    totals = [int(one["total"]) for one in asked if "total" in one]
+    totals = bench.totals
     assert totals == [LEAST_BYTES * 2**number for number in range(len(totals))]
     assert len(totals) > 1
     assert sorted(bench.numbers) == list(range(2, 301))
+
+
+def test_a_unit_that_was_out_of_reach_is_asked_for_little_first(tmp_path):
+    """Where it was well linked before, it may now be in a cellar."""
+    bench = Bench(tmp_path, range(1, 301))
+    for _ in range(4):
+        bench.report(Run(1, 1))
+    until(lambda: len(bench.delivered) == 299)
+    before = len(bench.totals)
+    tell(bench.backfill, {})
+    bench.spool.append([Journaled(n, POSITION, n, said(n)) for n in range(301, 402)])
+    for _ in range(4):
+        bench.report(Run(1, 300), Run(401, 401))
+    until(lambda: len(bench.delivered) == 399)
+    bench.backfill.close()
+    bench.spool.close()
+    assert before > 1
+    assert bench.totals[before] == LEAST_BYTES
 
 
 def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base_station.journals.pace import LEAST_BYTES
 from base_station.journals.unit_journal import Held, Question, UnitJournal
 from shared.clock import NS_PER_S
 from shared.messages import JournalBoot, JournalChunk, JournalEntry
@@ -44,13 +45,54 @@ def test_a_unit_that_fell_silent_is_asked_for_little_again() -> None:
         totals.append(asked["total"])
         assert asked["bytes"] == min(asked["total"], 8192), "what comes first is stored first"
         if number < 5:
-            answer(journal, question, JournalChunk(BOOT, asked["to"], asked["to"], ()))
+            entry = JournalEntry(asked["to"], "up/position", bytes(asked["total"]))
+            answer(journal, question, JournalChunk(BOOT, asked["to"], asked["to"], (entry,)))
         else:
             journal.end(question, 1)
     journal.report(held, 7)
     assert totals == sorted(totals)
     assert totals[-1] > 8192
     assert next_of(journal)[1]["total"] == totals[0]
+
+
+def after_single_losses(last: int) -> UnitJournal:
+    """Many a message was lost by itself and fetched at once; then an outage until ``last``."""
+    held = SequenceSet([1], [200])
+    for lost in range(10, 200, 10):
+        held.discard(lost)
+    journal = journal_of(*held.runs(), last=200)
+    for number in range(4):
+        journal.report((Held(BOOT, tuple(held.runs())),), number)
+        while (question := journal.next_question()) is not None:
+            if question.what == "acknowledge":
+                break
+            asked = dict(question.parameters)
+            seqs = [] if question.what == "urgent" else range(asked["from"], asked["to"] + 1)
+            entries = tuple(JournalEntry(seq, "up/position", bytes(80)) for seq in seqs)
+            chunk = JournalChunk(
+                BOOT, asked["from"], asked["to"], entries, urgent_only=question.what == "urgent"
+            )
+            answer(journal, question, chunk)
+    for number in range(4, 6):
+        held.add(last)
+        journal.report((Held(BOOT, (Run(1, 200), Run(last, last))),), number)
+    return journal
+
+
+def test_after_many_small_losses_a_long_outage_is_asked_for_in_little_first() -> None:
+    """That one message came quickly does not say that a thin link carries half a megabyte."""
+    journal = after_single_losses(5000)
+    question = journal.next_question() or Question("none")
+    answer(journal, question, JournalChunk(BOOT, 201, 4999, (), urgent_only=True))
+    what, asked = next_of(journal)
+    assert (what, asked["to"], asked["total"]) == ("range", 4999, LEAST_BYTES)
+
+
+def test_many_numbers_that_the_journal_has_no_more_are_asked_about_in_few_questions() -> None:
+    held = Held(BOOT, (Run(1, 1), Run(200_001, 200_001)))
+    journal = journal_of(*held.runs, last=200_001)
+    journal.report((held,), 1)
+    assert len(asked_in_turn(journal, held, 100)) < 50
 
 
 def test_the_newest_piece_is_asked_for_first() -> None:
