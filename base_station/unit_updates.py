@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from base_station.boot_state import captured_ns
 from base_station.live_state import Fault, UnitState
 from base_station.thermal import dose_of
 from shared.clock import NS_PER_S
 from shared.messages import (
     EventKind,
+    Header,
     Heartbeat,
     Message,
     Position,
@@ -49,13 +51,19 @@ def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
 
 def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
     unit.status, unit.status_ns = status, t_ns
-    pressed = unit.mayday_ns is not None and (
-        unit.mayday_cancelled_ns is None or unit.mayday_cancelled_ns < unit.mayday_ns
-    )
-    if status.mayday and not pressed:  # the press itself may have been lost on the way
+    pressed_ns = _pressed_ns(unit)
+    if status.mayday and pressed_ns is None:  # the press itself may have been lost on the way
         unit.mayday_ns = t_ns
-    elif pressed and not status.mayday:
+    elif pressed_ns is not None and not status.mayday:
         unit.mayday_cancelled_ns = t_ns
+
+
+def _pressed_ns(unit: UnitState) -> int | None:
+    """Since when there is a mayday that was not taken back."""
+    cancelled_ns = unit.mayday_cancelled_ns
+    if unit.mayday_ns is None or (cancelled_ns is not None and cancelled_ns >= unit.mayday_ns):
+        return None
+    return unit.mayday_ns
 
 
 def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
@@ -70,7 +78,10 @@ def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> N
 def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     match event.kind:
         case EventKind.MAYDAY:
-            unit.mayday_ns = t_ns
+            said_ns = captured_ns(unit.boots, event.header, t_ns) or t_ns
+            pressed_ns = _pressed_ns(unit)
+            if pressed_ns is None or said_ns > pressed_ns:  # else a status has told it before
+                unit.mayday_ns = t_ns
         case EventKind.MAYDAY_CANCELLED:
             unit.mayday_cancelled_ns = t_ns
         case EventKind.FALL:
@@ -79,6 +90,12 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
             said = event.detail or event.kind.name.lower().replace("_", " ")
             unit.fault = Fault(t_ns, said)
         case EventKind.STOPPED | EventKind.SOURCE_ENDED:
-            unit.stopped_ns = t_ns
+            if _is_last_word(unit, event.header):  # it may come out of the journal of a run before
+                unit.stopped_ns = t_ns
         case _:
             pass
+
+
+def _is_last_word(unit: UnitState, header: Header) -> bool:
+    running = unit.boots[-1]
+    return header.boot_id == running.boot_id and header.seq >= running.seen.lasts[-1]

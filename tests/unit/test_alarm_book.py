@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
@@ -12,6 +13,8 @@ from base_station.events import Refused
 from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
+from shared.channels import EVENT, backfilled_key
+from shared.codec import encode
 from shared.messages import AlarmState, EventKind, Message, Position, Status, UnitEvent
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -87,6 +90,23 @@ def test_mayday_is_immediate_and_the_wearer_cannot_resolve_it(script: Script) ->
 def test_a_mayday_whose_event_was_lost_is_seen_in_the_status(script: Script) -> None:
     script.wait(3, lambda: script.status(U, mayday=True))
     assert changes(script, "mayday") == [("RAISED", "mayday")]
+
+
+@pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
+def test_the_press_that_a_status_told_is_no_other_one_when_the_journal_brings_it(
+    script: Script, dealt_with: Callable[[str], AcknowledgeAlarm | ResolveAlarm]
+) -> None:
+    script.wait(1, lambda: script.status(U))
+    pressed = UnitEvent(script.header(U), EventKind.MAYDAY)
+    script.wait(1, lambda: script.status(U, mayday=True))
+    script.wait(5)
+    script.act(dealt_with(script.alarms[-1].alarm_id))
+    script.wait(5, lambda: script.status(U, mayday=True))
+    script.record(backfilled_key(U, EVENT.suffix), encode(pressed))
+    script.wait(1)
+    assert len(changes(script, "mayday")) == 2
+    script.event(U, EventKind.MAYDAY)
+    assert changes(script, "mayday")[2:] == [("RAISED", "mayday")]
 
 
 def test_pressing_again_is_another_mayday(script: Script) -> None:
@@ -257,6 +277,19 @@ def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> Non
     (alarm,) = script.alarms
     assert (alarm.rule, alarm.level, alarm.priority) == ("link-lost", "switched off", 3)
     assert "was switched off" in alarm.text
+
+
+@pytest.mark.parametrize("run", ["earlier", "same"])
+def test_a_goodbye_out_of_the_journal_switches_nobody_off_who_has_spoken_since(
+    script: Script, run: str
+) -> None:
+    script.status(U)
+    goodbye = UnitEvent(script.header(U), EventKind.STOPPED)
+    script.boot_ids[U] = 8 if run == "earlier" else 7
+    script.wait(5, lambda: script.status(U))
+    script.record(backfilled_key(U, EVENT.suffix), encode(goodbye))
+    script.wait(40)
+    assert changes(script, "link-lost") == [("RAISED", "lost")]
 
 
 def test_a_sensor_that_fails_is_told_in_the_unit_s_words_until_a_person_has_seen_it(
