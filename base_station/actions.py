@@ -130,6 +130,7 @@ class Actions:
     ) -> Iterator[Effect]:
         if isinstance(action, SendCommand):
             command = command_book.send(state, by, action)
+            yield from command_book.replace(state, command)
             touched = list(accountability.ask(state, command))
         else:
             command = command_book.confirm(state, by, action)

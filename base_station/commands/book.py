@@ -17,8 +17,9 @@ from shared.errors import UserError
 from shared.messages import Command, CommandKind, CommandReply, CommandState
 from shared.messages.station import ConfirmCommand, SendCommand
 
-MOST_OPEN = 50
+MOST_OPEN = 50  # and as many again for evacuations, which wait for nothing
 CLOSED_KEPT = 10  # at hand; the log has all of them
+REPLACED = "a later rate replaces it"
 _NOT_THERE: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
@@ -40,6 +41,22 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
     _forget_oldest(state)
     state.commands[action.command_id] = command
     return command
+
+
+def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
+    """Of two rates the one that was given last holds: where the other is still on its way, its
+    repeat would be applied behind it.
+    """
+    if later.kind is not CommandKind.SET_POSITION_RATE:
+        return
+    for command in state.commands.values():
+        if command is later or command.kind is not later.kind:
+            continue
+        replaced = [one for one in _not_reached(command) if one.unit_id in later.deliveries]
+        for delivery in replaced:
+            delivery.refused_ns, delivery.reason = state.t_ns, REPLACED
+        if replaced:
+            yield command
 
 
 def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand:
@@ -148,8 +165,9 @@ def _check(state: StationState, action: SendCommand) -> None:
         raise UserError("a position rate is no finite number")
     if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
         raise UserError("say one of: a unit, a crew, everyone")
-    if sum(command.is_open for command in state.commands.values()) >= MOST_OPEN:
-        raise UserError(f"{MOST_OPEN} commands are open; wait until some are answered")
+    most = 2 * MOST_OPEN if action.kind is CommandKind.EVACUATE else MOST_OPEN
+    if sum(command.is_open for command in state.commands.values()) >= most:
+        raise UserError(f"{most} commands are open; wait until some are answered")
 
 
 def _addressed(state: StationState, action: SendCommand) -> list[UnitState]:

@@ -208,6 +208,32 @@ def test_a_refusal_says_why_and_ends_it():
     assert not unanswered(script.pipeline.state)
 
 
+def test_a_rate_that_a_later_one_replaces_is_not_said_any_more():
+    """Its repeat would be applied last, and the unit would go on at a rate that nobody wants."""
+    script = crewed()
+    rate = CommandKind.SET_POSITION_RATE
+    script.act(order("slow", rate, crew="red", rate_hz=1.0))
+    script.command("FF-01", "slow")
+    script.act(order("look", CommandKind.LOCATE, unit_id="FF-01"))
+    outputs = script.act(order("fast", rate, unit_id="FF-01", rate_hz=5.0))
+    assert {CommandTouched("slow"), CommandTouched("fast")} == set(outputs)
+    said = [(one.command_id, one.unit_id) for one in unanswered(script.pipeline.state)]
+    assert said == [("slow", "FF-02"), ("look", "FF-01"), ("fast", "FF-01")]
+    replaced = script.pipeline.state.commands["slow"].deliveries["FF-01"]
+    assert (states(script, "slow"), replaced.reason) == (
+        {"FF-01": "refused", "FF-02": "queued"},
+        "a later rate replaces it",
+    )
+
+
+def test_a_rate_that_was_received_stays_so_when_a_later_one_comes():
+    script = crewed()
+    script.act(order("slow", CommandKind.SET_POSITION_RATE, unit_id="FF-01", rate_hz=1.0))
+    script.reply("FF-01", "slow", RECEIVED)
+    script.act(order("fast", CommandKind.SET_POSITION_RATE, unit_id="FF-01", rate_hz=5.0))
+    assert states(script, "slow") == {"FF-01": "received"}
+
+
 @pytest.mark.parametrize("so_far", [[], ["sent"], ["sent", "received"]])
 def test_it_expires_where_nobody_answered_in_time(so_far):
     script = to_one()
@@ -358,6 +384,16 @@ def test_what_is_kept_is_bounded():
     assert list(script.pipeline.state.commands)[-1] == f"l{3 * CLOSED_KEPT - 1}"
     assert len(script.pipeline.state.commands) <= CLOSED_KEPT
     for number in range(MOST_OPEN):
-        script.act(order(f"e{number}", unit_id="FF-01"))
-    (output,) = script.act(order("more", unit_id="FF-01"))
+        script.act(order(f"p{number}", CommandKind.PAR_REQUEST, unit_id="FF-01"))
+    (output,) = script.act(order("more", CommandKind.PAR_REQUEST, unit_id="FF-01"))
     assert isinstance(output, Refused)
+
+
+def test_an_evacuation_does_not_wait_for_what_is_still_open():
+    script = crewed()
+    for number in range(MOST_OPEN):
+        script.act(order(f"t{number}", CommandKind.TEXT, unit_id="FF-01", text="come nearer"))
+    assert script.act(order("out", CommandKind.EVACUATE, everyone=True)) == [CommandTouched("out")]
+    for number in range(MOST_OPEN):
+        (output,) = script.act(order(f"e{number}", CommandKind.EVACUATE, unit_id="FF-02"))
+    assert isinstance(output, Refused), "what is kept is bounded all the same"
