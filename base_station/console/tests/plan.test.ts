@@ -76,6 +76,14 @@ describe("floorsOf", () => {
     ]);
   });
 
+  it("keeps the one that is looked at, where nobody is any more and no plan has it", () => {
+    const names = (shown: number | "all") =>
+      floorsOf(null, people, new Map(), shown).map((one) => `${one.name}: ${one.people}`);
+    expect(names(3)).toEqual(["3: 0", "1: 2", "B1: 1"]);
+    expect(names(1)).toEqual(["1: 2", "B1: 1"]);
+    expect(names("all")).toEqual(["1: 2", "B1: 1"]);
+  });
+
   it("begins where most people are", () => {
     expect(firstFloor(floorsOf(PLAN, people, new Map()))).toBe(1);
     expect(firstFloor([])).toBeNull();

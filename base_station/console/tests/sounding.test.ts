@@ -48,6 +48,13 @@ describe("what is to be heard", () => {
     ]);
   });
 
+  it("is what has become immediate without waiting, and nothing for what has eased", () => {
+    const critical = alarm("heat", { priority: 1 });
+    expect(
+      after({ alarms: [HEAT] }, { alarms: [critical], nowMs: 100 }, { alarms: [HEAT], nowMs: 200 }),
+    ).toEqual(["soon", "immediate", null]);
+  });
+
   it("is an alarm of the second priority once, and information never", () => {
     const news = alarm("news", { priority: 3 });
     expect(

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { openAlarms } from "../src/live/alarms";
+import { openAlarms, sinceMs } from "../src/live/alarms";
 import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
@@ -110,6 +110,15 @@ describe("openAlarms", () => {
       "taken",
       "battery",
     ]);
+  });
+});
+
+describe("sinceMs", () => {
+  const times = { raised_ms: 5, changed_ms: 2_000 };
+
+  it("is when an alarm was raised last, and once it is acknowledged, when it was first", () => {
+    expect(sinceMs(alarm("again", times))).toBe(2_000);
+    expect(sinceMs(alarm("taken", { ...times, state: "acknowledged" }))).toBe(5);
   });
 });
 

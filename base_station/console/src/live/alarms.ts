@@ -17,3 +17,8 @@ export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
         (a.alarm_id < b.alarm_id ? -1 : 1),
     );
 }
+
+/** Since when it asks for somebody: what has happened again, or got worse, was raised anew. */
+export function sinceMs({ state, raised_ms, changed_ms }: AlarmView): number {
+  return state === "raised" ? changed_ms : raised_ms;
+}

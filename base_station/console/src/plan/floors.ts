@@ -13,14 +13,17 @@ export interface Floor {
 
 const WORST: readonly Urgency[] = ["immediate", "soon", "watch", "normal"];
 
-/** Top floor first, as in a building: those of the plan and those where somebody is. */
+/** Top floor first, as in a building: those of the plan, those where somebody is, and the one that is
+ * looked at, also when the last one has left it. */
 export function floorsOf(
   plan: Plan | null,
   units: readonly UnitView[],
   alarms: ReadonlyMap<string, AlarmView>,
+  shown: FloorChoice = "all",
 ): Floor[] {
   const there = units.map((unit) => unit.position?.floor ?? null).filter((f) => f !== null);
-  return [...new Set([...planFloors(plan), ...there])]
+  const lookedAt = shown === "all" ? [] : [shown];
+  return [...new Set([...planFloors(plan), ...there, ...lookedAt])]
     .sort((a, b) => b - a)
     .map((floor) => {
       const on = units.filter((unit) => unit.position?.floor === floor);

@@ -2,6 +2,7 @@ import { useRef } from "preact/hooks";
 import { attempt, isPast, mayAct } from "../sessions";
 import { find } from "../view";
 import * as api from "../api";
+import { sinceMs } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
@@ -52,7 +53,7 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
         {alarm.text}
       </button>
       <span class="since" aria-live="off">
-        {duration(picture.nowMs.value - alarm.raised_ms)} ago
+        {duration(picture.nowMs.value - sinceMs(alarm))} ago
       </span>
       <span class="state">{stateOf(alarm, mayAct.value)}</span>
       {mayAct.value && <AlarmAction alarm={alarm} place={place} />}

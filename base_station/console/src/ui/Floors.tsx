@@ -7,7 +7,7 @@ import { Icon } from "./Icon";
 export function Floors({ picture }: { picture: Picture }) {
   void picture.unitsChanged.value;
   const units = picture.allUnits();
-  const floors = floorsOf(picture.plan.value, units, picture.alarms.value);
+  const floors = floorsOf(picture.plan.value, units, picture.alarms.value, floor.value);
   if (floors.length === 0) return null;
   const placed = units.filter((unit) => unit.position !== null).length;
   return (
