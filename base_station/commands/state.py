@@ -58,9 +58,9 @@ class SentCommand(msgspec.Struct):
         """What happened too late is still what happened."""
         if delivery.acknowledged_ns is not None:
             return "acknowledged"
-        if delivery.refused_ns is not None:
-            return "refused"
         received = delivery.received_ns is not None
+        if delivery.refused_ns is not None and not received:
+            return "refused"
         if delivery.expired_ns is not None and not (received and not self.asks_wearer):
             return "expired"
         if received:
