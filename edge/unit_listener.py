@@ -7,7 +7,6 @@ newest first, and counted: the tracker sees a hole in time and says so.
 from __future__ import annotations
 
 import logging
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -17,6 +16,7 @@ from edge.raw_stream import sensor_of
 from edge.samples import SensorDescription
 from shared.bus import Bus
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, raw_journal_key
+from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.codec import decode
 from shared.errors import BusError, WireError
 from shared.messages import JournalChunk, RawImu, UnitDescription
@@ -28,21 +28,29 @@ _RETRY_S = 1.0
 _LOOK_S = 0.1
 _FETCH_BYTES = 32_768  # a question; at 100 kbit/s it takes three seconds
 _FETCH_TIMEOUT_S = 5.0
-_FETCH_PATIENCE_S = 15.0  # in all: the wearer's place is not known meanwhile
+_FETCH_PATIENCE_NS = 15 * NS_PER_S  # in all: the wearer's place is not known meanwhile
+_SILENT_NS = 5 * NS_PER_S  # the newest run, when one before it may speak again
+_RUNS_KEPT = 8
 
 
 class UnitListener:
     """``open`` it once; ``take`` gives the messages in the order in which they came."""
 
-    def __init__(self, unit_id: str, open_bus: Callable[[], Bus]) -> None:
+    def __init__(
+        self, unit_id: str, open_bus: Callable[[], Bus], clock: Clock | None = None
+    ) -> None:
         self.unit_id = unit_id
         self._open_bus = open_bus
+        self._clock = clock or SystemClock()
         self._changed = Condition()
         self._waiting: deque[RawImu] = deque()
         self._descriptions: dict[int, UnitDescription] = {}  # by boot; the newest few
+        self._speaks: int | None = None  # the boot that is heard
+        self._heard_ns = 0  # when it was, last
+        self._over: deque[int] = deque(maxlen=_RUNS_KEPT)  # boots that another one has followed
         self._declared = ExitStack()
         self._bus: Bus | None = None
-        self.dropped = 0  # messages that came faster than they were taken, or of no known sensor
+        self.dropped = 0  # messages: too fast, of no known sensor, or of a run that is over
         self.not_understood = 0
 
     def open(self, stop: Event) -> bool:
@@ -90,9 +98,9 @@ class UnitListener:
         """What the unit's journal has of the raw stream between two numbers, in order; ends where
         the unit does not answer, or not in time.
         """
-        end_s = time.monotonic() + _FETCH_PATIENCE_S
+        end_ns = self._clock.monotonic_ns() + _FETCH_PATIENCE_NS
         first = after_seq + 1
-        while first < before_seq and self._bus is not None and time.monotonic() < end_s:
+        while first < before_seq and self._bus is not None and self._clock.monotonic_ns() < end_ns:
             question = f"epoch={boot_id};from={first};to={before_seq - 1};total={_FETCH_BYTES}"
             selector = f"{raw_journal_key(self.unit_id)}?{question}"
             asked_from = first
@@ -138,13 +146,27 @@ class UnitListener:
             return
         assert isinstance(raw, RawImu)
         with self._changed:
-            if self._waiting and self._waiting[-1].header.boot_id != raw.header.boot_id:
-                self._leave_out_undescribed()
-            if len(self._waiting) >= _KEPT:
+            if not self._is_heard(raw.header.boot_id) or len(self._waiting) >= _KEPT:
                 self.dropped += 1
                 return
             self._waiting.append(raw)
             self._changed.notify_all()
+
+    def _is_heard(self, boot_id: int) -> bool:
+        """A run that another one has followed is over: each word of it would begin the path anew,
+        and the next one of the new run again.  Unless that one has fallen silent: then they were
+        two machines under one name, and this one is left.
+        """
+        now_ns = self._clock.monotonic_ns()
+        if boot_id != self._speaks:
+            if boot_id in self._over and now_ns - self._heard_ns < _SILENT_NS:
+                return False
+            if self._speaks is not None:
+                self._over.append(self._speaks)
+                self._leave_out_undescribed()
+            self._speaks = boot_id
+        self._heard_ns = now_ns
+        return True
 
     def _leave_out_undescribed(self) -> None:
         """A run that is over without having said what its sensor is will never say it."""

@@ -77,7 +77,8 @@ class Air:
     def __init__(self) -> None:
         router = MemoryRouter()
         self._unit = router.attach_unit()
-        self.listener = UnitListener(U, router.attach_station)
+        self.clock = ManualClock()
+        self.listener = UnitListener(U, router.attach_station, self.clock)
         assert self.listener.open(Event())
 
     def send(self, messages: Iterable[Message]) -> None:
@@ -236,6 +237,39 @@ def test_when_the_unit_starts_again_the_path_begins_anew_and_nothing_is_missed(a
     air.send(second[40:])
     air.send(weak_unit(boot_id=9)[:40])
     assert contents(air.track()) == contents(first)
+
+
+def test_a_late_word_of_the_run_before_does_not_end_the_new_one(air: Air) -> None:
+    first, second = weak_unit(), weak_unit(boot_id=8)
+    late = [message for message in first if isinstance(message, RawImu)][-1:]
+    air.send(first[:-40])
+    air.send(second[:40])
+    air.send(late)
+    air.send(second[40:])
+    air.send(weak_unit(boot_id=9)[:40])
+    air.track()
+    assert contents(air.track()) == contents(positions(strong_unit()))
+
+
+def test_of_two_machines_under_one_name_the_newest_is_tracked_and_then_the_one_that_is_left(
+    air: Air,
+) -> None:
+    first, second = weak_unit(), weak_unit(boot_id=8)
+    air.send(first[:40])
+    for one, other in zip(first[40:], second, strict=False):
+        air.send((other, one))
+    air.send(second[len(first) - 40 :])
+    air.track()
+    left_out = air.listener.dropped
+    air.clock.advance(4.9)
+    air.send(first[-40:])
+    assert air.listener.dropped > left_out
+    left_out = air.listener.dropped
+    air.clock.advance(0.1)
+    air.send(first[-40:])
+    assert air.listener.dropped == left_out
+    assert contents(air.track()) == contents(positions(strong_unit()))
+    assert air.listener.has_restarted(8)
 
 
 def test_raw_samples_wait_for_the_description(air: Air) -> None:
