@@ -44,6 +44,7 @@ _BATCH_NS = NS_PER_S // 20
 _SILENT_NS = 3 * NS_PER_S
 _AGAIN_S = 1.0
 _MOST_TOLD = 100  # faults that nobody took; the oldest are left out
+_MOST_REPORTED = 20  # errors of the device that are told from one another
 _NOTHING: Vector = (np.nan, np.nan, np.nan)
 
 
@@ -62,6 +63,7 @@ class Ximu3Source:
         self._rows = _Rows(self._place.field_ut)
         self._faults: deque[str] = deque(maxlen=_MOST_TOLD)
         self._gone: set[str] = set()  # why there have been no samples since the last one
+        self._reported: deque[str] = deque(maxlen=_MOST_REPORTED)  # since the line is open
         self.taken = 0  # inertial samples
 
     @property
@@ -123,6 +125,7 @@ class Ximu3Source:
         frames = Frames()
         self._device_clock.reopened()
         self._watch.opened()
+        self._reported.clear()
         last_ns = self._clock.monotonic_ns()
         while not self._closed.is_set():
             said = line.read()
@@ -177,7 +180,8 @@ class Ximu3Source:
                 self._rows.temperature_degc = message.temperature_degc
             case Battery():
                 self._rows.battery = message.level
-            case Notice(text=text, is_error=True):
+            case Notice(text=text, is_error=True) if text not in self._reported:
+                self._reported.append(text)
                 self._say(f"it reports an error: {text}")
             case Notice(text=text):
                 logger.info("%s says: %s", self._place, text)

@@ -163,6 +163,14 @@ def test_what_the_device_reports_is_passed_on(listen) -> None:
         listen(device.source).hears("it reports an error: Battery ?low")
 
 
+def test_what_the_device_reports_again_and_again_is_passed_on_once(listen) -> None:
+    said = [b"F,5,SD card full\r\n"] * 30 + [b"F,6,Battery low\r\n"]
+    with closing(TcpDevice(said, hangs=True)) as device:
+        listener = listen(device.source)
+        listener.hears("Battery low")
+    assert len([fault for fault in listener.faults if "SD card full" in fault]) == 1
+
+
 def test_what_is_no_serial_port_is_told(listen, tmp_path: Path) -> None:
     plain = tmp_path / "file"
     plain.write_text("I,1,0,0,0,0,0,1\r\n")
