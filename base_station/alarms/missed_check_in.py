@@ -29,7 +29,7 @@ class MissedCheckIn:
         if duty is None:
             return Clear(unit.off_duty_ns, "off duty")
         if t_ns < duty.due_ns:
-            return Clear(duty.checked_in_ns, f"heard from, says {duty.checked_in_by}")
+            return Clear(duty.checked_in_ns, f"not overdue; last heard by {duty.checked_in_by}")
         answers_due_ns = [asked_ns + ANSWER_NS for asked_ns in duty.asks_ns]
         onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
         silent_min = (onset_ns - duty.checked_in_ns) / NS_PER_S / 60.0

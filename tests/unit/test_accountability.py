@@ -90,7 +90,7 @@ def test_it_fires_once_and_is_armed_again_by_the_check_in(script: Script) -> Non
     script.act(CheckIn("FF-01", "", False))
     mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
     assert [one.state for one in mine] == [AlarmState.RAISED, AlarmState.RESOLVED]
-    assert "chief" in mine[-1].by
+    assert mine[-1].by == "not overdue; last heard by chief"
     script.wait(59)
     assert len([one for one in overdue(script) if one.unit_id == "FF-01"]) == 2
     script.wait(2)
@@ -123,6 +123,19 @@ def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
     script.act(SetAccountability(600.0, 900.0))
     assert left_s(script, "FF-01") == left_s(script, "FF-03") == 599.0
     assert rest_left_s(script) == 899.0
+
+
+def test_other_times_are_not_taken_for_a_word_of_the_wearer(script: Script) -> None:
+    script.wait(1)
+    script.act(CheckIn("FF-01", "", False), by="Ana")
+    script.wait(61)
+    script.act(SetAccountability(600.0, 900.0))
+    (ended,) = [
+        one
+        for one in overdue(script)[1:]
+        if one.state is AlarmState.RESOLVED and one.unit_id == "FF-01"
+    ]
+    assert ended.by == "not overdue; last heard by Ana"
 
 
 def test_other_times_are_nothing_to_a_unit_that_nobody_wears(script: Script) -> None:

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { openAlarms, sinceMs } from "../src/live/alarms";
+import { handedTo, openAlarms, sinceMs } from "../src/live/alarms";
 import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
@@ -119,6 +119,18 @@ describe("sinceMs", () => {
   it("is when an alarm was raised last, and once it is acknowledged, when it was first", () => {
     expect(sinceMs(alarm("again", times))).toBe(2_000);
     expect(sinceMs(alarm("taken", { ...times, state: "acknowledged" }))).toBe(5);
+  });
+});
+
+describe("handedTo", () => {
+  const mayday = alarm("mayday", { text: "Mayday from Ana" });
+  const wearer = { person_id: "b", name: "Bo", crew: "", role: "", photo_url: null };
+
+  it("is who wears the unit of an alarm that names somebody else", () => {
+    expect(handedTo(mayday, unit("1", { person: { ...wearer, name: "Ana" } }))).toBe("");
+    expect(handedTo(mayday, unit("1", { person: wearer }))).toBe("Bo wears this unit now");
+    expect(handedTo(mayday, unit("1"))).toBe("nobody wears this unit now");
+    expect(handedTo(alarm("battery", { text: "The battery of 1's unit" }), unit("1"))).toBe("");
   });
 });
 

@@ -1,5 +1,6 @@
 /** Which alarms are open, in the order in which they want a person. */
-import type { AlarmView } from "../wire";
+import type { AlarmView, UnitView } from "../wire";
+import { displayName } from "./urgency";
 
 export function isOpen(alarm: AlarmView): boolean {
   return alarm.state !== "resolved";
@@ -21,4 +22,11 @@ export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
 /** Since when it asks for somebody: what has happened again, or got worse, was raised anew. */
 export function sinceMs({ state, raised_ms, changed_ms }: AlarmView): number {
   return state === "raised" ? changed_ms : raised_ms;
+}
+
+/** Who has the unit now, where an alarm was raised while somebody else did; else empty. */
+export function handedTo({ text }: AlarmView, unit: UnitView): string {
+  const name = displayName(unit);
+  if (text.includes(name)) return "";
+  return unit.person === null ? "nobody wears this unit now" : `${name} wears this unit now`;
 }

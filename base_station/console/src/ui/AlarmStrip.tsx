@@ -2,7 +2,7 @@ import { useRef } from "preact/hooks";
 import { attempt, isPast, mayAct } from "../sessions";
 import { find } from "../view";
 import * as api from "../api";
-import { sinceMs } from "../live/alarms";
+import { handedTo, sinceMs } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
@@ -39,6 +39,7 @@ interface RowProps {
 function AlarmRow({ alarm, place, picture }: RowProps) {
   const taken = alarm.state === "acknowledged";
   const unit = picture.unit(alarm.unit_id);
+  const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
   return (
     <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
@@ -51,6 +52,7 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
         onClick={() => find(alarm.unit_id, unit?.peek().position?.floor ?? null)}
       >
         {alarm.text}
+        {handed !== "" && ` (${handed})`}
       </button>
       <span class="since" aria-live="off">
         {duration(picture.nowMs.value - sinceMs(alarm))} ago
