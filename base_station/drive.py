@@ -179,6 +179,7 @@ class StationDrive:
         self._settle()
         sooner_ns = URGENT_SOONER_NS if self._picture.is_urgent else 0
         if now_ns >= due.delta_ns - sooner_ns:
+            due.delta_ns = now_ns + DELTA_NS  # where it cannot be told, too
             before_ns = time.thread_time_ns()
             self._tell()
             spent_ns = time.thread_time_ns() - before_ns

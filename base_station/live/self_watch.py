@@ -21,6 +21,7 @@ class SelfWatch:
     def __init__(self) -> None:
         self._failed: dict[str, str] = {}  # since the last check: what is wrong, by part
         self._quiet: dict[str, int] = {}  # checks without a problem, of parts that had one
+        self._logged: dict[str, set[type[Exception]]] = {}  # by part, until it is well
 
     def note(self, part: str, text: str) -> None:
         """A part failed just now, which nobody sees who looks at it later."""
@@ -35,8 +36,11 @@ class SelfWatch:
             self.failed(part, error)
 
     def failed(self, part: str, error: Exception) -> None:
-        """A mistake in the program, to be told as such."""
-        log.error("the station's %s failed", part, exc_info=error)
+        """A mistake in the program, to be told as such; one that comes again is logged once."""
+        kinds = self._logged.setdefault(part, set())
+        if type(error) not in kinds:
+            kinds.add(type(error))
+            log.error("the station's %s failed", part, exc_info=error)
         self.note(part, f"The station's {part} failed: {error!r}; please report it")
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
@@ -57,6 +61,7 @@ class SelfWatch:
             self._quiet[part] += 1
             if self._quiet[part] >= WELL_AFTER:
                 del self._quiet[part]
+                self._logged.pop(part, None)
                 if part in known:
                     yield ReportProblem(part, "")
 

@@ -6,22 +6,30 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event
 
 import pytest
 
 from base_station import drive as drive_module
 from base_station.alarms import ALARMS
 from base_station.alarms.port import Verdict
+from base_station.drive import StationDrive
 from base_station.events import Output, Received, StationEvent
 from base_station.fusion import FUSERS
+from base_station.live.drive_ports import DrivePorts
+from base_station.live.picture import Picture
 from base_station.live_state import UnitState
+from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
+from base_station.views import StationFacts
+from shared.clock import NS_PER_S, ManualClock
+from shared.mcap_log import LogRecord
 from shared.messages import Message, Position
 from shared.messages.station import RegisterUnit
-from tests.live_station import LiveStation
+from tests.live_station import LiveStation, Screen, Store, make_pipeline
 from tests.station_script import Script
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"
@@ -86,6 +94,73 @@ def test_a_mistake_in_the_pipeline_costs_one_message(
         station.say(make_position(north_m=1.0))
         until(lambda: "pipeline" in station.pipeline.state.problems)
         follows(station, make_position, 4.0)
+
+
+class Nowhere:
+    """A ``Log`` that keeps nothing."""
+
+    problem = little_room = ""
+    is_behind = False
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        del t_ns, key, payload
+        return True
+
+    def flush(self) -> bool:
+        return True
+
+
+class Idle:
+    """A ``Feed`` that brings nothing; waiting takes no time."""
+
+    follows = False
+
+    def __init__(self, clock: ManualClock, takes: int) -> None:
+        self._clock = clock
+        self._left = takes
+        self.done = Event()
+
+    def take(self, timeout_s: float) -> list[LogRecord]:
+        self._left -= 1
+        if self._left <= 0:
+            self.done.set()
+        self._clock.advance(max(timeout_s, 1e-4))
+        return []
+
+    def wake(self) -> None:
+        pass
+
+
+def test_a_picture_that_cannot_be_drawn_takes_neither_all_the_time_nor_the_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It is tried again at every turn, for days perhaps."""
+    clock = ManualClock()
+    feed = Idle(clock, 300)
+    ports = DrivePorts(
+        feed=feed,
+        log=Nowhere(),
+        live=Screen(),
+        projection=Store(),
+        checkpoints=Checkpoints(tmp_path),
+        photo_urls=lambda _: None,
+        facts=StationFacts,
+        report=lambda _: None,
+        say=lambda _: None,
+        clock=clock,
+        boot_id=1,
+    )
+    drive = StationDrive(make_pipeline(), ports)
+
+    def fail(*_: object) -> None:
+        raise KeyError("a mistake")
+
+    monkeypatch.setattr(Picture, "flush", fail)
+    drive.start()
+    feed.done.wait(PATIENCE_S)
+    drive.stop()
+    assert clock.monotonic_ns() > 10 * NS_PER_S
+    assert len([one for one in caplog.records if one.exc_info]) == 1
 
 
 @dataclass(frozen=True)

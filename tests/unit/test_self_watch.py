@@ -76,3 +76,26 @@ def test_a_problem_that_a_person_dismissed_is_told_again_while_it_lasts() -> Non
     assert [r.text for r in watch.check(FULL, {})] == ["the disk is full"]
     assert [r.text for r in watch.check(FULL, FULL)] == []
     assert [r.text for r in watch.check(FULL, {})] == ["the disk is full"]
+
+
+def test_a_mistake_that_comes_again_is_logged_once_and_once_more_when_it_was_over(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Some come with every message: hundreds a second fill a disk."""
+    watch, known = SelfWatch(), {"pipeline": "it failed"}
+
+    def logged() -> int:
+        return len([one for one in caplog.records if one.exc_info])
+
+    for number in range(50):
+        watch.failed("pipeline", ValueError(f"of {number}"))
+        list(watch.check(WELL, known))
+    assert logged() == 1
+    watch.failed("pipeline", KeyError("another"))
+    watch.failed("drive", ValueError("elsewhere"))
+    assert logged() == 3
+    for _ in range(WELL_AFTER):
+        list(watch.check(WELL, known))
+    list(watch.check(WELL, known))
+    watch.failed("pipeline", ValueError("anew"))
+    assert logged() == 4
