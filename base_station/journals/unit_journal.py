@@ -145,8 +145,8 @@ class UnitJournal:
         self.gone = 0  # numbers that no journal has any more
 
     def report(self, held: tuple[Held, ...], now_ns: int) -> None:
-        """``now_ns`` monotonic.  The index is asked for now and then, and when the unit's program
-        has started again.
+        """``held``: of the run that goes on last; ``now_ns`` monotonic.  The index is asked for now
+        and then, and until it has the run that goes on.  Of older ones nothing may be left.
         """
         self._silent = False
         runs_of = {one.boot_id: one.runs for one in held}
@@ -154,7 +154,8 @@ class UnitJournal:
         self._boots = {boot_id: self._boots.get(boot_id) or _Boot() for boot_id in known}
         for boot_id, boot in self._boots.items():
             boot.report(runs_of.get(boot_id, ()))
-        if now_ns >= self._index_due_ns or not runs_of.keys() <= self._indexed.keys():
+        is_new = bool(held) and held[-1].boot_id not in self._indexed
+        if now_ns >= self._index_due_ns or is_new:
             self._index_due_ns = 0
 
     def note_new_link(self) -> None:

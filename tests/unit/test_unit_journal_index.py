@@ -25,6 +25,28 @@ def test_what_it_has_is_asked_now_and_then() -> None:
     assert next_of(journal)[0] == "index"
 
 
+def test_a_run_of_which_the_journal_has_nothing_left_has_it_asked_no_more_often() -> None:
+    """What is said of many runs once a second takes a good part of a thin link, for ever."""
+    journal = UnitJournal()
+    held = (Held(3, (Run(1, 10),)), Held(BOOT, (Run(1, 10),)))
+    journal.report(held, 0)
+    indexed(journal, JournalBoot(BOOT, 1, 10, 0, 0))
+    journal.report(held, 1 * NS_PER_S)
+    assert journal.next_question() is None
+    journal.report(held, 31 * NS_PER_S)
+    assert next_of(journal)[0] == "index"
+
+
+def test_a_run_that_is_not_on_the_units_disk_yet_is_asked_for_again_and_again() -> None:
+    journal = UnitJournal()
+    held = (Held(3, (Run(1, 10),)), Held(BOOT, (Run(1, 10),)))
+    journal.report(held, 0)
+    for number in range(1, 4):
+        indexed(journal, JournalBoot(3, 1, 10, 0, 0))
+        journal.report(held, number * NS_PER_S)
+    assert next_of(journal)[0] == "index"
+
+
 def test_a_run_that_the_journal_has_no_more_is_not_asked_for() -> None:
     journal = UnitJournal()
     for first, due_ns in ((1, 0), (2, 3600 * 10**9)):
