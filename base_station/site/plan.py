@@ -9,7 +9,7 @@ and the member ``muster`` says so and lists the storeys::
      "features": [{"type": "Feature", "properties": {"kind": "outline", "floor": 0}, ...}]}
 
 A feature of kind ``wall`` is a line that nobody walks through (doors are its gaps), one of kind
-``stairs`` the ring within which people change floor.
+``stairs`` the ring within which people change floor.  Of several parts, each is one.
 """
 
 from __future__ import annotations
@@ -90,14 +90,14 @@ def read_plan(geojson: bytes) -> Plan:
         about = feature.properties or {}
         kind = about.get("kind")
         if kind in _KINDS:
-            line = _line(feature, f"{kind} (feature {number})")
+            lines = _lines(feature, f"{kind} (feature {number})")
             floor = _read(about.get("floor", 0), _Number, f"floor of a {kind} (feature {number})")
             if kind == "outline":
-                outlines.append(line)
+                outlines += lines
             elif kind == "wall":
-                walls.append(Wall(floor, line))
+                walls += [Wall(floor, line) for line in lines]
             else:
-                stairs.append(Stairs(floor, line))
+                stairs += [Stairs(floor, line) for line in lines]
     return Plan(geojson, _storeys(document["muster"]), tuple(outlines), tuple(walls), tuple(stairs))
 
 
@@ -157,16 +157,20 @@ def _storeys(site: dict[str, Any]) -> tuple[Storey, ...]:
     return tuple(Storey(one.floor, one.down_m) for one in lowest_first)
 
 
-def _line(feature: _Feature, what: str) -> Ring:
-    """The points of a line, or of a polygon's outer ring; a height beside a point is left."""
+def _lines(feature: _Feature, what: str) -> list[Ring]:
+    """The points of each of its lines, or of its polygons' outer rings; a height beside a point is
+    left.
+    """
     geometry = _read(feature.geometry, _Geometry, what)
-    points = geometry.coordinates
-    if geometry.type != "LineString":
-        points = points[0] if isinstance(points, list) and points else points
-    line = _read(points, list[tuple[_Metres, ...]], what)
-    if len(line) < LEAST_POINTS or any(len(point) < 2 for point in line):
+    is_multi = geometry.type.startswith("Multi")
+    parts = _read(geometry.coordinates, list[Any], what) if is_multi else [geometry.coordinates]
+    if not geometry.type.endswith("LineString"):
+        parts = [part[0] if isinstance(part, list) and part else part for part in parts]
+    lines = [_read(part, list[tuple[_Metres, ...]], what) for part in parts]
+    points = [point for line in lines for point in line]
+    if min(map(len, lines), default=0) < LEAST_POINTS or any(len(point) < 2 for point in points):
         raise UserError(f"the plan's {what} has fewer than two points [east_m, north_m]")
-    return tuple((point[0], point[1]) for point in line)
+    return [tuple((point[0], point[1]) for point in line) for line in lines]
 
 
 def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:

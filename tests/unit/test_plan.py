@@ -169,6 +169,41 @@ def test_a_line_of_fewer_than_two_points_is_refused(kind: str, points: list[list
         read_plan(msgspec.json.encode(plan))
 
 
+def test_lines_and_areas_of_several_parts_are_as_many_walls_outlines_and_stairs() -> None:
+    first, second = [[0, 0], [4, 0], [4, 3]], [[10, 0], [14, 0], [14, 3]]
+    hole = [[1, 0.5], [2, 0.5], [2, 1]]
+
+    def feature(kind: str, shape: str, coordinates: object) -> dict[str, object]:
+        geometry = {"type": shape, "coordinates": coordinates}
+        return {"type": "Feature", "properties": {"kind": kind, "floor": 1}, "geometry": geometry}
+
+    features = [
+        feature("wall", "MultiLineString", [first, second]),
+        feature("outline", "MultiPolygon", [[first, hole], [second]]),
+        feature("stairs", "MultiPolygon", [[first], [second]]),
+        feature("wall", "Polygon", [first, hole]),
+    ]
+    site = {"frame": "site-m", "floors": []}
+    plan = read_plan(
+        msgspec.json.encode({"type": "FeatureCollection", "muster": site, "features": features})
+    )
+    both = [tuple(map(tuple, line)) for line in (first, second)]
+    assert [wall.line for wall in plan.walls] == [*both, both[0]]
+    assert [wall.floor for wall in plan.walls] == [1, 1, 1]
+    assert list(plan.outlines) == both
+    assert [one.ring for one in plan.stairs] == both
+
+
+@pytest.mark.parametrize("shape", ["MultiLineString", "MultiPolygon"])
+@pytest.mark.parametrize("coordinates", [[], [[]], [[[]]], 5, [5], [[5]], None])
+def test_several_parts_that_are_none_are_refused(shape: str, coordinates: object) -> None:
+    geometry = {"type": shape, "coordinates": coordinates}
+    feature = {"type": "Feature", "properties": {"kind": "wall"}, "geometry": geometry}
+    plan = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": [feature]}
+    with pytest.raises(UserError, match=r"wall \(feature 0\)"):
+        read_plan(msgspec.json.encode(plan))
+
+
 def test_a_wall_that_is_no_number_is_refused() -> None:
     plan = (
         b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'

@@ -35,7 +35,8 @@ interface FloorFieldProps {
 
 /** On which floor; to begin with the one that is shown. */
 export function FloorField({ picture, start }: FloorFieldProps) {
-  const known = floorsOf(picture.plan.value, picture.allUnits(), new Map()).map((one) => one.floor);
+  const floorsShown = floorsOf(picture.plan.value, picture.allUnits(), new Map(), floor.value);
+  const known = floorsShown.map((one) => one.floor);
   const isAnother = typeof start === "number" && !known.includes(start);
   const floors = isAnother ? [...known, start].sort((a, b) => b - a) : known;
   if (floors.length === 0) return null;
