@@ -23,6 +23,7 @@ from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
 _INDEX_EVERY_NS = 30 * NS_PER_S
+_ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of them
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
 _NUMBER_BYTES = 100.0  # that come for a number, as long as none have
@@ -67,6 +68,7 @@ class _Boot:
         self.unanswered: int | None = None  # from here on it said nothing of alerts, asked last
         self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
         self.acknowledged = 0
+        self.acknowledge_due_ns = 0
 
     def report(self, runs: tuple[Run, ...]) -> None:
         self.held = SequenceSet([run.first for run in runs], [run.last for run in runs])
@@ -135,6 +137,7 @@ class UnitJournal:
     def __init__(self) -> None:
         self._boots: dict[int, _Boot] = {}
         self._indexed: dict[int, None] = {}  # oldest boot first
+        self._reported_ns = 0
         self._index_due_ns = 0
         self._pace = Pace()
         self._number_bytes = _NUMBER_BYTES
@@ -149,6 +152,7 @@ class UnitJournal:
         and then, and until it has the run that goes on.  Of older ones nothing may be left.
         """
         self._silent = False
+        self._reported_ns = now_ns
         runs_of = {one.boot_id: one.runs for one in held}
         known = dict.fromkeys((*self._indexed, *runs_of))
         self._boots = {boot_id: self._boots.get(boot_id) or _Boot() for boot_id in known}
@@ -213,6 +217,7 @@ class UnitJournal:
         elif question.what == "acknowledge" and self._acknowledging is not None:
             boot, last = self._acknowledging
             boot.acknowledged = last
+            boot.acknowledge_due_ns = self._reported_ns + _ACKNOWLEDGE_EVERY_NS
         self._acknowledging = None
 
     def _note_size(self, chunk: JournalChunk) -> None:
@@ -276,7 +281,8 @@ class UnitJournal:
 
     def _acknowledge(self) -> Question | None:
         for boot_id, boot in self._newest_first():
-            safe = min(boot.complete) if len(boot.complete) == _SAFE_REPORTS else 0
+            is_due = self._reported_ns >= boot.acknowledge_due_ns
+            safe = min(boot.complete) if is_due and len(boot.complete) == _SAFE_REPORTS else 0
             if safe > boot.acknowledged:
                 self._acknowledging = boot, safe
                 return Question("acknowledge", (("epoch", boot_id), ("to", safe)))

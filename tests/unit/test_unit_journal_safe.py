@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.journals.unit_journal import Held, Question, UnitJournal
+from shared.clock import NS_PER_S
 from shared.messages import JournalBoot, JournalChunk, JournalIndex
 from shared.sequence_set import Run
 from tests.asked_journal import BOOT, answer, asked_in_turn, asked_of, indexed, journal_of, next_of
@@ -25,6 +26,41 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
     journal.take(question, index, 1)
     journal.end(question, 1)
     assert journal.next_question() is None
+
+
+def test_what_a_unit_goes_on_saying_is_acknowledged_now_and_then() -> None:
+    """Each answer names all runs of the journal: every second that is much for a thin link."""
+    journal, last = UnitJournal(), 100
+    journal.report((Held(BOOT, (Run(1, last),)),), 0)
+    indexed(journal, JournalBoot(BOOT, 1, last, 0, 0))
+    acknowledged = []
+    for second in range(1, 30):
+        last += 8
+        journal.report((Held(BOOT, (Run(1, last),)),), second * NS_PER_S)
+        question = journal.next_question()
+        if question is not None:
+            assert question.what == "acknowledge"
+            acknowledged.append(second)
+            index = JournalIndex((JournalBoot(BOOT, 1, last, 0, 0),)).to_bytes()
+            journal.take(question, index, second * NS_PER_S)
+            journal.end(question, 1)
+    assert acknowledged == [2, 12, 22]
+
+
+def test_runs_that_are_over_are_each_acknowledged_at_once() -> None:
+    held = tuple(Held(number, (Run(1, 10),)) for number in range(1, 6))
+    journal = UnitJournal()
+    journal.report(held, 0)
+    boots = [JournalBoot(number, 1, 10, 0, 0) for number in range(1, 6)]
+    indexed(journal, *boots)
+    for second in range(1, 3):
+        journal.report(held, second)
+    acknowledged = []
+    while (question := journal.next_question()) is not None:
+        acknowledged.append(dict(question.parameters)["epoch"])
+        journal.take(question, JournalIndex(tuple(boots)).to_bytes(), 3)
+        journal.end(question, 1)
+    assert acknowledged == [5, 4, 3, 2, 1]
 
 
 def test_a_run_of_a_single_message_is_acknowledged_too() -> None:
