@@ -19,6 +19,8 @@ export const pastTrails = signal<readonly PastTrails[]>([]);
 export const loadingKinds = signal<ReadonlySet<TrailKind>>(new Set());
 
 const AGAIN_MS = 20_000;
+/** The incident whose trails are drawn: an answer may come when somebody has gone to another. */
+let followed: string | null = null;
 
 export function toggle(kind: TrailKind): void {
   const next = new Set(shownKinds.peek());
@@ -37,7 +39,9 @@ export function followTrails(picture: Picture): () => void {
     const incident = picture.incident.value;
     const kinds = [...shownKinds.value].filter((kind) => kind !== "fused");
     stop();
-    pastTrails.value = pastTrails.peek().filter((one) => kinds.includes(one.kind));
+    const before = incident?.incident_id === followed ? pastTrails.peek() : [];
+    followed = incident?.incident_id ?? null;
+    pastTrails.value = before.filter((one) => kinds.includes(one.kind));
     if (incident === null || kinds.length === 0) return;
     const load = () => kinds.forEach((kind) => void ask(incident.incident_id, kind));
     load();
@@ -53,7 +57,7 @@ async function ask(incidentId: string, kind: PastKind): Promise<void> {
   loadingKinds.value = new Set([...loadingKinds.peek(), kind]);
   const answer = await attempt(api.trails(incidentId, kind));
   loadingKinds.value = new Set([...loadingKinds.peek()].filter((one) => one !== kind));
-  if (answer === null || !shownKinds.peek().has(kind)) return;
+  if (answer === null || incidentId !== followed || !shownKinds.peek().has(kind)) return;
   const trails = new Map(answer.trails.map((trail) => [trail.unit_id, trail.points]));
   pastTrails.value = [...pastTrails.peek().filter((one) => one.kind !== kind), { kind, trails }];
 }

@@ -1,0 +1,64 @@
+import { signal } from "@preact/signals";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import type { Picture } from "../src/live/picture";
+import { followTrails, pastTrails, shownKinds } from "../src/plan/pastTrails";
+import type { IncidentView } from "../src/wire";
+
+interface Asked {
+  incidentId: string;
+  answer: (unitId: string) => Promise<void>;
+}
+
+const asked: Asked[] = [];
+
+vi.mock("../src/sessions", () => ({ attempt: <T>(work: Promise<T>) => work }));
+vi.mock("../src/api", () => ({
+  trails: (incidentId: string) =>
+    new Promise((resolve) => {
+      asked.push({
+        incidentId,
+        answer: async (unitId) => {
+          resolve({ trails: [{ unit_id: unitId, points: [] }] });
+          await new Promise((done) => setTimeout(done)); // what waits for it has gone on
+        },
+      });
+    }),
+}));
+
+const incident = (incident_id: string) => signal({ incident_id, closed_ms: 1 } as IncidentView);
+const follow = (id: string) => followTrails({ incident: incident(id) } as unknown as Picture);
+const drawn = () => pastTrails.value.map(({ trails }) => [...trails.keys()].join());
+
+describe("trails that are worked out", () => {
+  beforeEach(() => {
+    asked.length = 0;
+    pastTrails.value = [];
+    shownKinds.value = new Set(["smoothed"]);
+  });
+  afterEach(() => {
+    shownKinds.value = new Set(["fused"]);
+  });
+
+  it("are drawn as soon as they are there", async () => {
+    const end = follow("mill");
+    await asked[0]?.answer("mill's");
+    expect(asked.map((one) => one.incidentId)).toEqual(["mill"]);
+    expect(drawn()).toEqual(["mill's"]);
+    end();
+  });
+
+  it("are not drawn over another incident, neither those that were there nor those that come late", async () => {
+    const end = follow("mill");
+    await asked[0]?.answer("mill's");
+    end();
+    const endNext = follow("dock");
+    expect(drawn()).toEqual([]);
+    endNext();
+    const endLast = follow("mill");
+    await asked[1]?.answer("dock's");
+    expect(drawn()).toEqual([]);
+    await asked[2]?.answer("mill's");
+    expect(drawn()).toEqual(["mill's"]);
+    endLast();
+  });
+});
