@@ -44,6 +44,7 @@ from shared.messages.station import (
     SetReference,
     SetRest,
     SetStart,
+    SetThresholds,
     TakeOver,
     Unassign,
 )
@@ -69,8 +70,8 @@ class Actions:
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
                 effects = [self._alarm(state, by, action)]
-            case ReportProblem():
-                effects = self._book.problem(state, action.part, action.text)
+            case ReportProblem() | SetThresholds():
+                effects = self._of_itself(state, action)
             case RegisterUnit():
                 effects = self._register(state, action)
             case SetStart():
@@ -111,6 +112,17 @@ class Actions:
         if isinstance(action, AcknowledgeAlarm):
             return _or_refuse(self._book.acknowledge(state, action.alarm_id, by))
         return _or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))
+
+    def _of_itself(
+        self, state: StationState, action: ReportProblem | SetThresholds
+    ) -> Iterator[Effect]:
+        """What the station says without being asked."""
+        if isinstance(action, ReportProblem):
+            yield from self._book.problem(state, action.part, action.text)
+        else:
+            state.thresholds = action.values
+            self._book.use(action.values)
+            yield from self._reviewed(state, state.units.values())
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[Effect]:
         unit = state.units.get(action.unit_id)

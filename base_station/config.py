@@ -90,6 +90,7 @@ class StationConfig:
     log: LogConfig = field(default_factory=LogConfig)
     standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
+    alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
 
     def plain_endpoints(self) -> tuple[str, ...]:
         """Where others could listen in: what is not encrypted and leaves this machine."""

@@ -254,6 +254,7 @@ class StationState(msgspec.Struct):
     late: dict[str, Late] = msgspec.field(default_factory=dict)  # pinned units: to be solved again
     learnt_building: LearntBuilding = LearntBuilding()
     learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)
+    thresholds: dict[str, float] = msgspec.field(default_factory=dict)  # of alarm rules
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)

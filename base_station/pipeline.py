@@ -87,6 +87,7 @@ class StationPipeline:
         )
         self._positioning.consider(self.state.plan)
         self._book = AlarmBook(rules)
+        self._book.use(self.state.thresholds)
         self._actions = Actions(self._book, self._positioning)
 
     def checkpoint(self) -> bytes:

@@ -103,7 +103,7 @@ def _unknown_keys(hint: Any, value: object, where: str) -> Iterator[str]:
                 if key in hints:
                     yield from _unknown_keys(hints[key], inner, f"{where}{key}.")
                 else:
-                    meant = _nearest(key, hints, hints.keys() - value.keys())
+                    meant = nearest(key, hints, hints.keys() - value.keys())
                     yield f"{where}{key} is not a setting; {meant}"
     elif get_origin(hint) is tuple and isinstance(value, list):
         for index, inner in enumerate(value):
@@ -116,7 +116,7 @@ def _unknown_keys(hint: Any, value: object, where: str) -> Iterator[str]:
             yield from _unknown_keys(option, value, where)
 
 
-def _nearest(key: str, known: Iterable[str], absent: Iterable[str]) -> str:
+def nearest(key: str, known: Iterable[str], absent: Iterable[str]) -> str:
     """The setting that was probably meant; those not given yet are the likelier ones."""
     stem, _, unit = key.rpartition("_")
     for name in sorted(known):

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
+from shared.config import Within
 from shared.messages import Message, Status
 
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    low: float = 0.10
-    hysteresis: float = 0.05
+    low: Annotated[float, Within(0.01, 0.9)] = 0.10
+    hysteresis: Annotated[float, Within(0.0, 0.5)] = 0.05
     name: str = "battery"
     levels: tuple[str, ...] = ("low",)
-    clear_after_s: float = 30.0
+    clear_after_s: Annotated[float, Within(0.0, 600.0)] = 30.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = (Status,)

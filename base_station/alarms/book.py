@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
+from base_station.alarms.thresholds import Thresholds, with_thresholds
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -34,9 +35,14 @@ class AlarmBook:
     """Keeps ``state.alarms``; every method yields or returns the alarms that changed."""
 
     def __init__(self, rules: Sequence[AlarmRule]) -> None:
-        self._rules = tuple(rules)
+        self._defaults = tuple(rules)
+        self.use({})
+
+    def use(self, thresholds: Thresholds) -> None:
+        """Judge by these from now on."""
+        self._rules = with_thresholds(self._defaults, thresholds)
         self._heeding = {
-            kind: tuple(rule for rule in rules if kind in rule.heeds) for kind in ROUTINE
+            kind: tuple(rule for rule in self._rules if kind in rule.heeds) for kind in ROUTINE
         }
 
     def review(

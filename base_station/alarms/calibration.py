@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import Annotated
 
 from base_station.alarms.port import INFORMATION, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.config import Within
 from shared.messages import Message
 
 _DAY_S = 86_400
@@ -17,7 +19,7 @@ _DAY_S = 86_400
 class Calibration:
     """A unit without any calibration is left alone: not every sensor needs one."""
 
-    old_after_days: float = 180.0
+    old_after_days: Annotated[float, Within(1.0, 3650.0)] = 180.0
     name: str = "calibration"
     levels: tuple[str, ...] = ("old", "poor")
     clear_after_s: float = 0.0

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.config import Within
 from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
 class GpsUnused:
-    after_s: float = 30.0
+    after_s: Annotated[float, Within(5.0, 600.0)] = 30.0
     name: str = "gps-unused"
     levels: tuple[str, ...] = ("unused",)
     clear_after_s: float = 3.0

@@ -6,10 +6,13 @@ Thermal classes and the dose: ``base_station.thermal``.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from base_station.thermal import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
+from shared.config import Within
+from shared.errors import ConfigError
 from shared.messages import Message, Temperature
 
 _PRIORITIES = {"caution": INFORMATION, "warning": SOON, "critical": IMMEDIATE}
@@ -17,16 +20,20 @@ _PRIORITIES = {"caution": INFORMATION, "warning": SOON, "critical": IMMEDIATE}
 
 @dataclass(frozen=True, slots=True)
 class Heat:
-    caution_degc: float = CAUTION_DEGC
-    warning_degc: float = WARNING_DEGC
-    critical_degc: float = CRITICAL_DEGC
-    hysteresis_degc: float = 10.0
+    caution_degc: Annotated[float, Within(30.0, 1000.0)] = CAUTION_DEGC
+    warning_degc: Annotated[float, Within(30.0, 1000.0)] = WARNING_DEGC
+    critical_degc: Annotated[float, Within(30.0, 1000.0)] = CRITICAL_DEGC
+    hysteresis_degc: Annotated[float, Within(0.0, 50.0)] = 10.0
     name: str = "heat"
     levels: tuple[str, ...] = ("caution", "warning", "critical")
-    clear_after_s: float = 10.0
+    clear_after_s: Annotated[float, Within(0.0, 600.0)] = 10.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = (Temperature,)
+
+    def __post_init__(self) -> None:
+        if not self.caution_degc < self.warning_degc < self.critical_degc:
+            raise ConfigError("heat: caution_degc, warning_degc and critical_degc must rise")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.temperature is None:

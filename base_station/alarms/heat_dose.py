@@ -6,15 +6,17 @@ Thermal classes and the dose: ``base_station.thermal``.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
+from shared.config import Within
 from shared.messages import Message, Temperature
 
 
 @dataclass(frozen=True, slots=True)
 class HeatDose:
-    used_up: float = 1.0
+    used_up: Annotated[float, Within(0.1, 10.0)] = 1.0
     name: str = "heat-dose"
     levels: tuple[str, ...] = ("used up",)
     clear_after_s: float = 0.0

@@ -7,23 +7,30 @@ pre-alert only; the full alarm stays until a person resets it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import IMMEDIATE, SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.config import Within
+from shared.errors import ConfigError
 from shared.messages import Message, Status
 
 
 @dataclass(frozen=True, slots=True)
 class NoMotion:
-    pre_alert_s: float = 20.0
-    alarm_s: float = 30.0
+    pre_alert_s: Annotated[float, Within(5.0, 300.0)] = 20.0
+    alarm_s: Annotated[float, Within(5.0, 300.0)] = 30.0
     name: str = "no-motion"
     levels: tuple[str, ...] = ("pre-alert", "alarm")
     clear_after_s: float = 0.0
-    rearm_after_s: float | None = 30.0
+    rearm_after_s: Annotated[float, Within(5.0, 600.0)] = 30.0
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = (Status,)
+
+    def __post_init__(self) -> None:
+        if self.pre_alert_s > self.alarm_s:
+            raise ConfigError("no-motion: pre_alert_s comes before alarm_s, not after it")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.config import Within
 from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
 class PositionLost:
-    after_s: float = 15.0
+    after_s: Annotated[float, Within(5.0, 600.0)] = 15.0
     name: str = "position-lost"
     levels: tuple[str, ...] = ("lost",)
-    clear_after_s: float = 10.0
+    clear_after_s: Annotated[float, Within(0.0, 600.0)] = 10.0
     rearm_after_s: float | None = None
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = ()

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from base_station.alarms.port import INFORMATION, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
+from shared.config import Within
 from shared.messages import Message
 
 
@@ -15,7 +17,7 @@ class RestDue:
     name: str = "rest-due"
     levels: tuple[str, ...] = ("due",)
     clear_after_s: float = 0.0
-    rearm_after_s: float | None = 600.0
+    rearm_after_s: Annotated[float, Within(30.0, 43200.0)] = 600.0
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = ()
 

@@ -11,6 +11,8 @@ from contextlib import AbstractContextManager, ExitStack
 from typing import NamedTuple
 
 from base_station import interpreter
+from base_station.alarms import ALARMS
+from base_station.alarms.thresholds import Thresholds, thresholds_of
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.services import Services
@@ -51,7 +53,7 @@ from base_station.views import StationFacts
 from shared.channels import ROOT, clock_key
 from shared.envelope import Stamper
 from shared.messages import STATION_ID
-from shared.messages.station import Action
+from shared.messages.station import Action, SetThresholds
 from shared.service_manager import ServiceManager
 
 
@@ -63,7 +65,11 @@ class _Again(NamedTuple):
 
 
 def run_station(config: StationConfig, announce: Announce) -> None:
-    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know."""
+    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know.
+
+    Raises ConfigError where no alarm rule can have the thresholds of the settings.
+    """
+    thresholds = thresholds_of(ALARMS, config.alarms)
     interpreter.relax()
     allow_many_files()
     manager = ServiceManager(os.environ)
@@ -72,7 +78,7 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         announce(line)
         manager.working()
 
-    while (again := _run_once(config, tell, manager)) is not None:
+    while (again := _run_once(config, thresholds, tell, manager)) is not None:
         if again.cut is not None:
             tell("what the other station does not have is set aside, and handed to it")
             cut_log(config.data, again.cut, lambda _: manager.working())
@@ -81,10 +87,12 @@ def run_station(config: StationConfig, announce: Announce) -> None:
             Checkpoints(DataFolder(config.data).checkpoints).clear()
 
 
-def _run_once(config: StationConfig, announce: Announce, manager: ServiceManager) -> _Again | None:
+def _run_once(
+    config: StationConfig, thresholds: Thresholds, announce: Announce, manager: ServiceManager
+) -> _Again | None:
     with ExitStack() as closing:
         resources = open_station(config, announce, closing)
-        return _LiveStation(resources, announce, manager, closing).run()
+        return _LiveStation(resources, thresholds, announce, manager, closing).run()
 
 
 class _LiveStation:
@@ -95,7 +103,12 @@ class _LiveStation:
     """
 
     def __init__(
-        self, resources: Resources, announce: Announce, manager: ServiceManager, closing: ExitStack
+        self,
+        resources: Resources,
+        thresholds: Thresholds,
+        announce: Announce,
+        manager: ServiceManager,
+        closing: ExitStack,
     ) -> None:
         """Begins to hear and to step; ``closing`` ends everything in its order."""
         self._resources, self._disk = resources, resources.disk
@@ -106,6 +119,8 @@ class _LiveStation:
         self._ended = closing.enter_context(EndedThreads())
         self._is_in_incident: Callable[[], bool] = lambda: False  # until the log has been read
         self._reported: Mapping[str, str] = {}  # problems of the station's parts, by the log
+        self._thresholds = thresholds  # of the alarm rules, by the settings
+        self._thresholds_in_use: Callable[[], Thresholds] = lambda: thresholds  # by the log
         self._side = self._new_side()
         self._share = FairShare(self._side.feed.offer, steady)
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
@@ -240,6 +255,8 @@ class _LiveStation:
                 self._start_again(None)
             if self._side.leads:
                 enrolled.update()
+                if self._thresholds_in_use() != self._thresholds:
+                    self._gate.submit(STATION_ID, SetThresholds(self._thresholds))
                 for report in self._share.news(self._reported):
                     self._gate.submit(STATION_ID, report)
 
@@ -256,6 +273,7 @@ class _LiveStation:
 
         self._is_in_incident = is_in_incident
         self._reported = state.problems
+        self._thresholds_in_use = lambda: state.thresholds
         self._stale_picture.note_stepped(self._stepped_from_ns, place[0])
         self._disk.clock.hold_while(lambda: not self._leads() or is_in_incident())
         self._side.begin(place, state)

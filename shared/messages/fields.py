@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
@@ -14,6 +15,8 @@ def put_fields(part: Any, struct: msgspec.Struct) -> None:
         value = getattr(struct, name)
         if isinstance(value, tuple):
             getattr(part, name).extend(value)
+        elif isinstance(value, dict):
+            getattr(part, name).update(value)
         elif value is not None:
             setattr(part, name, value)
 
@@ -26,7 +29,8 @@ def get_fields(part: Any, struct: type[msgspec.Struct]) -> dict[str, Any]:
 
 def _get(part: Any, field: FieldDescriptor) -> Any:
     if field.is_repeated:
-        return tuple(getattr(part, field.name))
+        value = getattr(part, field.name)
+        return dict(value) if isinstance(value, Mapping) else tuple(value)
     if field.has_presence and not part.HasField(field.name):
         return None
     return getattr(part, field.name)

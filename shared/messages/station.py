@@ -150,6 +150,12 @@ class SetAccountability(msgspec.Struct, frozen=True):
     work_limit_s: float
 
 
+class SetThresholds(msgspec.Struct, frozen=True):
+    """Of alarm rules, by ``rule.threshold``; what is not named has its default."""
+
+    values: dict[str, float]
+
+
 class SetRest(msgspec.Struct, frozen=True):
     unit_id: str
     resting: bool
@@ -202,6 +208,7 @@ Action = (
     | RemoveBeacon
     | CheckIn
     | SetAccountability
+    | SetThresholds
     | SetRest
     | ForgetWearers
     | TakeOver
@@ -231,6 +238,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     RemoveBeacon: "remove_beacon",
     CheckIn: "check_in",
     SetAccountability: "set_accountability",
+    SetThresholds: "set_thresholds",
     SetRest: "set_rest",
     ForgetWearers: "forget_wearers",
     TakeOver: "take_over",

@@ -10,6 +10,7 @@ import pytest
 from base_station.alarms import ALARMS
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule, Clear, Finding
+from base_station.alarms.thresholds import limits_of
 from base_station.bench.rig import said
 from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, GpsUse, StationState, UnitState
@@ -102,6 +103,11 @@ def test_names_are_the_log_s_and_differ() -> None:
     names = [rule.name for rule in ALARMS]
     assert len(set(names)) == len(names)
     assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
+
+
+def test_what_may_be_set_has_its_default_within_its_limits(rule: AlarmRule) -> None:
+    for name, limits in limits_of(rule).items():
+        assert msgspec.convert(getattr(rule, name), limits) == getattr(rule, name)
 
 
 def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:

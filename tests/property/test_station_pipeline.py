@@ -8,6 +8,8 @@ from collections.abc import Callable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from base_station.alarms import ALARMS
+from base_station.alarms.thresholds import limits_of
 from base_station.checkpoint import read_checkpoint
 from shared.messages import (
     AlarmChange,
@@ -35,6 +37,7 @@ from shared.messages.station import (
     SetPlan,
     SetRest,
     SetStart,
+    SetThresholds,
     Unassign,
 )
 from shared.quality import Quality
@@ -46,6 +49,8 @@ METRES = st.floats(-1e4, 1e4)
 ANY = st.floats(allow_nan=True, allow_infinity=True, width=32)
 COMMAND_IDS = st.sampled_from(["c1", "c2", "c3"])
 ANGLES = st.floats(0.0, 6.28)
+
+THRESHOLDS = [f"{rule.name}.{name}" for rule in ALARMS for name in limits_of(rule)]
 
 Deed = Callable[[Script], object]
 
@@ -133,6 +138,10 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
         st.booleans(),
     ),
     st.builds(lambda p, w: lambda s: s.act(SetAccountability(p, w)), st.just(30.0) | ANY, ANY),
+    st.builds(
+        lambda v: lambda s: s.act(SetThresholds(v)),
+        st.dictionaries(st.sampled_from(THRESHOLDS) | st.text(max_size=5), ANY),
+    ),
     st.builds(lambda u, r: lambda s: s.act(SetRest(u, r)), UNITS, st.booleans()),
     st.builds(lambda u: lambda s: s.act(ForgetWearers(u)), UNITS),
 )

@@ -1,0 +1,65 @@
+"""A department's own thresholds, in the settings of a station that runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from base_station.bench.rig import said
+from tests.served_station import MakePosition, greet, prepare, snapshot
+from tests.station_command import Browser, Command, Unit
+from tests.waiting import until
+
+
+def set_in(browser: Browser) -> list[dict[str, Any]]:
+    """What the audit has of thresholds, oldest first."""
+    entries = browser.call("GET", "/audit")
+    said = [json.loads(one["detail"]) for one in entries if one["action"] == "SetThresholds"]
+    return said[::-1]
+
+
+def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
+    serve: Callable[..., Command],
+    tmp_path: Path,
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+) -> None:
+    settings = tmp_path / "station.toml"
+    settings.write_text("[alarms.battery]\nlow = 0.6\n")
+    ours: dict[str, Any] = {"values": {"battery.low": 0.6}}
+    station = serve("--config", str(settings))
+    with Browser(station.wait_ready(), data) as browser:
+        until(lambda: set_in(browser) == [ours], "the thresholds are in the audit")
+        prepare(browser)
+        greet(browser, unit, make_position)
+        unit.say(said.status(unit.stamper.header(), battery=0.5))
+        until(lambda: snapshot(browser)["alarms"], "the battery is low")
+        (alarm,) = snapshot(browser)["alarms"]
+        assert (alarm["rule"], alarm["level"]) == ("battery", "low")
+    assert station.stop() == 0
+
+    again = serve("--config", str(settings))
+    with Browser(again.wait_ready(), data) as browser:
+        assert set_in(browser) == [ours]
+    assert again.stop() == 0
+
+    settings.write_text("")
+    default = serve("--config", str(settings))
+    with Browser(default.wait_ready(), data) as browser:
+        until(lambda: set_in(browser) == [ours, {"values": {}}], "the usual ones hold again")
+    assert default.stop() == 0
+
+
+def test_a_threshold_that_makes_no_sense_starts_no_station(
+    serve: Callable[..., Command], tmp_path: Path, data: Path
+) -> None:
+    settings = tmp_path / "station.toml"
+    settings.write_text("[alarms.no-motion]\nalarm_s = 0.5\n")
+    refused = serve("--config", str(settings))
+    assert refused.wait() == 2
+    assert "alarms.no-motion.alarm_s: Expected `float` >= 5.0" in refused.said()
+    assert "Traceback" not in refused.said()
+    assert not data.exists()
