@@ -188,6 +188,10 @@ def test_heat_that_eases_is_of_a_lower_level_once_it_stays_so(script: Script) ->
     assert changes(script, "heat")[2:] == [("ACKNOWLEDGED", "warning")]
     assert script.alarms[-1].priority == SOON
     assert "170 °C" in script.alarms[-1].text
+    script.wait(10, lambda: script.temperature(U, 120.0))
+    assert len(changes(script, "heat")) == 3, "that it is lower still has to stay so, too"
+    script.wait(1, lambda: script.temperature(U, 120.0))
+    assert changes(script, "heat")[3:] == [("ACKNOWLEDGED", "caution")]
 
 
 def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Script) -> None:
@@ -412,6 +416,7 @@ def test_an_acknowledged_alarm_that_gets_worse_asks_again(script: Script) -> Non
     assert "anna" in again.reason
     script.wait(1, lambda: script.temperature(U, 170.0))
     assert (script.alarms[-1].state, script.alarms[-1].level) == (AlarmState.RAISED, "warning")
+    assert script.pipeline.state.alarms[f"heat|{U}"].changed_ns == script.t_ns
 
 
 def test_an_unknown_unit_is_reported_once_and_not_believed() -> None:
