@@ -37,13 +37,20 @@ function said(name: string, value: unknown): string {
   if (typeof value === "boolean") return value ? spaced(name) : "";
   if (name === "kind" && typeof value === "number") return COMMANDS[value] ?? String(value);
   if (typeof value === "number") return quantity(name, value);
+  if (name === "values") return thresholds(value as Record<string, number>);
   const words = Array.isArray(value) ? value.join(" ") : String(value);
   return name === "unit_id" || name === "unit_ids" ? words : `${spaced(name)}: ${words}`;
 }
 
+/** Of alarm rules, by rule and name: "no-motion.alarm_s". */
+function thresholds(values: Record<string, number>): string {
+  const set = Object.entries(values).map(([name, value]) => quantity(name, value));
+  return set.length === 0 ? "all as usual" : set.join(", ");
+}
+
 /** A number with the unit that its name ends with. */
 function quantity(name: string, value: number): string {
-  const [, what = name, unit = ""] = /^(.*)_(m|s|ns|deg|rad|hz)$/.exec(name) ?? [];
+  const [, what = name, unit = ""] = /^(.*)_(m|s|ns|deg|degc|rad|hz|days)$/.exec(name) ?? [];
   switch (unit) {
     case "m":
       return `${spaced(what)} ${rounded(value)} m`;
@@ -53,6 +60,10 @@ function quantity(name: string, value: number): string {
       return `${spaced(what)} ${dateAndTime(value / 1e6)}`;
     case "deg":
       return `${spaced(what)} ${value}°`;
+    case "degc":
+      return `${spaced(what)} ${value} °C`;
+    case "days":
+      return `${spaced(what)} ${value} days`;
     case "rad":
       return `${spaced(what)} ${rounded(value * DEGREES)}°`;
     case "hz":
@@ -67,5 +78,5 @@ function rounded(value: number): string {
 }
 
 function spaced(name: string): string {
-  return name.replaceAll("_", " ").replace(/\bstd\b/, "±").replace(/^(.*) ±$/, "± of $1");
+  return name.replaceAll(/[_.]/g, " ").replace(/\bstd\b/, "±").replace(/^(.*) ±$/, "± of $1");
 }

@@ -27,6 +27,11 @@ describe("the audit log", () => {
       { unit_id: "FF-05", person_id: "26ab", person_name: "Elena Rossi", crew: "Rescue 3", role: "" },
       "FF-05, person name: Elena Rossi, crew: Rescue 3",
     ],
+    [
+      { values: { "no-motion.alarm_s": 25, "heat.caution_degc": 80, "battery.low": 0.2 } },
+      "no-motion alarm 25 s, heat caution 80 °C, battery low 0.2",
+    ],
+    [{ values: {} }, "all as usual"],
   ])("says %o in words", (detail, text) => {
     expect(words(detail)).toBe(text);
   });
