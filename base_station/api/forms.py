@@ -22,6 +22,7 @@ LAST_MS = FOREVER_NS // NS_PER_MS
 _PRINTABLE = rf"^[^{BARRED}]*$"
 _NAME = rf"^[^{BARRED}]*[^\s{BARRED}][^{BARRED}]*$"
 _ID = r"^[A-Za-z0-9_.:-]{1,128}$"
+_ALARM_ID = r"^[A-Za-z0-9_.:@ -]{1,200}$"  # names a part of the station, and whose
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"
 _A_UNIT_ID = "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
@@ -30,6 +31,7 @@ FITTING = {  # what each pattern asks for, in words
     _PRINTABLE: "must be one line of plain characters",
     _NAME: "must be one line of plain characters, and not blank",
     _ID: "must be 1 to 128 letters, digits and _.:-",
+    _ALARM_ID: "must be 1 to 200 letters, digits, spaces and _.:@-",
     _WHOLE_UNIT_ID: _A_UNIT_ID,
     _UNIT_ID_OR_NONE: f"{_A_UNIT_ID}; or empty",
 }
@@ -38,6 +40,7 @@ Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NA
 Word = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
 Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]
 Id = Annotated[str, Path(pattern=_ID)]
+AlarmId = Annotated[str, Path(pattern=_ALARM_ID)]
 UnitIdText = Annotated[str, StringConstraints(pattern=_WHOLE_UNIT_ID)]
 UnitIdOrNone = Annotated[str, StringConstraints(pattern=_UNIT_ID_OR_NONE)]
 UnitId = Annotated[UnitIdText, Path()]

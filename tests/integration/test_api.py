@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import xml.etree.ElementTree as ET
 from collections.abc import AsyncIterator, Callable
+from urllib.parse import quote
 
 import httpx
 import pytest
@@ -15,6 +16,7 @@ from base_station.db.principals import Role
 from base_station.exporters import EXPORTERS
 from shared.clock import ManualClock
 from shared.messages import EventKind, Position, UnitEvent
+from shared.messages.station import ReportProblem
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
 
@@ -129,6 +131,21 @@ async def test_an_alarm_is_acknowledged_and_resolved(
     told = (await commander.get(path)).json()
     assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged", "resolved"]
     assert told["changes"][1]["by"] == "commander"
+
+
+@pytest.mark.parametrize("part", ["log", "apart engine-2", "flood FF-01@tracker"])
+async def test_whatever_part_of_the_station_fails_people_can_deal_with_it(
+    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, part: str
+) -> None:
+    station.drive.submit("station", ReportProblem(part, "It fails"))
+    station.projection.flush()
+    (alarm,) = (await commander.get("/alarms")).json()
+    path = f"/alarms/{quote(alarm['alarm_id'])}"
+    clock.advance(1.0)
+    assert (await commander.post(f"{path}/acknowledge")).status_code == 204
+    clock.advance(1.0)
+    assert (await commander.post(f"{path}/resolve", json={})).status_code == 204
+    assert (await commander.get(path)).json()["state"] == "resolved"
 
 
 async def _walk(

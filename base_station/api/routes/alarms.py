@@ -9,7 +9,7 @@ import msgspec
 from fastapi import APIRouter, Depends
 
 from base_station.answer import Answer, to_ms
-from base_station.api.forms import Form, Id, Limit, Note, window
+from base_station.api.forms import AlarmId, Form, Limit, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
@@ -50,7 +50,7 @@ def list_alarms(
 
 
 @router.get("/alarms/{alarm_id}")
-def get_alarm(alarm_id: Id, station: Station, _: Viewer) -> AlarmWithLife:
+def get_alarm(alarm_id: AlarmId, station: Station, _: Viewer) -> AlarmWithLife:
     alarm = _alarm_or_404(station, alarm_id)
     changes = tuple(
         Change(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
@@ -60,13 +60,13 @@ def get_alarm(alarm_id: Id, station: Station, _: Viewer) -> AlarmWithLife:
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)
-def acknowledge(alarm_id: Id, station: Station, who: Commander) -> None:
+def acknowledge(alarm_id: AlarmId, station: Station, who: Commander) -> None:
     _require_alarm(station, alarm_id)
     station.act(who.username, AcknowledgeAlarm(alarm_id))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
-def resolve(alarm_id: Id, resolution: Resolution, station: Station, who: Commander) -> None:
+def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, who: Commander) -> None:
     _require_alarm(station, alarm_id)
     station.act(who.username, ResolveAlarm(alarm_id, resolution.note))
 
