@@ -14,9 +14,11 @@ from base_station.standby.words import Beat, Role
 from shared.clock import NS_PER_S
 
 Decision = Literal["stay", "follow", "lead", "step back"]
+LACKING_LEASES = 20  # that a standby waits for one of which it has not got everything
 _GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
 _ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
 _GREETING_LEASES = 5  # that a station waits at most for one that listens, to hear from it
+_LACKING_NS = 30 * NS_PER_S  # of the other one's log: more is not the last moments
 _OPENING_NS = NS_PER_S  # that a router listens to nobody when it opens again
 _WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
 
@@ -28,6 +30,7 @@ class Me(NamedTuple):
     preferred: bool
     term: int  # of the last take-over in its log
     place: Place
+    stepped: Place  # its disk may have less of the other one's log
     units: int  # that are linked with either router, as far as it knows
     unit_heard_ns: int  # when a unit last said anything; monotonic
     other_listens: bool = False  # the other one's router takes connections
@@ -44,6 +47,7 @@ class Election:
         self._token_there = False
         self._listened_ns: int | None = None  # when the other one's router last did
         self._witness_ns: int | None = None  # since when a unit is heard, and not the other
+        self.lacks_log = False  # much of the other one's; people's actions may be in that
         self.role: Role = "waiting"
 
     @property
@@ -81,6 +85,10 @@ class Election:
         self._note_witness(me, now_ns)
         if me.other_listens:
             self._listened_ns = now_ns
+        self.lacks_log = (
+            self._other is not None
+            and Place(*self._other.place).t_ns - me.stepped.t_ns > _LACKING_NS
+        )
         other = self._other if self.is_there(now_ns) else None
         if self.role == "active":
             loses = other is not None and other.role == "active" and _claim(other) > _claim_of(me)
@@ -93,8 +101,8 @@ class Election:
 
     def _alone(self, me: Me, now_ns: int) -> Decision:
         if self.role == "standby":
-            awaited = self.nobody_can_tell and self._is_awaited(now_ns)
-            return "lead" if self._has_witness(now_ns) and not awaited else "stay"
+            goes = self._has_witness(now_ns) and not self._is_awaited(now_ns)
+            return "lead" if goes else "stay"
         if me.place == BEGINNING and not me.preferred:
             return "stay"  # made to follow: a log of its own would keep it from that for ever
         leases = 1 if me.preferred else 2
@@ -113,8 +121,14 @@ class Election:
         return self._witness_ns is not None and now_ns - self._witness_ns >= _WITNESS_NS
 
     def _is_awaited(self, now_ns: int) -> bool:
-        """Whether the other station may only be out of reach while the routers link again."""
+        """Whether the other station may only be out of reach while the routers link again, or has
+        what nobody else has and may come back with it.
+        """
         silent_ns = now_ns - self._heard_ns
+        if self.lacks_log and silent_ns < LACKING_LEASES * self._lease_ns:
+            return True
+        if not self.nobody_can_tell:
+            return False
         listened_ns = self._listened_ns
         listens = listened_ns is not None and now_ns - listened_ns < _OPENING_NS
         return silent_ns < (_GREETING_LEASES if listens else 1) * self._lease_ns

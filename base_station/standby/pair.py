@@ -17,7 +17,7 @@ from base_station.config import StandbyConfig
 from base_station.feed import LogFeed
 from base_station.router.neighbour import listens
 from base_station.standby.confirming import OtherCopy
-from base_station.standby.election import Election, Me
+from base_station.standby.election import LACKING_LEASES, Election, Me
 from base_station.standby.following import Follower, Leader
 from base_station.standby.hearing import Hearing
 from base_station.standby.places import BEGINNING, Place
@@ -246,7 +246,15 @@ class Pair:
 
     def _me(self) -> Me:
         log, config, heard_ns = self._around.log, self._config, self._around.feed.unit_heard_ns
-        return Me(config.name, config.preferred, log.term, log.place, self._hearing.units, heard_ns)
+        return Me(
+            config.name,
+            config.preferred,
+            log.term,
+            log.place,
+            log.offered,
+            self._hearing.units,
+            heard_ns,
+        )
 
     def _say_beat(self) -> None:
         """A station that leads and writes no log, though it should every second, says nothing."""
@@ -291,6 +299,13 @@ class Pair:
         elif self.followed() is None and self._around.log.place == BEGINNING:
             found.append(
                 "No active station is heard, and this new standby has nothing yet: it waits"
+            )
+        elif self.followed() is None and self._election.lacks_log:
+            assert other is not None
+            found.append(
+                f"{other.station} is not heard, and this standby has not got everything of it: it "
+                f"waits {LACKING_LEASES * self._config.lease_s:.0f} s for it to come back, and "
+                "takes over then, or by hand"
             )
         elif self.followed() is None:
             found.append("No active station is heard: this one takes over in some seconds")

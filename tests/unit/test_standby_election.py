@@ -19,7 +19,7 @@ class Site:
     def __init__(self, *, preferred: bool = False) -> None:
         self.now_s = 100.0
         self.election = Election(round(LEASE_S * NS_PER_S), self.now_ns)
-        self.me = Me("b", preferred, term=1, place=HERE, units=1, unit_heard_ns=0)
+        self.me = Me("b", preferred, 1, HERE, stepped=HERE, units=1, unit_heard_ns=0)
 
     @property
     def now_ns(self) -> int:
@@ -99,6 +99,32 @@ def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     site.hear_unit(after_s=1.0)
     assert site.decide(LEASE_S - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
+
+
+def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
+    """It would lead without what people have done, and the other would have to cut that off."""
+    site = Site()
+    site.become("standby")
+    hour = Place(3600 * NS_PER_S, 1)
+    site.hear("active", place=hour)
+    site.hear_unit(after_s=1.0)
+    assert site.decide(2 * LEASE_S) == "stay"
+    assert site.election.lacks_log
+    site.hear("waiting", place=hour)  # it has started again
+    assert site.decide(1.0) == "stay"
+    site.hear_unit(after_s=1.0)
+    assert site.decide(20 * LEASE_S - 2.1) == "stay"
+    assert site.decide(0.1) == "lead", "it does not come back"
+
+
+@pytest.mark.parametrize("units", [0, 1])
+def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
+    site = Site()
+    site.become("standby")
+    site.hear("active", place=Place(3600 * NS_PER_S, 1), units=units)
+    site.me = site.me._replace(stepped=Place(3570 * NS_PER_S, 1))
+    site.hear_unit(after_s=1.0)
+    assert site.decide(LEASE_S) == "lead"
 
 
 def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
@@ -210,7 +236,7 @@ def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
             there = Election(round(LEASE_S * NS_PER_S), 0)
             there.role = "active"
             there.hear(Beat("b", PROTOCOL, "active", mine, BEGINNING, False, 2, 1, ""), 0)
-            other = there.decide(Me("a", True, theirs, BEGINNING, 1, 0), 0)
+            other = there.decide(Me("a", True, theirs, BEGINNING, BEGINNING, 1, 0), 0)
             assert {here.decide(), other} == {"stay", "step back"}
 
 

@@ -93,3 +93,13 @@ def test_it_takes_over_at_once_though_its_disk_refused_what_it_followed(
         TakeOver(1, "b", place.t_ns, place.events),
     )
     assert follower.log.place == Place(t_ns, 1)
+
+
+def test_what_its_disk_refused_is_not_taken_for_a_log_that_it_is_still_fetching(
+    follower: Follower,
+) -> None:
+    """Nothing else would come of waiting: it has stepped all of it."""
+    follower.disk.room = 3
+    follower.deliver(9)
+    me = follower.pair._me()
+    assert me.place < me.stepped == follower.pair._follower.delivered
