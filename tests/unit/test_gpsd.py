@@ -61,11 +61,16 @@ GST = json_line("GST", device=DEVICE, lat=1.0, lon=3.0, alt=2.5)
         (SKY, {"eph": 2.0, "epv": 3.0}, math.sqrt(2.0), 3.0),
         (SKY, {"eph": 0.8 * 19.0, "epv": 1.4 * 23.0}, 4.0 / math.sqrt(2.0), 7.0),
         (SKY, {"eph": 0.8 * 4.75, "epv": 1.4 * 5.75, "status": 2}, 2.0 / math.sqrt(2.0), 3.5),
+        (SKY, {"status": 3}, 0.8 / math.sqrt(2.0), 1.4),
+        (SKY, {"status": 4}, 0.8 / math.sqrt(2.0), 1.4),
         (b"", {"epx": 1.96, "epy": 3.92}, math.sqrt(2.5), NAN),
         (b"", {"eph": 0.0, "epv": -1.0}, NAN, NAN),
         (b"", {}, NAN, NAN),
     ],
-    ids=["GST", "the receiver's", "a guess", "a guess, corrected", "old", "absurd", "nothing"],
+    ids=[
+        *("GST", "the receiver's", "a guess", "a guess, corrected", "by carrier", "by carrier 2"),
+        *("old", "absurd", "nothing"),
+    ],
 )
 def test_accuracy_is_the_receivers_own_where_there_is_one(
     before: bytes, errors: dict[str, float], horizontal_m: float, vertical_m: float
@@ -75,11 +80,18 @@ def test_accuracy_is_the_receivers_own_where_there_is_one(
     assert found.vertical_std_m == pytest.approx(vertical_m, nan_ok=True)
 
 
-def test_what_was_said_of_the_sky_long_ago_is_not_of_this_fix() -> None:
+@pytest.mark.parametrize(("after_s", "std_m"), [(2.9, math.sqrt(5.0)), (3.1, NAN)])
+def test_what_was_said_of_the_sky_long_ago_is_not_of_this_fix(after_s: float, std_m: float) -> None:
     receiver = Gpsd("//h")
     heard(receiver, SKY + GST, 100 * S)
-    (report,) = heard(receiver, tpv(), 104 * S)
-    assert math.isnan(report.fix.horizontal_std_m)
+    (report,) = heard(receiver, tpv(), round((100 + after_s) * S))
+    assert report.fix.horizontal_std_m == pytest.approx(std_m, nan_ok=True)
+
+
+def test_the_sky_comes_in_parts_of_which_none_undoes_another() -> None:
+    found = fix(SKY + json_line("SKY", device=DEVICE, uSat=7) + tpv())
+    assert found.satellites == 7
+    assert found.horizontal_std_m == pytest.approx(4.0 / math.sqrt(2.0))
 
 
 def test_satellites_are_those_in_use() -> None:
@@ -91,12 +103,19 @@ def test_satellites_are_those_in_use() -> None:
     assert fix(json_line("SKY", device=DEVICE, uSat=-4) + tpv()).satellites == 0
 
 
-@pytest.mark.parametrize("said", [{"mode": 0}, {"mode": 1}, {"status": 5}, {"status": 8}])
+@pytest.mark.parametrize(
+    "said", [{"mode": 0}, {"mode": 1}, {"status": 5}, {"status": 6}, {"status": 8}]
+)
 def test_what_is_no_fix_of_satellites_is_none(said: dict[str, int]) -> None:
-    """Not seen yet, none, reckoned, simulated."""
+    """Not seen yet, none, reckoned, reckoned in part, simulated."""
     found = fix(tpv(**said))
     assert found.fix_type == 0
     assert math.isnan(found.lat_deg)
+
+
+def test_an_instant_is_known_to_the_part_of_a_second_that_is_said() -> None:
+    (report,) = heard(Gpsd("//h"), tpv(time="2026-11-21T23:59:59.750Z"))
+    assert report.of_day_ns == 86_399_750_000_000
 
 
 @pytest.mark.parametrize("time", ["2026-12-31T23:59:60.000Z", "yesterday", 1.5e9, None])
@@ -130,6 +149,13 @@ def test_where_one_receiver_has_no_fixes_for_long_the_other_is_taken() -> None:
     lost = [(0.0, DEVICE, 50.0, 3), (5.0, OTHER, 60.0, 3), (11.0, OTHER, 60.0, 3)]
     back = [(11.5, DEVICE, 50.0, 3), (12.0, OTHER, 60.0, 3)]
     assert lats(Gpsd("//h"), *lost, *back) == [50.0, 60.0, 60.0]
+
+
+def test_a_receiver_that_says_for_long_that_it_has_no_fix_is_left_for_one_that_has() -> None:
+    indoors = [(1.0 + k, DEVICE, 50.0, 1) for k in range(11)]
+    said = [(0.0, DEVICE, 50.0, 3), *indoors, (12.0, OTHER, 60.0, 1), (12.1, OTHER, 60.0, 3)]
+    found = lats(Gpsd("//h"), *said)
+    assert found == pytest.approx([50.0, *[NAN] * 11, 60.0], nan_ok=True)
 
 
 def test_a_receiver_that_is_named_is_the_only_one() -> None:

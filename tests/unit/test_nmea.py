@@ -67,6 +67,12 @@ def test_the_order_of_sentences_is_learnt(order) -> None:
     assert whole_at == [-1, *[len(order) - 1] * 5]
 
 
+def test_what_says_no_place_is_no_report_of_its_own() -> None:
+    """Such as what is left of a burst whose other sentences were lost."""
+    assert heard([gst(WITH_GST)]) == []
+    assert heard([gsa(WITH_GST), gst(WITH_GST)]) == []
+
+
 def test_ten_a_second_need_no_pause() -> None:
     receiver = Nmea("/dev/ttyUSB0")
     said = [line for told in seconds(50, WITH_GST, 0.1) for line in burst(told).split(b"\n")]
@@ -75,12 +81,40 @@ def test_ten_a_second_need_no_pause() -> None:
     assert {report.fix.horizontal_std_m for report in reports} == {1.3}, "all with their GST"
 
 
+def test_ten_a_second_without_a_fix_nor_a_time_are_as_many_reports() -> None:
+    receiver = Nmea("/dev/ttyUSB0")
+    none = sentence("GNGGA,,,,,,0,00,99.99,,,,,,").strip()
+    said = [len(receiver.hear(none, number * S // 10)) for number in range(5)]
+    assert said == [0, 2, 1, 1, 1], "from the second one on it is known that nothing follows"
+
+
+@pytest.mark.parametrize(("after_s", "fix_type"), [(-2.9, 2), (0.3, 2), (-3.1, 3)])
+def test_how_many_dimensions_there_were_holds_for_three_seconds(
+    after_s: float, fix_type: int
+) -> None:
+    """A slow line takes its time from sentence to sentence, and some say it now and then."""
+    receiver = Nmea("/dev/ttyUSB0")
+    parts = [(100.0, gga(HERE)), (100.0 + after_s, gsa(replace(HERE, mode=2)))]
+    reports: list[Report] = []
+    for at_s, said in sorted(parts):
+        reports += receiver.hear(said.strip(), round(at_s * S))
+    (report,) = [*reports, *receiver.pause()]
+    assert report.fix.fix_type == fix_type
+
+
 def test_the_receivers_own_accuracy_goes_before_the_dilutions() -> None:
     assert fix(burst(WITH_GST)).horizontal_std_m == pytest.approx(1.3)
     assert fix(burst(WITH_GST)).vertical_std_m == pytest.approx(2.2)
     other = replace(WITH_GST, of_day_s=WITH_GST.of_day_s + 1)
     two = heard([gga(HERE) + gst(other)])
     assert two[0].fix.horizontal_std_m == pytest.approx(0.8 * 5.0 / math.sqrt(2.0)), "another's"
+
+
+@pytest.mark.parametrize("gst_first", [False, True])
+def test_a_sentence_without_a_time_is_of_the_instant_in_which_it_stands(gst_first: bool) -> None:
+    said = [gga(HERE), sentence("GNGST,,19,,,,1.3,1.3,2.2")]
+    found = fix(*(said[::-1] if gst_first else said))
+    assert found.horizontal_std_m == pytest.approx(1.3)
 
 
 def test_an_ellipse_is_as_wide_as_its_axes_together() -> None:
@@ -92,6 +126,16 @@ def test_an_ellipse_is_as_wide_as_its_axes_together() -> None:
 def test_corrections_make_the_dilution_worth_more(quality: int, uere_m: float) -> None:
     told = replace(HERE, quality=quality, hdop=1.0)
     assert fix(gga(told)).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
+
+
+@pytest.mark.parametrize(
+    ("modes", "uere_m"),
+    [("A", 5.0), ("DD", 2.5), ("R", 1.0), ("F", 1.0), ("AD", 5.0), ("DN", 2.5), ("P", 5.0)],
+)
+def test_without_gga_each_constellation_says_its_corrections(modes: str, uere_m: float) -> None:
+    """The least corrected of those in use counts."""
+    told = sentence(f"GNGNS,092725.00,5742.0,N,01158.2,E,{modes},17,1.0,7.3,35.2,,,V")
+    assert fix(told).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
 
 
 def test_nothing_said_of_accuracy_is_nothing_known() -> None:
@@ -123,7 +167,10 @@ def test_height_is_above_the_ellipsoid_or_none() -> None:
         sentence("GNGGA,092725.00,,,,,,,,,,,,,"),
         sentence("GNGGA,092725.00,5742.0,,01158.2,,1,08,0.9,7.3,M,35.2,M,,"),  # no sides
         sentence("GNGNS,092725.00,5742.0,N,01158.2,E,NNNN,08,0.9,7.3,35.2,,,V"),
-        sentence("GNRMC,092725.00,A,5742.0,N,01158.2,E,0.0,,211126,,,E,V"),
+        *(
+            sentence(f"GNRMC,092725.00,A,5742.0,N,01158.2,E,0.0,,211126,,,{mode},V")
+            for mode in "EMS"  # estimated, typed in, simulated
+        ),
     ],
 )
 def test_who_says_that_there_is_no_fix_is_believed(said: bytes) -> None:
@@ -166,6 +213,11 @@ def test_what_has_no_time_is_by_its_arrival() -> None:
     (report,) = heard([sentence("GNGGA,,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
     assert report.of_day_ns is None
     assert report.fix.fix_type == 3
+
+
+def test_an_instant_is_known_to_the_part_of_a_second_that_is_said() -> None:
+    (report,) = heard([sentence("GNGGA,235959.75,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+    assert report.of_day_ns == 86_399_750_000_000
 
 
 def test_a_leap_second_is_no_time_and_no_error() -> None:
