@@ -8,6 +8,7 @@ from typing import Annotated
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
 from shared.config import Within
+from shared.errors import ConfigError
 from shared.messages import Message, Status
 
 
@@ -21,6 +22,10 @@ class Battery:
     rearm_after_s: float | None = None
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = (Status,)
+
+    def __post_init__(self) -> None:
+        if self.low + self.hysteresis > 1.0:
+            raise ConfigError("battery: low and hysteresis together are more than a full one has")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None or unit.status.battery is None:

@@ -59,6 +59,7 @@ def script() -> Script:
         ("[alarms.battery]\nlow = nan\n", "alarms.battery.low"),
         ("[alarms.no-motion]\nalarm_s = 15\n", "pre_alert_s comes before alarm_s"),
         ("[alarms.heat]\ncaution_degc = 200\n", "must rise"),
+        ("[alarms.battery]\nlow = 0.6\nhysteresis = 0.5\n", "more than a full one"),
         (
             "[alarms.mayday]\nafter_s = 3\n",
             "is not a setting; mayday has none",
