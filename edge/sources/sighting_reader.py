@@ -21,7 +21,7 @@ from shared.errors import ConfigError, WireError
 logger = logging.getLogger(__name__)
 
 MOST_WAITING = 500  # sightings: the oldest are left out
-_TALL = 20  # complaints about lines, then only counts
+_MOST_COMPLAINTS = 20  # about lines; then they are only counted
 
 
 def open_reader(text: str) -> Callable[[], Line]:
@@ -72,7 +72,7 @@ class SightingReader:
             seen = sighting_of(line.decode("ascii", "replace"), began_ns)
         except WireError as error:
             self.bad_lines += 1
-            if self.bad_lines <= _TALL:
+            if self.bad_lines <= _MOST_COMPLAINTS:
                 logger.warning("the reader %s says something else: %s", self._name, error)
             return
         if seen is not None:
