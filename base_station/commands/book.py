@@ -171,18 +171,24 @@ def _check(state: StationState, action: SendCommand) -> None:
 
 
 def _addressed(state: StationState, action: SendCommand) -> list[UnitState]:
-    """Everyone is whoever wears a unit, and every unit of ours that was heard."""
+    """Everyone is whoever wears a unit, and every unit of ours that was heard and not switched off
+    since.
+    """
     ours = [unit for unit in state.units.values() if unit.registered]
     if action.unit_id:
         found = [unit for unit in ours if unit.unit_id == action.unit_id]
     elif action.crew:
         found = [unit for unit in ours if unit.person and unit.person.crew == action.crew]
     else:
-        found = [unit for unit in ours if unit.person or unit.heard_ns is not None]
+        found = [unit for unit in ours if unit.person or _is_out(unit)]
     if not found:
         whom = action.unit_id or action.crew or "everyone"
         raise UserError(f"no registered unit can be told: {whom}")
     return found
+
+
+def _is_out(unit: UnitState) -> bool:
+    return unit.heard_ns is not None and unit.stopped_ns is None
 
 
 def _delivery(

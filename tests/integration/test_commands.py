@@ -231,3 +231,22 @@ def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
         down._say_all(orders)
         clock.advance(0.2)
     assert len(unit.heard) == 1
+
+
+def test_what_a_unit_has_answered_is_not_said_again(
+    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 0)
+    down, unit, clock = link
+    unit.come()
+    one = an_order(clock.utc_ns() + 10**12)
+    another = msgspec.structs.replace(one, command_id="c2")
+    down.start()
+    down.report([one])
+    until(lambda: unit.heard)
+    down.report([another])  # the first is answered
+    until(lambda: unit.heard[-1].command_id == "c2")
+    count = len(unit.heard)
+    until(lambda: len(unit.heard) > count + 3)
+    down.close()
+    assert {one.command_id for one in unit.heard[count:]} == {"c2"}

@@ -11,7 +11,7 @@ from base_station.events import CommandTouched, Refused
 from base_station.live_state import FORGOTTEN
 from shared.channels import REPLY, backfilled_key
 from shared.codec import encode
-from shared.messages import CommandKind, CommandReply, CommandState
+from shared.messages import CommandKind, CommandReply, CommandState, EventKind
 from shared.messages.station import (
     Assign,
     CloseIncident,
@@ -76,6 +76,19 @@ def test_a_command_goes_to_a_unit_a_crew_or_everyone(target, told):
     assert script.act(order(**target)) == [CommandTouched("c1")]
     assert list(states(script)) == told
     assert [one.unit_id for one in unanswered(script.pipeline.state)] == told
+
+
+def test_a_unit_in_its_drawer_is_not_waited_for():
+    """Units are tried out in the morning: who has not been reached is to be seen among them."""
+    script = crewed()
+    for unit_id in ("FF-03", "FF-04"):
+        script.status(unit_id)
+        script.event(unit_id, EventKind.STOPPED)
+    script.act(order(everyone=True))
+    assert list(states(script)) == ["FF-01", "FF-02", "FF-03"]
+    script.status("FF-04")  # it is switched on again
+    script.act(order("c2", everyone=True))
+    assert list(states(script, "c2")) == ["FF-01", "FF-02", "FF-03", "FF-04"]
 
 
 def test_whom_it_went_to_does_not_change_with_who_wears_what():
