@@ -67,11 +67,14 @@ def _pressed_ns(unit: UnitState) -> int | None:
 
 
 def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
-    if unit.temperature is not None:
-        elapsed_s = (temperature.header.t_mono_ns - unit.temperature.header.t_mono_ns) / NS_PER_S
-        if temperature.header.boot_id == unit.temperature.header.boot_id:
-            lasted_s = min(max(elapsed_s, 0.0), LONGEST_DOSE_STEP_S)  # its clock may be set back
-            unit.heat_dose += dose_of(unit.temperature.ambient_degc, lasted_s)
+    before = unit.temperature
+    if before is not None and before.header.boot_id == temperature.header.boot_id:
+        elapsed_s = (temperature.header.t_mono_ns - before.header.t_mono_ns) / NS_PER_S
+        told_s = min(max(elapsed_s, 0.0), LONGEST_DOSE_STEP_S)  # its clock may be set back
+        silent_s = max(elapsed_s - LONGEST_DOSE_STEP_S, 0.0)
+        # Nobody knows of the rest of a silence, but that it was hot before it and after it.
+        cooler_degc = min(before.ambient_degc, temperature.ambient_degc)
+        unit.heat_dose += dose_of(before.ambient_degc, told_s) + dose_of(cooler_degc, silent_s)
     unit.temperature, unit.temperature_ns = temperature, t_ns
 
 

@@ -52,6 +52,16 @@ def test_a_reading_counts_until_the_next_but_not_through_a_silence(
     assert unit(script).heat_dose == pytest.approx(counted_s / 60.0)
 
 
+@pytest.mark.parametrize(("after_degc", "limit_s"), [(270.0, 60.0), (400.0, 60.0), (200.0, 300.0)])
+def test_who_is_hot_before_and_after_a_silence_was_so_throughout(
+    script: Script, after_degc: float, limit_s: float
+) -> None:
+    """As hot as the cooler one of both; the fire that takes the radio heats the equipment on."""
+    script.now_s += 50.0
+    script.temperature(U, after_degc)
+    assert unit(script).heat_dose == pytest.approx(10.0 / 60.0 + 40.0 / limit_s)
+
+
 def test_a_unit_whose_clock_is_set_back_takes_nothing_from_its_dose(script: Script) -> None:
     script.say(Temperature(script.header(U, captured_s=-500.0), 300.0))
     assert unit(script).temperature is not None
