@@ -33,8 +33,6 @@ class IntactChunk:
     """A chunk as it stands in the file, and what is in it."""
 
     record: bytes  # with opcode and length
-    start_ns: int
-    end_ns: int
     index: bytes  # the message index records behind it; empty where they are not whole
     data: bytes  # schema, channel and message records
 
@@ -149,7 +147,7 @@ class SegmentReader:
                 _, length = self._file.record_at(chunk.offset)
                 record = self._file.read(chunk.offset, 9 + length)
                 index = self._index_behind(chunk.offset + len(record))
-                yield IntactChunk(record, chunk.start_ns, chunk.end_ns, index, data)
+                yield IntactChunk(record, index, data)
 
     def _index_behind(self, offset: int) -> bytes:
         end = offset

@@ -15,6 +15,8 @@ from shared.mcap_log.making import MadeChunk, McapFile, bytes_of
 from shared.mcap_log.reading import IntactChunk
 
 _NUMBER = struct.Struct("<H")
+_TIMES = struct.Struct("<QQ")  # of the first and the last message, as a chunk begins
+_LOG_TIME = struct.Struct("<6xQ")  # of a message
 
 
 class RebuiltSegment:
@@ -28,15 +30,18 @@ class RebuiltSegment:
         return self._mcap.file
 
     def add(self, chunk: IntactChunk) -> None:
-        counts = self._learn(chunk.data)
+        counts, times_ns = self._learn(chunk.data)
+        start_ns, end_ns = min(times_ns, default=0), max(times_ns, default=0)
+        # What it says of its times is outside its checksum, and readers go by it.
+        head = chunk.record[: RECORD.size] + _TIMES.pack(start_ns, end_ns)
         index, offsets = chunk.index, _index_offsets(chunk.index)
         if offsets.keys() != counts.keys():  # torn or damaged: the chunk is read without
             index, offsets = b"", {}
         self._mcap.add(
             MadeChunk(
-                chunk.record,
-                chunk.start_ns,
-                chunk.end_ns,
+                head + chunk.record[len(head) :],
+                start_ns,
+                end_ns,
                 len(chunk.data),
                 index,
                 offsets,
@@ -51,18 +56,20 @@ class RebuiltSegment:
             self._mcap.topics[number] = bytes_of(Channel(number, f"unknown/{number}", "", {}, 0))
         self._mcap.finish()
 
-    def _learn(self, data: bytes) -> Counter[int]:
-        """Messages of each topic; schemas and topics are kept on the way."""
+    def _learn(self, data: bytes) -> tuple[Counter[int], list[int]]:
+        """Messages of each topic, and when they came; schemas and topics are kept on the way."""
         counts: Counter[int] = Counter()
+        times_ns: list[int] = []
         for opcode, body in records_in(data):
             (number,) = _NUMBER.unpack_from(body)
             if opcode == Opcode.MESSAGE:
                 counts[number] += 1
+                times_ns.append(_LOG_TIME.unpack_from(body)[0])
             elif opcode == Opcode.CHANNEL:
                 self._mcap.topics[number] = RECORD.pack(opcode, len(body)) + body
             elif opcode == Opcode.SCHEMA:
                 self._mcap.schemas[number] = RECORD.pack(opcode, len(body)) + body
-        return counts
+        return counts, times_ns
 
 
 def _index_offsets(index: bytes) -> dict[int, int]:

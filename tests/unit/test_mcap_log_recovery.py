@@ -13,6 +13,7 @@ from shared.mcap_log import (
     rewrite_segment,
     segment_paths,
 )
+from shared.mcap_log.container import RECORD
 from tests.small_log import KEY, T0_NS, on_disk
 
 
@@ -99,6 +100,27 @@ def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) ->
     [recovery] = recover_log(tmp_path)
     assert said in str(recovery)
     assert recover_log(tmp_path) == []
+
+
+@pytest.mark.parametrize("half", [0, 8])
+def test_the_times_of_a_chunk_are_those_of_what_is_in_it(tmp_path: Path, half: int) -> None:
+    """Its head is outside its checksum: bits that flip there would hide it from every window."""
+    writer = SegmentWriter(tmp_path)
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, bytes([number]), urgent=number == 2)
+    [path] = segment_paths(tmp_path)
+    with SegmentReader(path) as reader:
+        time_at = reader._contents.chunks[0].offset + RECORD.size + half
+    original = path.read_bytes()
+    content = bytearray(original)
+    content[time_at + 7] ^= 0x08
+    path.write_bytes(content)
+    assert len(recover_log(tmp_path)) == 1
+    with SegmentReader(path) as reader:
+        assert (reader.info().start_ns, reader.info().end_ns) == (T0_NS, T0_NS + 2)
+        assert [payload for _, _, payload in reader.records(T0_NS + 1, T0_NS + 2)] == [b"\1"]
+        [chunk] = reader.intact_chunks()
+    assert chunk.record in original
 
 
 def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) -> None:
