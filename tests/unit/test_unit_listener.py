@@ -248,6 +248,18 @@ def test_what_the_radio_lost_is_asked_for_where_time_has_a_hole(
     assert unit.asked == asked
 
 
+def test_a_unit_that_is_silent_for_a_while_has_not_ended_its_run(
+    unit: Unit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unit.describes()
+    unit.says(raw(0))
+    source = unit.followed()
+    comes = [raw(1), None, None, raw(2)]
+    monkeypatch.setattr(unit.listener, "take", lambda *_: comes.pop(0) if comes else None)
+    monkeypatch.setattr(unit.listener, "has_restarted", lambda _: not comes)
+    assert len(list(source.batches())) == 2
+
+
 def test_of_a_run_that_was_joined_in_its_middle_nothing_before_is_asked_for(unit: Unit) -> None:
     unit.describes()
     unit.says(raw(900), raw(1, boot_id=8))
