@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.sender import BOOTS, STARTS, WILD_NS, Sender
-from shared.channels import EVENT, POSITION, STATUS, Channel
+from shared.channels import EVENT, GPS, POSITION, STATUS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header
 
@@ -38,6 +38,25 @@ def test_what_is_said_before_what_came_already_is_old(
     sender: Sender, channel: Channel, seq: int, mono_s: float, worth: str
 ) -> None:
     assert sender.accept(channel, said(seq, mono_s), NOW_NS) == worth
+
+
+def test_the_clock_of_the_machine_that_was_switched_off_says_nothing_of_a_new_run(
+    sender: Sender,
+) -> None:
+    """Monotonic time begins anew with it; its first alert overtook the first status."""
+    assert sender.accept(EVENT, said(2, 2.0, boot_id=8), NOW_NS) == "new"
+    assert sender.accept(STATUS, said(1, 1.0, boot_id=8), NOW_NS) == "new"
+
+
+@pytest.mark.parametrize("channel", [STATUS, GPS])
+def test_when_a_fix_was_valid_says_nothing_of_the_units_clock(
+    sender: Sender, channel: Channel
+) -> None:
+    """A receiver may be wrong about that, and would move everything that the unit says."""
+    [boot] = sender.boots
+    before_ns = boot.offset_ns
+    sender.accept(channel, said(6, 107.0), NOW_NS)
+    assert boot.offset_ns - before_ns == (0 if channel is GPS else -7 * NS_PER_S)
 
 
 def test_what_the_log_did_not_take_is_missing_like_what_never_came(sender: Sender) -> None:
