@@ -46,24 +46,30 @@ def said(number: int) -> bytes:
 class Bench:
     """A unit's journal of ten messages, and a station that backfills from it."""
 
-    def __init__(self, folder, numbers):
+    def __init__(self, folder, numbers, may_forget=lambda: True):
         router = MemoryRouter()
         self.unit_bus = router.attach_unit()
         self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
         self.spool.append([Journaled(n, POSITION, n, said(n)) for n in numbers])
         server = JournalServer("FF-01", self.spool)
         self.questions: list[str] = []  # for ranges
+        self.acknowledged: list[str] = []
 
         def replies(key: str, parameters: str, payload: bytes):
             if key.endswith("/range"):
                 self.questions.append(parameters)
+            if key.endswith("/acknowledge"):
+                self.acknowledged.append(parameters)
             return server.replies(key, parameters, payload)
 
         self.unit_bus.serve(server.key_expression, replies)
         self.delivered: list[tuple[str, bytes]] = []
         self.clock = ManualClock()
         self.backfill = Backfill(
-            router.attach_station(), lambda *record: self.delivered.append(record), self.clock
+            router.attach_station(),
+            lambda *record: self.delivered.append(record),
+            self.clock,
+            may_forget,
         )
         self.backfill.start()
 
@@ -115,6 +121,20 @@ def test_a_station_that_has_everything_says_so_to_the_unit(bench):
     for _ in range(3):
         bench.report(Run(1, 10))
     until(lambda: bench.spool.pending == 0)
+
+
+def test_a_unit_is_told_nothing_to_forget_before_it_may(tmp_path):
+    """The standby has not got it, say."""
+    may_forget = []
+    bench = Bench(tmp_path, range(1, 11), lambda: bool(may_forget))
+    for _ in range(8):
+        bench.report(Run(1, 10))
+    assert bench.acknowledged == []
+    may_forget.append(True)
+    bench.report(Run(1, 10))
+    until(lambda: bench.spool.pending == 0)
+    bench.backfill.close()
+    bench.spool.close()
 
 
 def test_a_boot_that_the_station_never_heard_of_is_fetched(bench):
