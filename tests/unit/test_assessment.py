@@ -88,6 +88,36 @@ def test_the_light_says_why(changes: dict[str, object], level: str, words: str) 
     assert (trust.reason == "") == (level == "green")
 
 
+@pytest.mark.parametrize(
+    ("below", "above", "level", "words"),
+    [
+        ({"std_north_m": 2.0}, {"std_north_m": 2.1}, "amber", "only known to 5 m"),
+        ({"std_east_m": 8.1}, {"std_east_m": 8.3}, "red", "only known to 20 m"),
+        ({"std_down_m": 1.5}, {"std_down_m": 1.6}, "amber", "height only known to 3 m"),
+        ({"floor_probability": 0.7}, {"floor_probability": 0.69}, "amber", "only 69% sure"),
+        (
+            {"std_north_m": 1.9, "std_east_m": 1.9},
+            {"std_north_m": 1.9, "std_east_m": 1.9, "correlation_ne": -0.9},
+            "amber",
+            "only known to 6 m",
+        ),
+    ],
+)
+def test_from_which_figure_on_the_light_turns(
+    below: dict[str, float], above: dict[str, float], level: str, words: str
+) -> None:
+    assert trust_of(known(**below), 0).level != level
+    trust = trust_of(known(**above), 0)
+    assert trust.level == level
+    assert words in trust.reason
+
+
+def test_reasons_that_differ_by_a_figure_alone_are_one_cause() -> None:
+    for reason in ("within 113 m", "within 40 m"):
+        trust = trust_of(known(quality=Quality.LOST, quality_reason=reason), 0)
+        assert (trust.reason, trust.cause) == (reason, "place only roughly known")
+
+
 def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:
     lost = known()
     lost.link = "lost"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from shared.messages.station import CloseIncident, OpenIncident
+from shared.messages.station import Assign, CloseIncident, OpenIncident
 from tests.station_script import Script
 
 
@@ -38,6 +38,14 @@ def test_a_unit_that_nobody_wears_or_hears_has_no_light(script: Script) -> None:
     assert script.pipeline.state.units["FF-02"].trust.red_s == 0.0
 
 
+def test_who_wears_a_unit_that_was_never_heard_is_red(script: Script) -> None:
+    script.act(Assign("FF-02", "p2", "Bo", "", ""))
+    script.wait(30.0)
+    tally = script.pipeline.state.units["FF-02"].trust
+    assert tally.causes == {"no position yet": pytest.approx(30.0, abs=1.0)}
+    assert tally.red_s == pytest.approx(30.0, abs=1.0)
+
+
 def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -> None:
     script.wait(20.0, lambda: said(script))
     script.act(CloseIncident("i1"))
@@ -48,10 +56,11 @@ def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -
     assert script.pipeline.state.units["FF-01"].trust.amber_s == 0.0
 
 
-def test_a_station_that_was_away_saw_no_light(script: Script) -> None:
+@pytest.mark.parametrize(("away_s", "seen_s"), [(5.0, 5.0), (6.0, 0.0), (3600.0, 0.0)])
+def test_a_station_that_was_away_saw_no_light(script: Script, away_s: float, seen_s: float) -> None:
     script.wait(10.0, lambda: said(script))
     before = script.pipeline.state.units["FF-01"].trust.amber_s
-    script.now_s += 3600.0
+    script.now_s += away_s
     script.tick()
     tally = script.pipeline.state.units["FF-01"].trust
-    assert tally.amber_s + tally.red_s == before
+    assert tally.amber_s + tally.red_s == before + seen_s
