@@ -137,6 +137,19 @@ def test_a_unit_is_told_nothing_to_forget_before_it_may(tmp_path):
     bench.spool.close()
 
 
+def test_what_the_log_refused_is_asked_for_again_once_and_surely():
+    """Also where the next report came before anybody looked at the one that told of it."""
+    backfill = Backfill(cast("Bus", StubBus()), lambda *_: None, ManualClock())
+    starts_over = []
+    for reports in (1, 2, 1, 1):
+        for _ in range(reports):
+            backfill.report({}, refused=min(len(starts_over), 1))
+        news = backfill._next()
+        assert news is not None
+        starts_over.append(news.start_over)
+    assert starts_over == [False, True, False, False]
+
+
 def test_a_boot_that_the_station_never_heard_of_is_fetched(bench):
     for _ in range(3):
         tell(bench.backfill, {"FF-01": ()})
