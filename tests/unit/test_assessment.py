@@ -40,6 +40,15 @@ def test_figures_of_a_normal_distribution_are_its_own() -> None:
     assert many.ve95_m == pytest.approx(1.960, rel=0.01)
 
 
+def test_a_long_trail_is_looked_at_from_its_beginning_to_its_end() -> None:
+    sure = [sample(float(second), std_m=1.0) for second in range(600)]
+    unsure = [sample(float(second), std_m=10.0) for second in range(600, 1200)]
+    for trail in (sure + unsure, unsure + sure):
+        figures = stated_figures(trail)
+        assert figures is not None
+        assert figures.ce95_m == pytest.approx(21.5, rel=0.1)  # 90 % of the worse half
+
+
 def test_nothing_has_no_figures() -> None:
     assert stated_figures([]) is None
     assert figures_of(np.zeros((0, 3))) is None

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import cast
 
+import msgspec
+import numpy as np
 import pytest
 
 from base_station.assessment.report import UnitReport, assess
 from base_station.db.records import TrackSample
+from base_station.fusion.path.history import PathHistory
 from base_station.fusion.smoother.port import Verdict
 from base_station.live_state import StationState, UnitState
 from base_station.pins.pin import Pin
+from base_station.site.plan import Plan
+from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 
 
@@ -51,8 +58,50 @@ def test_a_pin_is_held_against_what_was_shown_nearest_to_its_time(
 
 
 def test_a_pin_of_a_time_at_which_nothing_was_shown_tells_nothing_of_it() -> None:
-    (residual,) = assessed([shown(10.0), shown(100.0)], (), pin(50.0, 0.0)).pin_residuals
-    assert (residual.shown_m, residual.floor_right) == (None, None)
+    for t_s in (16.0, 50.0, 94.0):
+        (residual,) = assessed([shown(10.0), shown(100.0)], (), pin(t_s, 0.0)).pin_residuals
+        assert (residual.shown_m, residual.floor_right) == (None, None)
+
+
+def test_a_pin_at_the_start_is_held_against_what_was_shown_first() -> None:
+    (residual,) = assessed([shown(100.0, 7.0), shown(101.0, 8.0)], (), pin(0.0, 7.0)).pin_residuals
+    assert residual.shown_m == 0.0
+
+
+def test_a_pin_of_another_tells_nothing_of_a_unit() -> None:
+    other = msgspec.structs.replace(pin(10.0, 0.0), unit_id="FF-02")
+    assert assessed([shown(10.0)], (), other).pin_residuals == ()
+
+
+def test_the_nearest_two_storeys_say_how_sure_a_floor_was() -> None:
+    storeys = (Storey(0, 0.0), Storey(1, -3.0), Storey(2, -9.0))
+    state = StationState(plan=Plan(b"", storeys, ()))
+    live = {"FF-01": [shown(1.0)]}
+    (unit,) = assess("i1", "path-graph", 0, state, {}, live, {}, {}).units
+    assert unit.floor_probability == pytest.approx(0.8664, abs=1e-3)  # 1.5 standard deviations
+
+
+@pytest.mark.parametrize(
+    ("fixes_s", "jump_s", "found"),
+    [
+        ((0.0, 60.0, 121.0), 121.0, (7.0,)),
+        ((0.0, 60.0, 121.0), 136.0, (7.0,)),
+        ((0.0, 60.0, 121.0), 145.0, (0.0,)),
+        ((0.0, 60.0, 120.0), 120.0, ()),
+    ],
+)
+def test_a_jump_counts_as_fixes_come_back_after_a_minute(
+    fixes_s: Sequence[float], jump_s: float, found: Sequence[float]
+) -> None:
+    fix_t_ns = np.array([round(one * NS_PER_S) for one in fixes_s])
+    history = SimpleNamespace(begin_ns=0, arrays=lambda: SimpleNamespace(fix_t_ns=fix_t_ns))
+    state = StationState(paths={"FF-01": cast("PathHistory", history)})
+    live = [shown(float(second), 7.0 if second >= jump_s else 0.0) for second in range(200)]
+    smoothed = [shown(0.0), shown(199.0)]
+    (unit,) = assess(
+        "i1", "path-graph", 0, state, {}, {"FF-01": live}, {"FF-01": smoothed}, {}
+    ).units
+    assert unit.reentry_jumps_m == found
 
 
 def test_the_floor_of_somebody_at_rest_is_held_against_what_is_known_of_that_time() -> None:
@@ -87,3 +136,22 @@ def test_a_loop_closes_where_somebody_came_back_last() -> None:
     (unit,) = report.units
     assert unit.loop_closure_m == pytest.approx(4.1)
     assert unit.loop_closure_percent == pytest.approx(100.0 * 4.1 / unit.walked_m, abs=0.02)
+
+
+def test_what_a_loop_missed_is_held_against_the_way_until_then() -> None:
+    way_m = [*range(21), *range(19, -1, -1), *range(1, 31)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    raw = [msgspec.structs.replace(one, north_m=1.1 * one.north_m) for one in smoothed]
+    tracks = {"FF-01": smoothed}
+    report = assess("i1", "path-graph", 0, StationState(), {}, tracks, tracks, {"FF-01": raw})
+    (unit,) = report.units
+    assert unit.walked_m == pytest.approx(77.0)
+    assert unit.loop_closure_m == pytest.approx(0.2)  # two metres out again it was last near
+    assert unit.loop_closure_percent == pytest.approx(100.0 * 0.2 / (1.1 * 42.0), abs=0.01)
+
+
+@pytest.mark.parametrize(("furthest_m", "last_m"), [(20, 20), (20, 4), (14, 0)])
+def test_who_did_not_go_far_or_come_back_has_closed_no_loop(furthest_m: int, last_m: int) -> None:
+    way_m = [*range(furthest_m + 1), *range(furthest_m, last_m - 1, -1)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    assert assessed(smoothed, smoothed).loop_closure_m is None
