@@ -256,6 +256,13 @@ def test_who_stirs_for_a_second_walks_before_the_first_stride_is_known(wearer: W
     assert wearer.said() is Activity.STILL
 
 
+def test_who_is_heard_in_mid_walk_walks_and_before_that_nobody_knows() -> None:
+    wearer = Wearer(stands_s=0.0)
+    assert wearer.said() is Activity.UNKNOWN
+    wearer.stirs(1.6)
+    assert wearer.said() is Activity.WALKING
+
+
 def test_two_seconds_without_samples_and_nobody_knows(wearer: Wearer) -> None:
     """Of the last half second nothing is known before it is over."""
     wearer.now_s += 1.4
