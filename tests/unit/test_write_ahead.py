@@ -1,0 +1,90 @@
+"""What the station decides is on the disk before anybody hears of it, where that matters."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import pytest
+
+from base_station.events import Output, StationEvent
+from base_station.live.picture import Picture
+from base_station.live.projector import Projector
+from base_station.live.self_watch import SelfWatch
+from base_station.live.write_ahead import WriteAhead
+from base_station.live_state import StationState
+from base_station.pipeline import StationPipeline
+from shared.channels import TICK
+from shared.codec import encode
+from shared.messages import STATION_ID, AlarmChange, AlarmState, Header, Tick
+
+T_NS = 1_700_000_000_000_000_000
+HEADER = Header(STATION_ID, 1, 1, T_NS, t_utc_ns=T_NS)
+ALARM = AlarmChange(
+    header=HEADER,
+    alarm_id="a1",
+    rule="link-lost",
+    unit_id="FF-01",
+    priority=2,
+    state=AlarmState.RAISED,
+    level="",
+    text="no word from Anna",
+    by="",
+    raised_ns=T_NS,
+)
+
+
+class Decides:
+    """A pipeline from which the same follows whatever it is told."""
+
+    def __init__(self, outputs: list[Output]) -> None:
+        self.state = StationState()
+        self._outputs = outputs
+
+    def step(self, _: StationEvent) -> list[Output]:
+        return self._outputs
+
+
+class Hears:
+    """A picture."""
+
+    def note(self, outputs: list[Output]) -> None:
+        pass
+
+
+class Disk:
+    """A ``Log`` that counts how often it was waited for."""
+
+    problem = little_room = ""
+    is_behind = False
+
+    def __init__(self) -> None:
+        self.flushed = 0
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        del t_ns, key, payload
+        return True
+
+    def flush(self) -> bool:
+        self.flushed += 1
+        return True
+
+
+@pytest.mark.parametrize(
+    ("urgent", "outputs", "flushed"), [(False, [], 0), (False, [ALARM], 1), (True, [], 1)]
+)
+def test_what_is_urgent_and_every_alarm_are_on_the_disk_before_they_are_told(
+    urgent: bool, outputs: list[Output], flushed: int
+) -> None:
+    """That somebody has been silent for too long follows from a tick, which itself can wait."""
+    disk = Disk()
+    ahead = WriteAhead(
+        cast("StationPipeline", Decides(outputs)),
+        disk,
+        cast("Picture", Hears()),
+        Projector(),
+        SelfWatch(),
+    )
+    ahead.keep_and_step(T_NS, TICK.key(STATION_ID), encode(Tick(HEADER, T_NS)), urgent=urgent)
+    for _ in range(2):  # it is waited for once
+        ahead.settle()
+        assert disk.flushed == flushed
