@@ -66,7 +66,12 @@ def _fill(chance: random.Random, wire: Any, depth: int) -> None:
         if field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE:
             if depth == 0:
                 continue
-            if field.is_repeated:
+            if field.message_type.GetOptions().map_entry:
+                of_entry = field.message_type.fields_by_name
+                for _ in range(chance.randrange(3)):
+                    key, value = (_value(chance, of_entry[name]) for name in ("key", "value"))
+                    getattr(wire, field.name)[key] = value
+            elif field.is_repeated:
                 for _ in range(chance.randrange(3)):
                     _fill(chance, getattr(wire, field.name).add(), depth - 1)
             else:
