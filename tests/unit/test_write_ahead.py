@@ -13,6 +13,7 @@ from base_station.live.self_watch import SelfWatch
 from base_station.live.write_ahead import WriteAhead
 from base_station.live_state import StationState
 from base_station.pipeline import StationPipeline
+from shared.channels import ALARM as ALARM_CHANNEL
 from shared.channels import TICK
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, AlarmState, Header, Tick
@@ -59,14 +60,21 @@ class Disk:
 
     def __init__(self) -> None:
         self.flushed = 0
+        self.keys: list[str] = []
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
-        del t_ns, key, payload
+        del t_ns, payload
+        self.keys.append(key)
         return True
 
     def flush(self) -> bool:
         self.flushed += 1
         return True
+
+
+def over(disk: Disk, outputs: list[Output]) -> WriteAhead:
+    pipeline, picture = cast("StationPipeline", Decides(outputs)), cast("Picture", Hears())
+    return WriteAhead(pipeline, disk, picture, Projector(), SelfWatch())
 
 
 @pytest.mark.parametrize(
@@ -77,14 +85,27 @@ def test_what_is_urgent_and_every_alarm_are_on_the_disk_before_they_are_told(
 ) -> None:
     """That somebody has been silent for too long follows from a tick, which itself can wait."""
     disk = Disk()
-    ahead = WriteAhead(
-        cast("StationPipeline", Decides(outputs)),
-        disk,
-        cast("Picture", Hears()),
-        Projector(),
-        SelfWatch(),
-    )
+    ahead = over(disk, outputs)
     ahead.keep_and_step(T_NS, TICK.key(STATION_ID), encode(Tick(HEADER, T_NS)), urgent=urgent)
     for _ in range(2):  # it is waited for once
         ahead.settle()
         assert disk.flushed == flushed
+
+
+@pytest.mark.parametrize(
+    ("log", "written"),
+    [
+        ("event decision event", 1),  # a crash came between the two
+        ("event decision event decision", 0),
+        ("event event decision event decision", 0),  # the first was refused: too late for it
+    ],
+)
+def test_what_a_crash_kept_from_the_log_is_written_at_the_start(log: str, written: int) -> None:
+    disk = Disk()
+    records = {
+        "event": (TICK.key(STATION_ID), encode(Tick(HEADER, T_NS))),
+        "decision": (ALARM_CHANNEL.key(STATION_ID), encode(ALARM)),
+    }
+    said = [(T_NS + number, *records[one]) for number, one in enumerate(log.split())]
+    assert over(disk, [ALARM]).rebuild(said, (0, 0)) == log.split().count("event")
+    assert disk.keys.count(ALARM_CHANNEL.key(STATION_ID)) == written
