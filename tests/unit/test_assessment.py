@@ -144,6 +144,8 @@ def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
     assert (trust.level, trust.reason) == ("amber", "a pin contradicts the trail")
     state.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
     assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"
+    state.pin_verdicts["removed"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"
 
 
 @pytest.mark.parametrize(("kind", "both"), [("meeting", True), ("beacon", False)])
