@@ -206,12 +206,18 @@ def test_a_tracker_that_is_lost_makes_no_runner(
 
 
 def test_one_tipped_step_is_a_stumble_and_two_are_crawling(wearer: Wearer) -> None:
-    wearer.strides(3, 1.3)
+    wearer.strides(3, 2.1)
     wearer.strides(1, 0.4, angle_deg=TIPPED_DEG)
     said = [wearer.said()]
     wearer.strides(2, 0.4, angle_deg=TIPPED_DEG)
     said.append(wearer.said())
-    assert said == [Activity.WALKING, Activity.CRAWLING]
+    assert said == [Activity.RUNNING, Activity.CRAWLING]
+
+
+def test_who_crawls_on_the_balls_of_the_feet_crawls(wearer: Wearer) -> None:
+    """Fifty degrees are more than a shoe rolls in a stride and less than a foot that lies."""
+    wearer.strides(4, 0.4, angle_deg=50.0)
+    assert wearer.said() is Activity.CRAWLING
 
 
 def test_who_crawls_goes_on_crawling_after_a_rest_and_lies_after_a_long_one(
