@@ -141,10 +141,10 @@ def test_trails_that_were_filled_in_are_told_some_at_a_time() -> None:
     picture.note([TrailFilled(unit_id) for unit_id in UNITS])
     picture.flush()
     assert not screen.deltas, "once a second will do"
-    for health in (True, False, False, False):
+    for health in (True, False, False, False, True):
         picture.flush(health)
     filled = [list(delta.trails) for delta in screen.deltas]
-    assert [len(trails) for trails in filled] == [FILLED_A_TURN, FILLED_A_TURN, 3]
+    assert [len(trails) for trails in filled] == [FILLED_A_TURN, FILLED_A_TURN, 3, 0], "each once"
     assert sorted(one for trails in filled for one in trails) == UNITS
 
 
