@@ -120,8 +120,8 @@ class Actions:
         if isinstance(action, ReportProblem):
             yield from self._book.problem(state, action.part, action.text)
         else:
-            state.thresholds = action.values
-            self._book.use(action.values)
+            state.thresholds = action.thresholds
+            self._book.use(action.thresholds)
             yield from self._reviewed(state, state.units.values())
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[Effect]:

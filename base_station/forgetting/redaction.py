@@ -41,7 +41,8 @@ from shared.messages import (
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
 
-_WORDS = frozenset({"rule", "level", "part"})  # the program's own, whoever is called Heat or Fall
+# The program's own, whoever is called Heat or Fall.
+_WORDS = frozenset({"rule", "level", "part", "thresholds"})
 
 
 class Redactor:

@@ -153,7 +153,7 @@ class SetAccountability(msgspec.Struct, frozen=True):
 class SetThresholds(msgspec.Struct, frozen=True):
     """Of alarm rules, by ``rule.threshold``; what is not named has its default."""
 
-    values: dict[str, float]
+    thresholds: dict[str, float]
 
 
 class SetRest(msgspec.Struct, frozen=True):

@@ -29,7 +29,7 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
 ) -> None:
     settings = tmp_path / "station.toml"
     settings.write_text("[alarms.battery]\nlow = 0.6\n")
-    ours: dict[str, Any] = {"values": {"battery.low": 0.6}}
+    ours: dict[str, Any] = {"thresholds": {"battery.low": 0.6}}
     station = serve("--config", str(settings))
     with Browser(station.wait_ready(), data) as browser:
         until(lambda: set_in(browser) == [ours], "the thresholds are in the audit")
@@ -49,7 +49,7 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
     settings.write_text("")
     default = serve("--config", str(settings))
     with Browser(default.wait_ready(), data) as browser:
-        until(lambda: set_in(browser) == [ours, {"values": {}}], "the usual ones hold again")
+        until(lambda: set_in(browser) == [ours, {"thresholds": {}}], "the usual ones hold again")
     assert default.stop() == 0
 
 

@@ -28,7 +28,7 @@ from shared.messages import (
     OperatorAction,
     Temperature,
 )
-from shared.messages.station import Assign, SendCommand
+from shared.messages.station import Assign, SendCommand, SetThresholds
 
 HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
 
@@ -72,6 +72,8 @@ def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
     )
     wanted = msgspec.structs.replace(alarm, text=f"{FORGOTTEN} is hot", by=FORGOTTEN)
     assert redacted("Heat", ALARM, alarm) == wanted
+    ours = OperatorAction(HEADER, "a1", STATION_ID, SetThresholds({"heat.caution_degc": 80.0}))
+    assert redacted("Heat", OPERATOR, ours) == ours
 
 
 @pytest.mark.parametrize("length", range(1, 100))

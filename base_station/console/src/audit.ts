@@ -37,7 +37,7 @@ function said(name: string, value: unknown): string {
   if (typeof value === "boolean") return value ? spaced(name) : "";
   if (name === "kind" && typeof value === "number") return COMMANDS[value] ?? String(value);
   if (typeof value === "number") return quantity(name, value);
-  if (name === "values") return thresholds(value as Record<string, number>);
+  if (name === "thresholds") return thresholds(value as Record<string, number>);
   const words = Array.isArray(value) ? value.join(" ") : String(value);
   return name === "unit_id" || name === "unit_ids" ? words : `${spaced(name)}: ${words}`;
 }

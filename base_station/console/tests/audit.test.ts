@@ -28,10 +28,10 @@ describe("the audit log", () => {
       "FF-05, person name: Elena Rossi, crew: Rescue 3",
     ],
     [
-      { values: { "no-motion.alarm_s": 25, "heat.caution_degc": 80, "battery.low": 0.2 } },
+      { thresholds: { "no-motion.alarm_s": 25, "heat.caution_degc": 80, "battery.low": 0.2 } },
       "no-motion alarm 25 s, heat caution 80 °C, battery low 0.2",
     ],
-    [{ values: {} }, "all as usual"],
+    [{ thresholds: {} }, "all as usual"],
   ])("says %o in words", (detail, text) => {
     expect(words(detail)).toBe(text);
   });
