@@ -312,6 +312,14 @@ def test_who_went_down_suddenly_has_fallen_after_four_seconds_without_a_motion(
     assert wearer.falls == falls
 
 
+def test_who_stands_for_long_or_lies_down_has_not_fallen(wearer: Wearer) -> None:
+    wearer.rests(30.0)
+    wearer.stirs(2.0, 70.0, 1.0)
+    wearer.rests(30.0, 90.0)
+    assert wearer.said() is Activity.LYING
+    assert wearer.falls == 0
+
+
 def test_who_has_collapsed_is_falling_until_it_is_lying(wearer: Wearer) -> None:
     wearer.stirs(1.0, 85.0, 3.0)
     said = []

@@ -165,6 +165,12 @@ def test_a_receiver_that_is_named_is_the_only_one() -> None:
     assert str(receiver) == f"GPS receiver {OTHER} of gpsd at h:2947"
 
 
+def test_a_receiver_that_says_nothing_to_gpsd_is_told() -> None:
+    receiver = Gpsd("//h")
+    heard(receiver, gpsd_devices(DEVICE))
+    assert "hears nothing of its receiver" in receiver.why_nothing()
+
+
 def test_why_there_is_nothing() -> None:
     receiver = Gpsd(f"//h{OTHER}")
     assert receiver.why_nothing() == "", "gpsd has not said anything yet"
