@@ -94,6 +94,13 @@ def test_the_sky_comes_in_parts_of_which_none_undoes_another() -> None:
     assert found.horizontal_std_m == pytest.approx(4.0 / math.sqrt(2.0))
 
 
+def test_what_is_said_of_one_receiver_stays_beside_what_is_said_of_another() -> None:
+    elsewhere = json_line("SKY", device=OTHER, hdop=9.0, vdop=9.0, uSat=4)
+    found = fix(SKY + GST + elsewhere + tpv())
+    assert found.satellites == 11
+    assert found.horizontal_std_m == pytest.approx(math.sqrt(5.0))
+
+
 def test_satellites_are_those_in_use() -> None:
     listed = [{"PRN": k, "used": k % 3 == 0} for k in range(12)]
     assert fix(json_line("SKY", device=DEVICE, satellites=listed) + tpv()).satellites == 4
