@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from datetime import UTC, datetime, timedelta
 from urllib.parse import quote
 
@@ -10,6 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from base_station.api.wire import UnitView
 from tests.e2e import scenes
+from tests.e2e.console_page import menu
 from tests.e2e.stage import Stage
 
 
@@ -97,3 +99,29 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     page.get_by_role("button", name="Yes, all heard").click()
     expect(everybody).to_be_visible()
     assert station.changes() == ["/check-ins"]
+
+
+def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
+    """Nor is that person taken from another; by keys it counts with Enter, or on leaving."""
+    quiet = scenes.quiet()
+    page, station = stage.open(quiet)
+    worn = menu(page, "Units").get_by_label("Who wears FF-01")
+    first = worn.input_value()
+    worn.focus()
+    worn.press("ArrowDown")
+    worn.press("ArrowDown")
+    station.change(units=(heard(quiet.units[0]),))
+    expect(worn).to_have_value("p2")
+    worn.press("ArrowUp")
+    worn.press("ArrowUp")
+    expect(worn).to_have_value(first)
+    worn.press("Tab")
+    worn.press("ArrowDown")
+    assert station.changes() == []
+    with page.expect_request(re.compile("/assignments$")) as asked:
+        worn.press("Enter")
+    assert asked.value.post_data_json == {"unit_id": "FF-01", "person_id": "p1"}
+    with page.expect_request(re.compile("/assignments$")) as asked:
+        worn.select_option("p3")
+        worn.press("Tab")
+    assert asked.value.post_data_json == {"unit_id": "FF-01", "person_id": "p3"}

@@ -5,6 +5,7 @@ import { alarmWord, clockOffset, gpsWord, isSetWrong, linkWord, TWO_MACHINES } f
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { Recording } from "./Recording";
+import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { Wearer } from "./Wearer";
 
@@ -107,15 +108,11 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
 }
 
 function Rate({ unitId }: { unitId: string }) {
+  const chosen = useChosen("", (rateHz) => {
+    if (rateHz !== "") void attempt(api.setPositionRate(unitId, Number(rateHz)));
+  });
   return (
-    <select
-      aria-label={`Positions a second of ${unitId}`}
-      value=""
-      onChange={(event) => {
-        const rateHz = Number(event.currentTarget.value);
-        if (rateHz > 0) void attempt(api.setPositionRate(unitId, rateHz));
-      }}
-    >
+    <select aria-label={`Positions a second of ${unitId}`} {...chosen}>
       <option value="">as it is</option>
       {RATES_HZ.map((rateHz) => (
         <option key={rateHz} value={rateHz}>

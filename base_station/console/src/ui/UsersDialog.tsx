@@ -3,6 +3,7 @@ import * as api from "../api";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
+import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 
 /** Who may log in, and as what. */
@@ -57,6 +58,9 @@ function NewUser({ done }: { done: () => void }) {
 
 function UserRow({ user, done }: { user: api.User; done: () => void }) {
   const { username } = user;
+  const role = useChosen(user.role, (chosen) => {
+    void attempt(api.changeUser(username, { role: chosen as api.Role })).then(done);
+  });
   return (
     <tr>
       <th scope="row">
@@ -64,14 +68,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
         {username === me.value?.username && <small> (you)</small>}
       </th>
       <td data-label="Role">
-        <select
-          aria-label={`Role of ${username}`}
-          value={user.role}
-          onChange={(event) => {
-            const role = event.currentTarget.value as api.Role;
-            void attempt(api.changeUser(username, { role })).then(done);
-          }}
-        >
+        <select aria-label={`Role of ${username}`} {...role}>
           {api.ROLES.map((role) => (
             <option key={role}>{role}</option>
           ))}

@@ -1,0 +1,32 @@
+import { useSignal } from "@preact/signals";
+import { useRef } from "preact/hooks";
+
+type OfList = { currentTarget: HTMLSelectElement };
+
+/** For a list that acts on what is chosen in it.  Arrow keys pass other entries on their way: by keys
+ * it counts with Enter, or when the list is left, and Escape leaves it as it was. */
+export function useChosen(current: string, act: (chosen: string) => void) {
+  const passed = useSignal<string | null>(null);
+  const byKeys = useRef(false);
+  const settle = () => {
+    const chosen = passed.peek();
+    passed.value = null;
+    if (chosen !== null && chosen !== current) act(chosen);
+  };
+  return {
+    value: passed.value ?? current,
+    onPointerDown: () => void (byKeys.current = false),
+    onKeyDown: (press: KeyboardEvent) => {
+      byKeys.current = true;
+      if (press.key === "Escape") passed.value = null;
+      if (press.key !== "Enter" || passed.peek() === null) return;
+      press.preventDefault(); // it would open the list
+      settle();
+    },
+    onBlur: settle,
+    onChange: ({ currentTarget }: OfList) => {
+      if (byKeys.current) passed.value = currentTarget.value;
+      else act(currentTarget.value);
+    },
+  };
+}
