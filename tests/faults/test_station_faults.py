@@ -18,6 +18,7 @@ from base_station.events import Output, Received, StationEvent
 from base_station.fusion import FUSERS
 from base_station.live.drive_ports import DrivePorts
 from base_station.live.picture import Picture
+from base_station.live.saving import Saving
 from base_station.live_state import UnitState
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
@@ -26,7 +27,7 @@ from base_station.views import StationFacts
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import LogRecord
 from shared.messages import Message, Position
-from shared.messages.station import RegisterUnit
+from shared.messages.station import ForgetWearers, RegisterUnit
 from tests.live_station import LiveStation, Screen, Store, make_pipeline
 from tests.station_script import Script
 from tests.waiting import PATIENCE_S, until
@@ -94,6 +95,41 @@ def test_a_mistake_in_the_pipeline_costs_one_message(
         station.say(make_position(north_m=1.0))
         until(lambda: "pipeline" in station.pipeline.state.problems)
         follows(station, make_position, 4.0)
+
+
+def wait_for_ticks(station: LiveStation) -> None:
+    count = len(station.screen.deltas)
+    until(lambda: len([one for one in station.screen.deltas[count:] if one.health]) > 2)
+
+
+def test_no_journal_hears_of_what_may_not_be_on_the_disk(
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its unit would forget it."""
+    behind = {"now": True}
+    monkeypatch.setattr(Recorder, "is_behind", property(lambda _: behind["now"]))
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        station.say(make_position())
+        wait_for_ticks(station)
+        assert not station.reported
+        behind["now"] = False
+        until(lambda: U in station.reported)
+
+
+def test_somebody_is_forgotten_when_what_is_being_saved_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has them in it, and would be read at the next start."""
+    saving = {"now": True}
+    monkeypatch.setattr(Saving, "is_under_way", property(lambda _: saving["now"]))
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        forgotten = station.drive.submit("chief", ForgetWearers(U))
+        wait_for_ticks(station)
+        assert not forgotten.done()
+        saving["now"] = False
+        assert forgotten.result(PATIENCE_S).refused is None
 
 
 class Nowhere:
