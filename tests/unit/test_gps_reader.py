@@ -10,10 +10,11 @@ import pytest
 from edge.receivers.gps_reader import GpsReader
 from edge.receivers.nmea import Nmea
 from shared.clock import NS_PER_S, ManualClock
-from tests.gps_receiver import Told, gga, rmc
+from tests.gps_receiver import Told, gga, rmc, sentence
 
 BAD = b"$GNRMC,0927"
 SAID = Told()
+OF_NO_USE = sentence("GNVTG,,T,,M,0.02,N,0.04,K,A")
 
 
 class Receiver:
@@ -28,12 +29,14 @@ class Receiver:
     def opened(self) -> None:
         self.reader.opened()
 
-    def says(self, seconds: int, bad: int = 0) -> tuple[str, ...]:
-        """A fix a second, with so many lines that cannot be read; what a person hears of it."""
+    def says(self, seconds: int, bad: int = 0, others: int = 0) -> tuple[str, ...]:
+        """A fix a second, in two lines, with so many that cannot be read and so many others; what a
+        person hears of it.
+        """
         faults: list[str] = []
         for _ in range(seconds):
             told = replace(SAID, of_day_s=SAID.of_day_s + self.clock.monotonic_ns() / NS_PER_S)
-            faults += self.hears(gga(told), rmc(told), *[BAD] * bad)
+            faults += self.hears(gga(told), rmc(told), *[OF_NO_USE] * others, *[BAD] * bad)
         return tuple(faults)
 
     def hears(self, *lines: bytes) -> tuple[str, ...]:
@@ -77,6 +80,11 @@ def test_half_a_line_after_opening_is_no_bad_line(
     said = receiver.says(1, bad=bad) + receiver.says(11)
     assert len(said) == faults
     assert receiver.reader.garbled == bad
+
+
+@pytest.mark.parametrize(("bad", "faults"), [(2, 0), (3, 1)])
+def test_more_than_one_bad_line_in_ten_is_told(receiver: Receiver, bad: int, faults: int) -> None:
+    assert len(receiver.says(30, bad=bad, others=18)) == faults
 
 
 def test_each_fix_is_taken_once(receiver: Receiver) -> None:
