@@ -125,7 +125,7 @@ class _Axis:
 
     def begin(self, value: float, other: tuple[float, ...]) -> None:
         self.value, self.other_before = value, other
-        self.has_felt = self.has_felt or value != 0.0
+        self.has_felt = self.has_felt or abs(value) > 0.0  # and not NaN
         self.lasts_ns = self.moved_ns = 0
 
     @property

@@ -101,6 +101,7 @@ def test_what_moved_in_a_hole_is_not_known(hung: slice) -> None:
 def test_an_axis_in_which_nothing_was_made_to_move_is_well() -> None:
     rows = moving()
     rows[:, (1, 5)] = 0.0  # a walk in a plane
+    rows[100] = np.nan  # a sample that was missed shows nothing either
     assert told(SensorHealth(), imu_of(rows)) == []
 
 
