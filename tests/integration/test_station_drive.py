@@ -281,8 +281,11 @@ def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: 
     second.close()
 
 
-def test_what_many_events_cost_at_a_start_they_do_not_cost_at_the_next(tmp_path: Path) -> None:
+def test_what_many_events_cost_at_a_start_they_do_not_cost_at_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """However soon a station is killed after it has started."""
+    monkeypatch.setattr("base_station.drive.CHECKPOINT_NS", 3600 * NS_PER_S)
     script = Script()
     script.register(U)
     while len(script.records) < 2 * MANY_STEPPED:
