@@ -104,6 +104,7 @@ def test_what_is_said_of_one_receiver_stays_beside_what_is_said_of_another() -> 
 def test_satellites_are_those_in_use() -> None:
     listed = [{"PRN": k, "used": k % 3 == 0} for k in range(12)]
     assert fix(json_line("SKY", device=DEVICE, satellites=listed) + tpv()).satellites == 4
+    assert fix(json_line("SKY", device=DEVICE, satellites=[{"PRN": 1}]) + tpv()).satellites == 0
     assert fix(SKY + tpv()).satellites == 11
     assert fix(SKY + json_line("SKY", device=DEVICE, hdop=0.7) + tpv()).satellites == 11
     assert fix(json_line("SKY", device=DEVICE, uSat=10**12) + tpv()).satellites == 255
@@ -111,13 +112,18 @@ def test_satellites_are_those_in_use() -> None:
 
 
 @pytest.mark.parametrize(
-    "said", [{"mode": 0}, {"mode": 1}, {"status": 5}, {"status": 6}, {"status": 8}]
+    "said",
+    [
+        *({"mode": 0}, {"mode": 1}),  # not seen yet, none
+        *({"status": 5}, {"status": 6}, {"status": 8}),  # reckoned, in part, simulated
+        *({"lat": 91.0}, {"lon": -181.0}, {"lat": NAN}, {"lon": NAN}),
+    ],
 )
-def test_what_is_no_fix_of_satellites_is_none(said: dict[str, int]) -> None:
-    """Not seen yet, none, reckoned, reckoned in part, simulated."""
+def test_what_is_no_fix_of_satellites_is_none(said: dict[str, float]) -> None:
     found = fix(tpv(**said))
     assert found.fix_type == 0
     assert math.isnan(found.lat_deg)
+    assert math.isnan(found.lon_deg)
 
 
 def test_an_instant_is_known_to_the_part_of_a_second_that_is_said() -> None:
