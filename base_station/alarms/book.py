@@ -8,6 +8,7 @@ go on.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
@@ -29,6 +30,7 @@ from shared.messages import (
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
+_NUMBER = re.compile(r"\d+")
 
 
 class AlarmBook:
@@ -80,8 +82,8 @@ class AlarmBook:
         return bool(self._heeding.get(came, self._rules))
 
     def problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
-        """A part of the station itself fails, or fails in another way; without a text, it is well
-        again.
+        """A part of the station itself fails, or fails in another way, which is more than to say
+        less or another number; without a text, it is well again.
         """
         key = f"{STATION_RULE}|{part}"
         current = state.alarms.get(key)
@@ -92,7 +94,7 @@ class AlarmBook:
                 alarm_id = f"{STATION_RULE}:{part}:{state.t_ns}"
                 finding = Finding(part, SOON, text, seen_ns=state.t_ns)
                 yield self._raise(state, key, alarm_id, STATION_RULE, "", finding)
-            elif text != standing.text:
+            elif _NUMBER.sub("", text) not in _NUMBER.sub("", standing.text):
                 yield _raise_anew(state, standing, text)
         else:
             state.problems.pop(part, None)

@@ -481,6 +481,21 @@ def test_another_problem_of_the_same_part_is_told_while_the_first_one_stands(
     assert changed_ns == script.alarms[-1].header.t_utc_ns
 
 
+def test_a_part_that_says_less_or_other_numbers_says_nothing_new(script: Script) -> None:
+    for text in (
+        "3 records are missing",
+        "3 records are missing; its disk does not answer",
+        "4 records are missing",
+        "9 records are missing; its disk does not answer",
+    ):
+        script.wait(1)
+        script.act(ReportProblem("log", text), by="station")
+    assert [a.text for a in script.alarms] == [
+        "3 records are missing",
+        "3 records are missing; its disk does not answer",
+    ]
+
+
 @dataclass(frozen=True)
 class Broken:
     name: str = "broken"
