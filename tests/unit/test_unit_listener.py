@@ -171,6 +171,24 @@ def test_a_run_that_is_over_is_forgotten_where_it_was_not_described(unit: Unit) 
     assert unit.taken() == [1]
 
 
+def test_a_run_that_another_has_followed_is_heard_when_that_one_has_been_silent(
+    unit: Unit,
+) -> None:
+    for boot_id in (7, 8):
+        unit.describes(boot_id)
+        unit.says(raw(1, boot_id))
+    unit.clock.advance(100.0)
+    unit.says(raw(2, boot_id=8), raw(2))
+    unit.clock.advance(4.9)
+    unit.says(raw(3))
+    unit.clock.advance(0.1)
+    unit.says(raw(4), raw(3, boot_id=8))
+    assert unit.taken() == [1]
+    assert unit.taken(boot_id=8) == [1, 2]
+    assert unit.taken() == [4]
+    assert unit.listener.dropped == 3
+
+
 def test_a_bus_that_cannot_be_opened_is_tried_again(unit: Unit) -> None:
     stop = Event()
     refusals = [BusError("no router")] * 3
