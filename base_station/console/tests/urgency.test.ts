@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { handedTo, openAlarms, sinceMs } from "../src/live/alarms";
+import { handedTo, hasAlarm, openAlarms, sinceMs } from "../src/live/alarms";
 import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
@@ -132,6 +132,13 @@ describe("handedTo", () => {
     expect(handedTo(mayday, unit("1"))).toBe("nobody wears this unit now");
     expect(handedTo(alarm("battery", { text: "The battery of 1's unit" }), unit("1"))).toBe("");
   });
+});
+
+it("a battery is low where its alarm is open, whatever the station's figure for that", () => {
+  const alarms = new Map([["low", alarm("low", { rule: "battery" })]]);
+  expect(hasAlarm(unit("1", { alarms: ["low"] }), "battery", alarms)).toBe(true);
+  expect(hasAlarm(unit("1", { alarms: ["low"] }), "heat", alarms)).toBe(false);
+  expect(hasAlarm(unit("1", { alarms: [] }), "battery", alarms)).toBe(false);
 });
 
 it("a jump in the past is one, and time that goes by is none", () => {

@@ -19,6 +19,15 @@ export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
     );
 }
 
+/** Whether an alarm of this rule is open about the unit: from which figure on is the station's. */
+export function hasAlarm(
+  unit: UnitView,
+  rule: string,
+  alarms: ReadonlyMap<string, AlarmView>,
+): boolean {
+  return unit.alarms.some((alarmId) => alarms.get(alarmId)?.rule === rule);
+}
+
 /** Since when it asks for somebody: what has happened again, or got worse, was raised anew. */
 export function sinceMs({ state, raised_ms, changed_ms }: AlarmView): number {
   return state === "raised" ? changed_ms : raised_ms;

@@ -1,4 +1,5 @@
 import type { ComponentChildren } from "preact";
+import { hasAlarm } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { isOld, regionAt } from "../plan/ellipse";
 import { roomWord } from "../plan/rooms";
@@ -11,7 +12,6 @@ interface Props {
   picture: Picture;
 }
 
-const LOW_BATTERY = 0.1;
 const LINK_LEVEL: Record<Link, string> = {
   live: "",
   never: "",
@@ -30,7 +30,10 @@ export function Facts({ unit, picture }: Props) {
         {words.temperature(unit.ambient_degc)}
         {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
       </Fact>
-      <Battery part={unit.status?.battery ?? null} />
+      <Battery
+        part={unit.status?.battery ?? null}
+        low={hasAlarm(unit, "battery", picture.alarms.value)}
+      />
       <Inside unit={unit} now={now} />
     </dl>
   );
@@ -100,8 +103,7 @@ function Heard({ unit, now, silent }: HeardProps) {
   );
 }
 
-function Battery({ part }: { part: number | null }) {
-  const low = part !== null && part < LOW_BATTERY;
+function Battery({ part, low }: { part: number | null; low: boolean }) {
   return (
     <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
       {words.percent(part)}
