@@ -12,7 +12,7 @@ from pathlib import Path
 from threading import Condition
 
 from shared.channels import Qos, parse_key
-from shared.clock import Clock
+from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError
 from shared.mcap_log import LogRecord, read_log, segment_paths
 
@@ -21,6 +21,7 @@ _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
 _LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
 _LATE_BYTES = 1024 * 1024
+_OVERFLOW_TOLD_NS = 60 * NS_PER_S
 _LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
 
 
@@ -48,12 +49,14 @@ class LiveFeed:
         self._late_bytes = 0
         self._woken = False
         self._closed = False
-        self._overflowed = 0
+        self._overflowed_ns = 0
+        self.overflowed = 0  # messages that came faster than they were taken, and were dropped
 
     @property
-    def overflowed(self) -> int:
-        """Messages that were dropped because they came faster than they were taken."""
-        return self._overflowed
+    def overflows(self) -> bool:
+        """Whether that happened within the last minute."""
+        since_ns = self._clock.monotonic_ns() - self._overflowed_ns
+        return self.overflowed > 0 and since_ns < _OVERFLOW_TOLD_NS
 
     @property
     def late_waits(self) -> bool:
@@ -71,7 +74,8 @@ class LiveFeed:
             if self._has_room(1.0) or (_is_alert(key) and self._has_room(2.0)):
                 self._append(key, payload)
             else:
-                self._overflowed += 1
+                self.overflowed += 1
+                self._overflowed_ns = self._clock.monotonic_ns()
 
     def deliver(self, key: str, payload: bytes) -> None:
         """As ``offer``, for data that can wait: returns when little of it waits.  An alert that

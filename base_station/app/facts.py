@@ -27,9 +27,12 @@ def facts_of(
     ]
     if not resources.router.is_open:
         problems.append("The bus's router is away and is started again; no unit is linked")
-    if resources.feed.overflowed:
-        lost = resources.feed.overflowed
-        problems.append(f"{lost} messages came faster than this machine can take them")
+    if resources.feed.overflows:
+        left_out = resources.feed.overflowed
+        problems.append(
+            f"Messages come faster than this machine can take them; {left_out} were left out, and "
+            "are fetched from the units' journals"
+        )
     return StationFacts(
         problems=tuple(problems),
         log_bytes=resources.recorder.log_bytes,

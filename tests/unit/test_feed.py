@@ -66,6 +66,21 @@ def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() 
     assert len(feed.take(0.0)) == 1
 
 
+def test_that_it_is_too_much_is_said_while_it_is_and_for_a_minute() -> None:
+    clock = ManualClock()
+    feed = LiveFeed(clock, records_max=1)
+    feed.offer(KEY, b"")
+    assert not feed.overflows
+    feed.offer(KEY, b"")
+    clock.advance(59.0)
+    assert feed.overflows
+    clock.advance(2.0)
+    assert not feed.overflows
+    feed.offer(KEY, b"")
+    assert feed.overflows
+    assert feed.overflowed == 2
+
+
 def test_the_bound_holds_for_bytes_too() -> None:
     feed = LiveFeed(ManualClock(), bytes_max=100)
     for _ in range(10):
