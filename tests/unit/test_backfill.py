@@ -125,7 +125,7 @@ def test_a_station_that_has_everything_says_so_to_the_unit(bench):
 
 def test_a_unit_is_told_nothing_to_forget_before_it_may(tmp_path):
     """The standby has not got it, say."""
-    may_forget = []
+    may_forget: list[bool] = []
     bench = Bench(tmp_path, range(1, 11), lambda: bool(may_forget))
     for _ in range(8):
         bench.report(Run(1, 10))
@@ -140,7 +140,7 @@ def test_a_unit_is_told_nothing_to_forget_before_it_may(tmp_path):
 def test_what_the_log_refused_is_asked_for_again_once_and_surely():
     """Also where the next report came before anybody looked at the one that told of it."""
     backfill = Backfill(cast("Bus", StubBus()), lambda *_: None, ManualClock())
-    starts_over = []
+    starts_over: list[bool] = []
     for reports in (1, 2, 1, 1):
         for _ in range(reports):
             backfill.report({}, refused=min(len(starts_over), 1))

@@ -69,16 +69,13 @@ def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() 
 def test_that_it_is_too_much_is_said_while_it_is_and_for_a_minute() -> None:
     clock = ManualClock()
     feed = LiveFeed(clock, records_max=1)
-    feed.offer(KEY, b"")
-    assert not feed.overflows
-    feed.offer(KEY, b"")
-    clock.advance(59.0)
-    assert feed.overflows
-    clock.advance(2.0)
-    assert not feed.overflows
-    feed.offer(KEY, b"")
-    assert feed.overflows
-    assert feed.overflowed == 2
+    told = []
+    for later_s in (0.0, 59.0, 61.0, 0.0):  # the first one has room
+        feed.offer(KEY, b"")
+        clock.advance(later_s)
+        told.append(feed.overflows)
+    assert told == [False, True, False, True]
+    assert feed.overflowed == 3
 
 
 def test_the_bound_holds_for_bytes_too() -> None:
