@@ -23,11 +23,11 @@ from base_station.bench.rig.units import BenchUnit, Wearer, speak_in_turn, unit_
 from base_station.bench.rig.waiting import wait_until
 from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import CHANNELS, ROOT, Direction, Qos, backfilled_key, channel_of
+from shared.channels import CHANNELS, POSITION, ROOT, Direction, Qos, backfilled_key, channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.mcap_log import read_log
-from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
+from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex, Message
 
 _BACKLOG_UNIT = "bench-backlog"
 _MESSAGES_HZ = 7.0
@@ -112,6 +112,7 @@ def _fetch(
     progress.update(task, description="fetching")
     nearly = backlog.count - round(_TOLD_LATE_S * rate_hz)
     for fetched in _coming(others, console, known):
+        backlog.speak()
         progress.update(task, completed=fetched)
         if fetched >= nearly:
             break
@@ -122,7 +123,7 @@ def _fetch(
     station.stop()
     recorded = station.recorded()
     fetched, took_s = _fetched(station.log, began_ns)
-    sent = _said_by(others) + backlog.count + 1
+    sent = _said_by(others) + backlog.said
     return BackfillReport(
         units=len(others),
         backlog=backlog.count,
@@ -160,26 +161,39 @@ class _Backlog:
     def __init__(self, count: int, endpoint: UnitEndpoint, closing: ExitStack) -> None:
         """``count`` messages of the time until now."""
         self.count = count
-        clock = ManualClock(time.time_ns() - round(count / _MESSAGES_HZ * NS_PER_S))
-        wearer = Wearer(_BACKLOG_UNIT, clock)
+        self._clock = ManualClock(time.time_ns() - round(count / _MESSAGES_HZ * NS_PER_S))
+        self._wearer = Wearer(_BACKLOG_UNIT, self._clock)
         self._entries: list[JournalEntry] = []
-        for seq in range(1, count + 2):
-            clock.advance(1.0 / _MESSAGES_HZ)
-            message = wearer.next_message()
-            suffix = channel_of(message).suffix
-            self._entries.append(JournalEntry(seq, suffix, encode(message)))
-        self._boot_id = message.header.boot_id
-        self._last = channel_of(message).key(_BACKLOG_UNIT), encode(message)
+        for _ in range(count):
+            self._boot_id = self._next().header.boot_id
         self._acknowledged = 0
         self._bus = ZenohBus(endpoint)
         closing.callback(self._bus.close)
         prefix = f"{ROOT}/{_BACKLOG_UNIT}/journal"
         self._serving = self._bus.serve(f"{prefix}/**", self._replies)
 
+    @property
+    def said(self) -> int:
+        """Messages, the backlog and what was said live."""
+        return len(self._entries)
+
     def appear(self) -> None:
-        """Say the last message live: the station sees that all before it are missing."""
-        wait_until("the station listens", lambda: self._bus.is_heard(self._last[0]))
-        self._bus.publish(*self._last, Qos.LIVE)
+        """Say the next message live: the station sees that all before it are missing."""
+        key = POSITION.key(_BACKLOG_UNIT)
+        wait_until("the station listens", lambda: self._bus.is_heard(key))
+        self.speak()
+
+    def speak(self) -> None:
+        """Say the next message live; who says nothing for ten seconds is asked for nothing."""
+        message = self._next()
+        self._bus.publish(channel_of(message).key(_BACKLOG_UNIT), encode(message), Qos.LIVE)
+
+    def _next(self) -> Message:
+        self._clock.advance(1.0 / _MESSAGES_HZ)
+        message = self._wearer.next_message()
+        entry = JournalEntry(self.said + 1, channel_of(message).suffix, encode(message))
+        self._entries.append(entry)
+        return message
 
     def _replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
         del payload
@@ -188,10 +202,10 @@ class _Backlog:
         if what == "acknowledge":
             self._acknowledged = int(asked["to"])
         if what in ("index", "acknowledge"):
-            boot = JournalBoot(self._boot_id, 1, self.count + 1, self._acknowledged, 0)
+            boot = JournalBoot(self._boot_id, 1, self.said, self._acknowledged, 0)
             yield JournalIndex((boot,)).to_bytes()
             return
-        first, last = int(asked["from"]), min(int(asked["to"]), self.count + 1)
+        first, last = int(asked["from"]), min(int(asked["to"]), self.said)
         if what == "urgent":
             yield JournalChunk(self._boot_id, first, last, (), urgent_only=True).to_bytes()
             return
