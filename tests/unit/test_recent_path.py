@@ -142,6 +142,21 @@ def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
     assert further.north_m == pytest.approx(7.0 + 0.1 * (late_s + 10.2 - 7.0) / 10.2, abs=0.01)
 
 
+def test_half_an_hour_that_comes_late_is_known_everywhere_and_stays_as_small(at: At) -> None:
+    memory = PathMemory()
+    last_s = 1700
+    for t_s in (0, last_s):
+        memory.note(at(t_s * NS_PER_S))
+    for fifth in range(5 * last_s):
+        memory.fill(at(fifth * FIFTH_NS))
+    for t_s in range(last_s):
+        place = memory.at(t_s * NS_PER_S)
+        assert isinstance(place, OwnPlace)
+        assert place.north_m == pytest.approx(t_s, abs=0.01)
+    dense, coarse = 60 * NS_PER_S // FIFTH_NS, last_s * NS_PER_S // COARSE_NS
+    assert len(memory.points) + len(memory.loose) // PLACE_ROW.itemsize < dense + coarse + 3
+
+
 def test_what_comes_late_and_is_too_old_is_not_kept(at: At, hour: PathMemory) -> None:
     """Out of a journal of hours; it would have to be sorted in, one by one."""
     before = msgspec.msgpack.encode(hour)

@@ -50,12 +50,14 @@ class PathMemory(msgspec.Struct):
             self._pack(point.t_ns)
 
     def fill(self, position: Position) -> None:
-        """A point that came late, where none is near."""
+        """A point that came late, where none is near: as near as points of that age are kept."""
         point = _point(position)
-        if self.points and point.t_ns < self.points[-1].t_ns - KEPT_NS:
+        age_ns = self.points[-1].t_ns - point.t_ns if self.points else 0
+        if age_ns > KEPT_NS:
             return
+        step_ns = STEP_NS if age_ns < DENSE_NS else COARSE_NS
         near = [one for one in self._around(point.t_ns) if one is not None]
-        if not near or any(abs(one.t_ns - point.t_ns) < STEP_NS for one in near):
+        if not near or any(abs(one.t_ns - point.t_ns) < step_ns for one in near):
             return
         if self.loose and point.t_ns < self.points[0].t_ns:
             rows = self._rows()
