@@ -17,11 +17,11 @@ from shared.errors import UnknownChannelError
 from shared.mcap_log import LogRecord, read_log, segment_paths
 
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
+_OVERFLOW_TOLD_NS = 60 * NS_PER_S
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
 _LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
 _LATE_BYTES = 1024 * 1024
-_OVERFLOW_TOLD_NS = 60 * NS_PER_S
 _LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
 
 

@@ -14,7 +14,7 @@ from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
 from base_station.fusion import FUSERS
 from base_station.journals.backfill import Report
-from base_station.live.drive_ports import DrivePorts
+from base_station.live.drive_ports import DrivePorts, Feed, Log
 from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
@@ -24,7 +24,7 @@ from base_station.steady_clock import SteadyClock
 from base_station.views import StationFacts
 from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of
-from shared.clock import SystemClock
+from shared.clock import Clock, SystemClock
 from shared.codec import encode
 from shared.envelope import Stamper
 from shared.mcap_log import SegmentPolicy
@@ -63,6 +63,23 @@ class Store:
 
     def problem(self) -> str:
         return self.trouble
+
+
+def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -> DrivePorts:
+    """Of a drive whose surroundings are not looked at."""
+    return DrivePorts(
+        feed=feed,
+        log=log,
+        live=screen,
+        projection=Store(),
+        checkpoints=Checkpoints(folder),
+        photo_urls=lambda _: None,
+        facts=StationFacts,
+        report=lambda _: None,
+        say=lambda _: None,
+        clock=clock,
+        boot_id=1,
+    )
 
 
 class LiveStation:

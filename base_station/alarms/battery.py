@@ -25,7 +25,7 @@ class Battery:
 
     def __post_init__(self) -> None:
         if self.low + self.hysteresis > 1.0:
-            raise ConfigError("battery: low and hysteresis together are more than a full one has")
+            raise ConfigError("low and hysteresis together are more than a full one has")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None or unit.status.battery is None:

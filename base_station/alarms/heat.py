@@ -33,7 +33,7 @@ class Heat:
 
     def __post_init__(self) -> None:
         if not self.caution_degc < self.warning_degc < self.critical_degc:
-            raise ConfigError("heat: caution_degc, warning_degc and critical_degc must rise")
+            raise ConfigError("caution_degc, warning_degc and critical_degc must rise")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.temperature is None:

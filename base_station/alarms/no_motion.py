@@ -30,7 +30,7 @@ class NoMotion:
 
     def __post_init__(self) -> None:
         if self.pre_alert_s > self.alarm_s:
-            raise ConfigError("no-motion: pre_alert_s comes before alarm_s, not after it")
+            raise ConfigError("pre_alert_s comes before alarm_s, not after it")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.status is None:

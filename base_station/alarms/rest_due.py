@@ -17,7 +17,7 @@ class RestDue:
     name: str = "rest-due"
     levels: tuple[str, ...] = ("due",)
     clear_after_s: float = 0.0
-    rearm_after_s: Annotated[float, Within(30.0, 43200.0)] = 600.0
+    rearm_after_s: Annotated[float, Within(30.0, 43_200.0)] = 600.0
     for_strangers: bool = False
     heeds: tuple[type[Message], ...] = ()
 

@@ -46,7 +46,10 @@ def thresholds_of(
                 raise ConfigError(f"{where}: {error}") from error
             if value != getattr(rule, name):
                 found[f"{rule_name}.{name}"] = value
-        _changed(rule, found)
+        try:
+            _changed(rule, found)
+        except ConfigError as error:
+            raise ConfigError(f"alarms.{rule_name}: {error}") from error
     return found
 
 

@@ -16,10 +16,8 @@ import pytest
 from base_station.api.wire import HealthView
 from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
-from base_station.live.drive_ports import DrivePorts, Record
-from base_station.past.checkpoints import Checkpoints
+from base_station.live.drive_ports import Record
 from base_station.past.playback import compare
-from base_station.views import StationFacts
 from edge.commands import CommandDesk
 from edge.journal_server import JournalServer
 from edge.spool import Spool
@@ -49,7 +47,7 @@ from shared.messages import (
 )
 from shared.messages.clock import ClockAnswer
 from shared.messages.station import RegisterUnit
-from tests.live_station import Screen, Store, make_pipeline
+from tests.live_station import Screen, make_pipeline, ports_of
 from tests.mutated import mutated, random_payload
 from tests.waiting import PATIENCE_S
 
@@ -146,22 +144,7 @@ def test_the_station_keeps_counts_and_shows_whatever_is_said(
     monkeypatch.setattr("base_station.sender.WILD_NS", 0)  # any boot id is as good as another here
     clock, log, screen = ManualClock(), Written(), Screen()
     feed, pipeline = Said(clock, 4, COUNT), make_pipeline()
-    drive = StationDrive(
-        pipeline,
-        DrivePorts(
-            feed=feed,
-            log=log,
-            live=screen,
-            projection=Store(),
-            checkpoints=Checkpoints(tmp_path),
-            photo_urls=lambda _: None,
-            facts=StationFacts,
-            report=lambda _: None,
-            say=lambda _: None,
-            clock=clock,
-            boot_id=1,
-        ),
-    )
+    drive = StationDrive(pipeline, ports_of(feed, log, screen, tmp_path, clock))
     registered = drive.submit("chief", RegisterUnit("FF-01", "one"))
     drive.start()
     assert registered.result(PATIENCE_S).refused is None

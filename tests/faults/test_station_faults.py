@@ -16,19 +16,16 @@ from base_station.alarms.port import Verdict
 from base_station.drive import StationDrive
 from base_station.events import Output, Received, StationEvent
 from base_station.fusion import FUSERS
-from base_station.live.drive_ports import DrivePorts
 from base_station.live.picture import Picture
 from base_station.live.saving import Saving
 from base_station.live_state import UnitState
-from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recorder import Recorder
-from base_station.views import StationFacts
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import LogRecord
 from shared.messages import Message, Position
 from shared.messages.station import ForgetWearers, RegisterUnit
-from tests.live_station import LiveStation, Screen, Store, make_pipeline
+from tests.live_station import LiveStation, Screen, make_pipeline, ports_of
 from tests.station_script import Script
 from tests.waiting import PATIENCE_S, until
 
@@ -173,19 +170,7 @@ def test_a_picture_that_cannot_be_drawn_takes_neither_all_the_time_nor_the_disk(
     """It is tried again at every turn, for days perhaps."""
     clock = ManualClock()
     feed = Idle(clock, 300)
-    ports = DrivePorts(
-        feed=feed,
-        log=Nowhere(),
-        live=Screen(),
-        projection=Store(),
-        checkpoints=Checkpoints(tmp_path),
-        photo_urls=lambda _: None,
-        facts=StationFacts,
-        report=lambda _: None,
-        say=lambda _: None,
-        clock=clock,
-        boot_id=1,
-    )
+    ports = ports_of(feed, Nowhere(), Screen(), tmp_path, clock)
     drive = StationDrive(make_pipeline(), ports)
 
     def fail(*_: object) -> None:

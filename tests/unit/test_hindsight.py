@@ -87,6 +87,16 @@ def store(tmp_path: Path) -> Iterator[Store]:
         yield store
 
 
+def hindsight_of(script: Script, store: Store, folder: Path) -> Hindsight:
+    """Of what the script has said."""
+    archive = Archive(
+        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
+        Checkpoints(folder / "checkpoints"),
+        make_pipeline,
+    )
+    return Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+
+
 def test_smoothed_is_better_than_shown_and_both_are_kept(past: Past) -> None:
     shown = past.records.tracks_of(past.incident)
     smoothed = past.hindsight.smoothed(past.incident)
@@ -239,12 +249,7 @@ def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Pat
             script.now_s += 1.0
             script.position("FF-01", 1.0 * second, 0.0)
     script.act(CloseIncident("i1"))
-    archive = Archive(
-        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
-        Checkpoints(tmp_path / "checkpoints"),
-        make_pipeline,
-    )
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    hindsight = hindsight_of(script, store, tmp_path)
     incident = Incident(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )
@@ -275,12 +280,7 @@ def test_trails_are_of_the_incident_and_of_whom_it_heard(store: Store, tmp_path:
         for unit_id in ("FF-01", "FF-02") if second < 20 else ("FF-01",):
             script.position(unit_id, 1.0 * second, 0.0)
     script.act(CloseIncident("i1"))
-    archive = Archive(
-        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
-        Checkpoints(tmp_path / "checkpoints"),
-        make_pipeline,
-    )
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    hindsight = hindsight_of(script, store, tmp_path)
     incident = Incident(
         incident_id="i1", name="Mill Lane", opened_ns=opened_ns, closed_ns=script.t_ns
     )
@@ -311,12 +311,7 @@ def test_whose_beginning_nothing_told_is_not_called_well_known(
     if told == "pin":
         script.act(SetPin("p", "FF-01", script.t_ns, 40.0, 0.0, 0.5, None, None, 0.0, ""))
     script.act(CloseIncident("i1"))
-    archive = Archive(
-        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
-        Checkpoints(tmp_path / "checkpoints"),
-        make_pipeline,
-    )
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
+    hindsight = hindsight_of(script, store, tmp_path)
     incident = Incident(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )

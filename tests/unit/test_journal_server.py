@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import logging
-import sqlite3
-from contextlib import closing
 
 import pytest
 
@@ -14,6 +12,7 @@ from edge.spool import Journaled, Spool
 from shared.channels import EVENT, IMU, POSITION
 from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalIndex
+from tests.spoiled_journal import spoil_page
 
 SOME_LEAF = (
     "SELECT pageno FROM dbstat WHERE name = 'message' AND pagetype = 'leaf' ORDER BY path "
@@ -106,12 +105,7 @@ def test_what_lies_behind_damage_is_given_all_the_same(spool, tmp_path):
     spool.append([Journaled(seq, POSITION, 0, bytes(100)) for seq in range(101, 2001)])
     spool.close()
     file = tmp_path / "journal.sqlite"
-    with closing(sqlite3.connect(file)) as journal:
-        (page,) = journal.execute(SOME_LEAF).fetchone()
-        (page_bytes,) = journal.execute("PRAGMA page_size").fetchone()
-    content = bytearray(file.read_bytes())
-    content[(page - 1) * page_bytes : page * page_bytes] = b"\xff" * page_bytes
-    file.write_bytes(content)
+    spoil_page(file, SOME_LEAF)
     damaged = Spool(file, lambda: 10, 123, 10**8)
     answers = chunks(damaged, "epoch=9;from=1;to=2000")
     assert (answers[0].from_seq, answers[-1].to_seq) == (1, 2000)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import sqlite3
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,7 @@ from edge import spool as spool_module
 from edge.spool import RAW, Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
+from tests.spoiled_journal import spoil_page
 
 MB = 1_000_000
 PROMISING = ("journal_mode", "synchronous")
@@ -280,18 +280,12 @@ def test_a_damaged_journal_is_set_aside_not_deleted(tmp_path, spoil_at):
     spool.close()
 
 
-def spoil_page(path: Path, which: str) -> None:
-    """Of a journal of one boot, which opens all the same; ``which`` asks for the page's number."""
+def spoil(path: Path, which: str) -> None:
+    """A page of a journal of one boot."""
     spool = spool_at(path, boot_ids=[1])
     spool.append([entry(seq, EVENT, 800) for seq in range(1, 401)])
     spool.close()
-    file = path / "journal.sqlite"
-    with closing(sqlite3.connect(file)) as journal:
-        (page,) = journal.execute(which).fetchone()
-        (page_bytes,) = journal.execute("PRAGMA page_size").fetchone()
-    content = bytearray(file.read_bytes())
-    content[(page - 1) * page_bytes : page * page_bytes] = b"\xff" * page_bytes
-    file.write_bytes(content)
+    spoil_page(path / "journal.sqlite", which)
 
 
 ROOT = "SELECT rootpage FROM sqlite_master WHERE name = 'message'"
@@ -300,7 +294,7 @@ OLDEST = "SELECT pageno FROM dbstat WHERE name = 'message' AND pagetype = 'leaf'
 
 def test_a_journal_that_damage_keeps_from_being_written_is_begun_anew_at_once(tmp_path):
     """And is the journal from the next start on; the damaged one is kept beside it."""
-    spoil_page(tmp_path, ROOT)
+    spoil(tmp_path, ROOT)
     path = tmp_path / "journal.sqlite"
     spool, aside = open_spool(path, itertools.count(2).__next__, 77, MB)
     assert aside is None
@@ -327,7 +321,7 @@ def test_a_journal_that_damage_keeps_from_being_written_is_begun_anew_at_once(tm
 
 
 def test_a_journal_of_which_nobody_can_be_told_what_is_in_it_is_begun_anew(tmp_path):
-    spoil_page(tmp_path, OLDEST)
+    spoil(tmp_path, OLDEST)
     path = tmp_path / "journal.sqlite"
     spool, _ = open_spool(path, itertools.count(2).__next__, 77, MB)
     spool.append([entry(1, EVENT)])
