@@ -20,6 +20,7 @@ from base_station.pki.folder import PkiFolder
 from base_station.standby.setting_aside import APART
 from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
+from shared.own_files import give_to_owner, make_folder
 
 _PRIVATE = 0o700
 _PART = ".part"  # of the name, until the copy is whole
@@ -58,7 +59,7 @@ def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> B
     source.require()
     _refuse_foreign(source, copy)
     try:
-        target.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
+        make_folder(target, _PRIVATE)
         without = _copy_database(source, copy)
         done = _copy_files(source, copy, on_progress)
     except OSError as error:
@@ -106,7 +107,7 @@ def _copy_files(
         if _is_current(path, target):
             done.unchanged += 1
         else:
-            target.parent.mkdir(parents=True, exist_ok=True, mode=_PRIVATE)
+            make_folder(target.parent, _PRIVATE)
             with _part_of(target) as part:
                 whole = _copy_file(path, part)
             if whole:
@@ -181,6 +182,7 @@ def _part_of(target: Path) -> Iterator[Path]:
         yield part
         if part.exists():
             with part.open("rb") as written:
+                give_to_owner(written.fileno(), target.parent)
                 os.fsync(written.fileno())
             part.replace(target)
     except BaseException:

@@ -8,7 +8,6 @@ from pathlib import Path
 from base_station.db.accounts import Accounts
 from base_station.db.principals import Role
 from base_station.private_files import write_atomically
-from shared.errors import ConfigError, StoreError
 
 USERNAME = "admin"
 
@@ -17,14 +16,11 @@ def ensure_administrator(accounts: Accounts, note: Path) -> str | None:
     """The password of a new administrator, also written to ``note``; None where users exist.
 
     The note is on the disk before there is such a user: whoever switches the station off right
-    after its first start can still log in.
+    after its first start can still log in.  Raises StoreError where the disk does not take it.
     """
     if accounts.users():
         return None
     password = "-".join(secrets.token_hex(2) for _ in range(5))
-    try:
-        write_atomically(note, f"username: {USERNAME}\npassword: {password}\n".encode())
-    except ConfigError as error:
-        raise StoreError(f"the first login cannot be written down: {error}") from error
+    write_atomically(note, f"username: {USERNAME}\npassword: {password}\n".encode())
     accounts.add_user(USERNAME, password, Role.ADMINISTRATOR)
     return password

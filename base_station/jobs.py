@@ -11,7 +11,7 @@ from typing import Generic, Protocol, TypeVar
 import msgspec
 
 from base_station.private_files import write_atomically
-from shared.errors import ConfigError, StoreError
+from shared.errors import StoreError
 
 _KEPT = 20  # of those that are over
 
@@ -70,7 +70,7 @@ class Jobs(Generic[J]):
             if is_new:
                 try:
                     write_atomically(self._path, said)
-                except ConfigError as error:
+                except StoreError as error:
                     raise StoreError(
                         f"what was asked for cannot be kept, so nothing is done: {error}"
                     ) from error
@@ -108,7 +108,7 @@ class Jobs(Generic[J]):
         with self._saving:
             with self._lock:
                 said = msgspec.json.encode(self._all)
-            with suppress(ConfigError):
+            with suppress(StoreError):
                 write_atomically(self._path, said)
 
 

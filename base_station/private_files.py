@@ -1,5 +1,5 @@
 """Files for their owner alone, such as the authority's: there whole or not at all, also after a
-power cut.
+power cut.  Raises StoreError throughout where the disk does not take them.
 """
 
 from __future__ import annotations
@@ -11,35 +11,30 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from shared.errors import ConfigError
+from shared.errors import StoreError
+from shared.own_files import make_folder, make_new_folder, open_own
+
+_FOLDER = 0o700
+_FILE = 0o600
 
 
 @contextmanager
 def new_folder(folder: Path) -> Iterator[None]:
-    """Make it, mode 0700; where the block fails nothing is left of it.
-
-    Raises ConfigError where it cannot be made, or is there already.
-    """
+    """Where it is there already it is not made; where the block fails nothing is left of it."""
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        folder.mkdir(mode=0o700)
-        if os.geteuid() == 0:
-            owner = folder.parent.stat()
-            os.chown(folder, owner.st_uid, owner.st_gid)
+        make_folder(folder.parent, _FOLDER)
+        make_new_folder(folder, _FOLDER)
     except OSError as error:
-        raise ConfigError(f"{folder} cannot be made: {error.strerror or error}") from error
+        raise StoreError(f"{folder} cannot be made: {error.strerror or error}") from error
     try:
         yield
-    except ConfigError:
+    except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Replace ``path``, mode 0600; after a power cut it has the old or the new content.
-
-    Raises ConfigError where it cannot.
-    """
+    """Replace ``path``; after a power cut it has the old or the new content."""
     write_together({path: content})
 
 
@@ -63,12 +58,12 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
         with suppress(OSError):
             for partial in partials.values():
                 partial.unlink(missing_ok=True)
-        raise ConfigError(f"{path} cannot be written: {error.strerror or error}") from error
+        raise StoreError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
 def _write_new(path: Path, content: bytes) -> None:
     path.unlink(missing_ok=True)
-    descriptor = _open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
+    descriptor = open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, _FILE)
     with os.fdopen(descriptor, "wb") as file:
         file.write(content)
         file.flush()
@@ -79,20 +74,11 @@ def _write_new(path: Path, content: bytes) -> None:
 def locked(folder: Path) -> Iterator[None]:
     """One command at a time changes the folder; the next waits."""
     try:
-        lock = _open_own(folder / "lock", os.O_RDONLY | os.O_CREAT)
+        lock = open_own(folder / "lock", os.O_RDONLY | os.O_CREAT, _FILE)
     except OSError as error:
-        raise ConfigError(f"{folder} cannot be used: {error.strerror or error}") from error
+        raise StoreError(f"{folder} cannot be used: {error.strerror or error}") from error
     try:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
     finally:
         os.close(lock)
-
-
-def _open_own(path: Path, flags: int) -> int:
-    """Mode 0600; what root makes belongs to the folder's owner, as whom the station runs."""
-    descriptor = os.open(path, flags, 0o600)
-    if os.geteuid() == 0:
-        owner = path.parent.stat()
-        os.chown(descriptor, owner.st_uid, owner.st_gid)
-    return descriptor

@@ -10,7 +10,7 @@
       │    └─ PortInUseError        another program listens there
       ├─ LogError           a log segment or folder cannot be read or written
       │    └─ DataFolderInUseError  another station writes to this folder
-      ├─ StoreError         the database cannot do what was asked
+      ├─ StoreError         the database, or a file beside it, cannot do what was asked
       │    └─ DiskHangsError        its disk does not answer
       └─ UserError          a person asked for something impossible
 
@@ -61,7 +61,7 @@ class DataFolderInUseError(LogError):
 
 
 class StoreError(MusterError):
-    """The database cannot do what was asked."""
+    """The database, or another file that is kept beside it, cannot do what was asked."""
 
 
 class DiskHangsError(StoreError):

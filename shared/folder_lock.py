@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from shared.errors import DataFolderInUseError, LogError
+from shared.own_files import make_folder, open_own
 
 _NAME = "lock"
 
@@ -29,7 +30,7 @@ class FolderLock:
         folder cannot be used at all.
         """
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             self._descriptor = _opened(folder / _NAME)
         except OSError as error:
             raise LogError(f"the data folder {folder} cannot be used: {error.strerror}") from error
@@ -66,7 +67,7 @@ class FolderLock:
 
 def _opened(lock: Path) -> int:
     try:
-        return os.open(lock, os.O_RDWR | os.O_CREAT, 0o640)
+        return open_own(lock, os.O_RDWR | os.O_CREAT, 0o640)
     except OSError as error:
         if error.errno != errno.EROFS:
             raise

@@ -6,10 +6,11 @@ was committed survive a power cut.
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -20,6 +21,7 @@ from sqlalchemy.orm import Session
 
 from base_station.db.migrate import migrate
 from shared.errors import DiskHangsError, StoreError
+from shared.own_files import open_own
 
 BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
 _LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
@@ -47,6 +49,7 @@ class Store:
         whoever does would wait for it, whatever else there is to do, and could not be ended.
         """
         self.hangs = hangs
+        _make_private(path)
         self._engine = _engine(path)
         self._write_engine = self._engine.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
         self._writing = threading.Lock()
@@ -147,6 +150,12 @@ class Store:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _make_private(path: Path) -> None:
+    """Where there is no database yet; what SQLite puts beside one has its mode and owner."""
+    with suppress(OSError):  # it is there; or SQLite says in a moment why it cannot be
+        os.close(open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
 
 
 def copy_database(source: Path, target: Path) -> None:

@@ -24,11 +24,11 @@ class PendingErasure:
         return next((one for one in self._read() if one.incident_id == incident_id), None)
 
     def keep(self, erasure: Erasure) -> None:
-        """On the disk when this returns.  Raises MusterError."""
+        """On the disk when this returns.  Raises StoreError."""
         self._write([*self._read(), erasure])
 
     def let_go(self, incident_id: str) -> None:
-        """Nothing is left that it tells of.  Raises MusterError."""
+        """Nothing is left that it tells of.  Raises StoreError."""
         begun = self._read()
         left = [one for one in begun if one.incident_id != incident_id]
         if len(left) < len(begun):

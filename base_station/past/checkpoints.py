@@ -20,6 +20,7 @@ import base_station
 import shared
 from base_station.checkpoint import Checkpoint, read_checkpoint
 from shared.clock import NS_PER_S
+from shared.own_files import give_to_owner, make_folder
 
 SUFFIX = ".checkpoint"
 _PART = "saving.part"
@@ -54,7 +55,7 @@ class Checkpoints:
         self._changing = Lock()
         self._program = _program()
         self._useless: set[Path] = set()  # torn, or of another version of the program
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
         """Raises OSError where the disk does not take it; then nothing is left of it."""
@@ -66,7 +67,9 @@ class Checkpoints:
         part = self._folder / _PART  # a kill leaves one at most
         with self._changing:
             try:
-                part.write_bytes(content)
+                with part.open("wb") as written:
+                    give_to_owner(written.fileno(), self._folder)
+                    written.write(content)
                 part.replace(path)
             except OSError:
                 part.unlink(missing_ok=True)

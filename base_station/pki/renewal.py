@@ -11,7 +11,7 @@ from datetime import UTC, datetime, timedelta
 
 from base_station.pki.folder import PkiFolder
 from shared.clock import NS_PER_S, Clock
-from shared.errors import ConfigError
+from shared.errors import MusterError
 from shared.tls import TlsIdentity, parse_certificate
 
 _NOT_LATER = timedelta(hours=1)  # before the end of the one in use, whatever goes on
@@ -39,7 +39,7 @@ class Renewal:
             renewed = self._pki.station_identity().certificate != self._certificate
             if renewed:
                 self._pki.require_valid_station()
-        except ConfigError:
+        except MusterError:
             renewed = False
         now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
         due = renewed and (not in_incident or now >= self._ends - _NOT_LATER)

@@ -14,6 +14,7 @@ from base_station.jobs import Jobs
 from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
 from shared.clock import Clock
 from shared.errors import MusterError, StoreError, UserError
+from shared.own_files import make_folder
 
 _LIST = "wanted.json"
 _MOST = 20  # under way at once
@@ -64,7 +65,7 @@ class RecordingDesk:
         if wanted.to_ns <= wanted.from_ns:
             raise UserError("the window ends before it begins; turn the two times round")
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            make_folder(self._folder)
         except OSError as error:
             raise StoreError(f"{self._folder} cannot be made: {error.strerror}") from error
         pull = self._pulls.add(lambda under_way: _new_pull(by, wanted, under_way))

@@ -30,6 +30,7 @@ from shared.messages.recording import (
     RecordingIndex,
     RecordingPiece,
 )
+from shared.own_files import give_to_owner, make_folder
 
 logger = logging.getLogger(__name__)
 
@@ -173,7 +174,7 @@ class Fetch:
     def _file(self, file: RecordedFile, before_bytes: int) -> Steps[None]:
         """Have all of one file; it stays missing where the unit does not have it any more."""
         whole, part = self._paths(file)
-        whole.parent.mkdir(exist_ok=True)
+        make_folder(whole.parent)
         if 0 < _size(whole) <= file.size_bytes and not part.exists():
             shutil.copyfile(whole, part)  # it may have grown; until more of it is here it stays
         for _ in range(_CHANCES):
@@ -210,6 +211,7 @@ class Fetch:
         if _size(part) > file.size_bytes:
             os.truncate(part, file.size_bytes)
         with part.open("ab") as written:
+            give_to_owner(written.fileno(), part.parent)
             while (offset := written.tell()) < file.size_bytes:
                 self.done_bytes = before_bytes + offset
                 self._require_room(file.size_bytes - offset)
@@ -265,7 +267,9 @@ class Fetch:
         known = {name: known for known, _, name in lines} | {path: digest}
         text = "".join(f"{one}  {name}\n" for name, one in sorted(known.items()))
         making = hashes.with_name(HASHES + _PART)
-        making.write_text(text, encoding="utf-8")
+        with making.open("w", encoding="utf-8") as file:
+            give_to_owner(file.fileno(), self.folder)
+            file.write(text)
         making.replace(hashes)
 
 

@@ -15,6 +15,7 @@ from base_station.data_folder import DataFolder
 from base_station.standby.places import BEGINNING, Place, Record, events_behind, is_event
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
+from shared.own_files import make_folder
 
 APART = "apart"
 _TOLD = ".told"
@@ -76,7 +77,7 @@ def _new_part(data: Path, place: Place) -> Path:
     while any((data / APART).glob(f"{place.t_ns}-{place.events}-{number}*")):
         number += 1
     part = data / APART / f"{place.t_ns}-{place.events}-{number}"
-    part.mkdir(parents=True)
+    make_folder(part)
     return part
 
 

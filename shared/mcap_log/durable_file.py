@@ -6,6 +6,8 @@ import os
 from collections import deque
 from pathlib import Path
 
+from shared.own_files import open_own
+
 
 class DurableFile:
     """Takes whatever is written at once; ``sync`` brings it to the disk.
@@ -45,7 +47,7 @@ class DurableFile:
     def sync(self) -> None:
         """Returns when everything written is on the disk for good; raises OSError."""
         if self._descriptor is None:
-            self._descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o640)
+            self._descriptor = open_own(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o640)
         if not self._name_is_safe:
             sync_folder(self.path.parent)
             self._name_is_safe = True

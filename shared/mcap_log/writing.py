@@ -22,6 +22,7 @@ from shared.mcap_log.schemas import (
     sender_time_and_sequence,
     wire_type_of,
 )
+from shared.own_files import make_folder
 
 _ENCODING = "protobuf"
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
@@ -151,7 +152,7 @@ class SegmentWriter:
         Raises LogError when the folder cannot be made or read.
         """
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             self._next_number = 1 + max(map(segment_number, folder.iterdir()), default=0)
         except OSError as error:
             raise LogError(f"the log folder {folder} cannot be used: {error.strerror}") from error

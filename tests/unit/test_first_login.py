@@ -58,7 +58,7 @@ def test_a_disk_that_does_not_take_the_note_makes_no_user_of_whom_nobody_knows(
 
     with monkeypatch.context() as disk:
         disk.setattr("base_station.private_files.os.fsync", full)
-        with pytest.raises(StoreError, match=r"first login .* No space left"):
+        with pytest.raises(StoreError, match=r"note cannot be written: No space left"):
             ensure_administrator(accounts, tmp_path / "note")
     assert not accounts.users()
 

@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from base_station.jobs import Jobs
-from shared.errors import ConfigError, StoreError
+from shared.errors import StoreError
 from tests.waiting import PATIENCE_S, until
 
 
@@ -80,7 +80,7 @@ def test_what_the_disk_does_not_take_is_not_begun(
     jobs = Jobs(tmp_path / "jobs.json", Job)
 
     def refuse(*_: object) -> None:
-        raise ConfigError("the disk is full")
+        raise StoreError("the disk is full")
 
     monkeypatch.setattr("base_station.jobs.write_atomically", refuse)
     with pytest.raises(StoreError, match="nothing is done: the disk is full"):

@@ -21,7 +21,7 @@ from base_station.pki.renewal import Renewal
 from base_station.private_files import locked
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Enrolment, Holder
-from shared.errors import ConfigError
+from shared.errors import ConfigError, StoreError
 from shared.tls import check_identity, validity_problem
 
 DAY = timedelta(days=1)
@@ -69,7 +69,7 @@ def test_a_disk_that_is_full_leaves_a_certificate_and_its_key_together(
 
     with monkeypatch.context() as disk:
         disk.setattr("base_station.private_files.os.fsync", full)
-        with pytest.raises(ConfigError, match="No space left"):
+        with pytest.raises(StoreError, match="No space left"):
             pki.renew_station()
     after = pki.station_identity()  # which says where the two do not belong together
     assert refused == 3 or after == before
@@ -114,7 +114,7 @@ def test_one_command_at_a_time_changes_the_folder(pki: PkiFolder) -> None:
 
 def test_a_folder_that_cannot_be_written_is_said(pki: PkiFolder) -> None:
     (pki.path / "registry.json.partial").mkdir()
-    with pytest.raises(ConfigError, match=r"registry\.json cannot be written"):
+    with pytest.raises(StoreError, match=r"registry\.json cannot be written"):
         pki.enroll("anna")
 
 
@@ -172,6 +172,28 @@ def test_a_units_key_is_not_kept(pki: PkiFolder) -> None:
     assert not any(secret in file.read_bytes() for file in pki.path.iterdir())
 
 
+def test_a_station_folder_that_is_made_with_it_is_its_owners_alone(tmp_path: Path) -> None:
+    before = os.umask(0o022)
+    try:
+        PkiFolder(tmp_path / "station").create("Test", [], [])
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "station").stat().st_mode) == 0o700
+
+
+def test_whoever_ends_it_in_the_middle_begins_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ended(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("base_station.pki.folder.write_together", ended)
+        with pytest.raises(KeyboardInterrupt):
+            PkiFolder(tmp_path).create("Test", [], [])
+    PkiFolder(tmp_path).create("Test", [], [])
+
+
 def test_a_second_authority_is_refused(pki: PkiFolder, tmp_path: Path) -> None:
     before = (pki.path / "authority.pem").read_bytes()
     with pytest.raises(ConfigError, match="is there already"):
@@ -209,7 +231,7 @@ def test_a_disk_that_is_full_leaves_no_half_of_an_authority(
 
     with monkeypatch.context() as disk:
         disk.setattr("base_station.private_files.os.fsync", full)
-        with pytest.raises(ConfigError, match="No space left"):
+        with pytest.raises(StoreError, match="No space left"):
             PkiFolder(tmp_path).create("Test", [], [])
     PkiFolder(tmp_path).create("Test", [], [])
 
