@@ -112,14 +112,20 @@ def renew_station(
     host: Annotated[
         list[str] | None, typer.Option(help="As for init, where they are others now.")
     ] = None,
-    port: Port = 7447,
+    port: Annotated[
+        int | None,
+        typer.Option(min=1, max=65535, help="Of the bus, 7447 if left out; goes with --host."),
+    ] = None,
     days: Days = 365,
 ) -> None:
     """Make a new certificate for this station; a running router takes it up by itself."""
     from base_station.pki.folder import PkiFolder  # noqa: PLC0415
+    from shared.errors import ConfigError  # noqa: PLC0415
 
+    if port is not None and not host:
+        raise ConfigError("for another --port say with --host where units reach it, too")
     folder = PkiFolder(data)
-    hosts, endpoint = _station_hosts(host, port) if host else ([], "")
+    hosts, endpoint = _station_hosts(host, port or 7447) if host else ([], "")
     folder.renew_station(timedelta(days=days), hosts, [endpoint] if endpoint else [])
     typer.echo(f"valid for {days} days and: {', '.join(folder.registry().hosts)}")
 

@@ -37,7 +37,9 @@ def _utc_now() -> datetime:
 
 
 class PkiFolder:
-    """Raises ConfigError throughout: one sentence about what is wrong and what to do."""
+    """Raises ConfigError throughout, one sentence about what is wrong and what to do; StoreError
+    where the disk does not take what is to be kept.
+    """
 
     def __init__(self, data: Path, now: Clock = _utc_now) -> None:
         """``data``: the station's data folder."""
@@ -132,14 +134,16 @@ class PkiFolder:
         connect: Sequence[str] = (),
     ) -> None:
         """A new certificate, for other hosts where they are given; the router takes it up by
-        itself.  ``connect`` is what enrolments say from now on.
+        itself.  ``connect`` is what enrolments say from now on, beside other stations' ends.
         """
         with locked(self._existing()):
             registry = self.registry()
             if hosts:
                 registry = msgspec.structs.replace(registry, hosts=_with_loopback(hosts))
             if connect:
-                registry = msgspec.structs.replace(registry, connect=tuple(connect))
+                others = registry.connect[1:]  # this station's own stands first
+                ends = tuple(dict.fromkeys((*connect, *others)))
+                registry = msgspec.structs.replace(registry, connect=ends)
             issued = _issue_station(self._authority(), registry, self._now(), valid)
             self._put_station(issued, registry)
 
@@ -180,11 +184,11 @@ class PkiFolder:
 
     def join(self, enrolment: StationEnrolment) -> None:
         """Make this folder that of a further station, or give it a new certificate."""
-        if not self.exists():
+        if not self._folder.exists():
             with new_folder(self._folder), locked(self._folder):
                 self._put_joined(enrolment.identity, enrolment.registry)
             return
-        with locked(self._folder):
+        with locked(self._existing()):
             self._require_same_station(enrolment)
             self._put_joined(enrolment.identity, self.registry().merged(enrolment.registry))
 

@@ -30,15 +30,18 @@ def own_hosts() -> tuple[str, ...]:
 def require_host(host: str) -> str:
     """Return ``host`` when a certificate can stand for it, else raise ConfigError."""
     try:
-        return str(ipaddress.ip_address(host))
+        address = ipaddress.ip_address(host)
     except ValueError:
         mistyped = _MISTYPED_ADDRESS.fullmatch(host) is not None
-        if mistyped or _HOST_NAME.fullmatch(host) is None or len(host) > 253:
-            raise ConfigError(
-                f"{host!r} is no host: give a name such as station.local or an address such as "
-                "192.168.1.10, without a port"
-            ) from None
-        return host
+        if not mistyped and _HOST_NAME.fullmatch(host) is not None and len(host) <= 253:
+            return host
+    else:
+        if not address.is_unspecified:  # which is where to listen, and nowhere to connect to
+            return str(address)
+    raise ConfigError(
+        f"{host!r} is no host: give a name such as station.local or an address such as "
+        "192.168.1.10, without a port"
+    )
 
 
 def tls_endpoint(host: str, port: int) -> str:

@@ -43,7 +43,8 @@ def test_init_without_a_host_takes_what_the_machine_has(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "host", ["192.0.2.7:7447", "tls/station", "a b", "", "192.0.2.256", "192.0.2"]
+    "host",
+    ["192.0.2.7:7447", "tls/station", "a b", "", "192.0.2.256", "192.0.2", "0.0.0.0", "::"],
 )
 def test_init_refuses_what_is_no_host(tmp_path: Path, host: str) -> None:
     with pytest.raises(ConfigError, match="is no host"):
@@ -153,3 +154,5 @@ def test_the_station_is_renewed_for_the_hosts_it_had_or_for_others(data: Path) -
     said = run("renew-station", "--data", data, "--host", "192.0.2.9", "--port", "7000")
     assert "station.local" not in said
     assert PkiFolder(data).registry().connect == ("tls/192.0.2.9:7000",)
+    with pytest.raises(ConfigError, match="with --host where units reach it"):
+        run("renew-station", "--data", data, "--port", "7001")

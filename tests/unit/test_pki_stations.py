@@ -14,7 +14,7 @@ from base_station.pki.expiry import about_to_expire
 from base_station.pki.folder import PkiFolder
 from base_station.pki.station_enrolment import read_station_enrolment
 from shared.enrolment import Holder
-from shared.errors import ConfigError
+from shared.errors import ConfigError, StoreError
 from shared.tls import parse_certificate
 
 FIRST, SECOND = "tls/10.0.0.1:7447", "tls/10.0.0.2:7447"
@@ -48,6 +48,18 @@ def test_it_has_a_certificate_of_its_own_for_its_own_address(
     assert not (second.path / "authority.key").exists()
 
 
+def test_half_a_folder_is_not_joined_and_the_way_out_is_said(
+    first: PkiFolder, tmp_path: Path
+) -> None:
+    file = tmp_path / "second.station.toml"
+    first.enroll_station("second", ["10.0.0.2"], SECOND).write(file)
+    folder = PkiFolder(tmp_path / "second")
+    folder.path.mkdir(parents=True)
+    (folder.path / "station.key").write_text("what a power cut left")
+    with pytest.raises(ConfigError, match=r"registry\.json is missing.*move its folder away"):
+        folder.join(read_station_enrolment(file))
+
+
 def test_both_let_in_the_same_units_and_each_other(first: PkiFolder, second: PkiFolder) -> None:
     first.enroll("FF-01")
     second.take_registry(first.registry())
@@ -59,6 +71,18 @@ def test_both_let_in_the_same_units_and_each_other(first: PkiFolder, second: Pki
 def test_units_that_are_enrolled_from_now_on_know_both(first: PkiFolder, second: PkiFolder) -> None:
     del second
     assert first.enroll("FF-01").connect == (FIRST, SECOND)
+
+
+def test_units_know_the_second_station_though_the_first_has_moved(
+    first: PkiFolder, second: PkiFolder
+) -> None:
+    del second
+    moved = "tls/10.0.0.9:7447"
+    for _ in range(2):
+        first.renew_station(hosts=["10.0.0.9"], connect=[moved])
+        assert first.registry().connect == (moved, SECOND)
+    first.renew_station(hosts=["10.0.0.2"], connect=[SECOND])  # onto the other one's machine
+    assert first.registry().connect == (SECOND,)
 
 
 def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: PkiFolder) -> None:
@@ -177,7 +201,7 @@ def test_a_disk_that_is_full_leaves_no_half_of_a_further_station(
 
     with monkeypatch.context() as disk:
         disk.setattr("base_station.private_files.os.fsync", full)
-        with pytest.raises(ConfigError, match="No space left"):
+        with pytest.raises(StoreError, match="No space left"):
             folder.join(file)
     folder.join(file)
     assert folder.station_identity().common_name() == "station:second"
