@@ -17,7 +17,7 @@ REFUSAL = (
     sqlite3.SQLITE_CANTOPEN,
 )
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
-NO_JOURNAL = (*DAMAGE, sqlite3.SQLITE_ERROR)  # of a file when it is opened
+_NO_JOURNAL = (*DAMAGE, sqlite3.SQLITE_ERROR)  # of a file when it is opened
 
 
 def code_of(error: sqlite3.Error) -> int:
@@ -25,12 +25,19 @@ def code_of(error: sqlite3.Error) -> int:
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
+def is_no_journal(error: BaseException | None) -> bool:
+    """Of a file that could not be opened: whether it is too damaged for that."""
+    if isinstance(error, UnicodeDecodeError):  # SQLite names what is damaged by the bytes there
+        return True
+    return isinstance(error, sqlite3.Error) and code_of(error) in _NO_JOURNAL
+
+
 def connect(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, check_same_thread=False, timeout=5.0)
     try:
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
-    except sqlite3.Error:
+    except (sqlite3.Error, UnicodeDecodeError):
         connection.close()
         raise
     return connection
@@ -41,7 +48,7 @@ def in_words(path: Path) -> Iterator[None]:
     """What goes wrong with the file is a StoreError that names it."""
     try:
         yield
-    except (sqlite3.Error, OSError) as error:
+    except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
         raise StoreError(f"the journal {path} cannot be used: {error}") from error
 
 

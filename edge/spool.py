@@ -15,13 +15,22 @@ import heapq
 import logging
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from operator import itemgetter
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
-from edge.journal_file import DAMAGE, NO_JOURNAL, REFUSAL, anew, code_of, connect, in_words, rename
+from edge.journal_file import (
+    DAMAGE,
+    REFUSAL,
+    anew,
+    code_of,
+    connect,
+    in_words,
+    is_no_journal,
+    rename,
+)
 from shared.channels import GPS, IMU, POSITION, Channel, Qos
 from shared.errors import StoreError
 from shared.messages import JournalBoot, JournalEntry
@@ -128,8 +137,9 @@ class Spool:
             while from_seq <= to_seq:
                 try:
                     for entry in _entries(reader, boot_id, from_seq, to_seq, worths):
-                        yield entry
-                        from_seq, past = entry.seq + 1, 1
+                        if entry.seq >= from_seq:  # one whose number is damaged comes twice
+                            yield entry
+                            from_seq, past = entry.seq + 1, 1
                 except sqlite3.Error as error:
                     if code_of(error) not in DAMAGE:
                         raise
@@ -163,7 +173,7 @@ class Spool:
             for (payload,) in reader.execute(
                 "SELECT payload FROM message WHERE worth = ? AND "
                 "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
-                "ORDER BY seq DESC",
+                "AND typeof(payload) = 'blob' ORDER BY seq DESC",
                 (_worth(channel), boot_id, channel.suffix),
             ):
                 yield payload
@@ -287,8 +297,7 @@ def open_spool(
     try:
         spool = Spool(path, new_boot_id, started_utc_ns, limit_bytes)
     except StoreError as error:
-        cause = error.__cause__
-        if not isinstance(cause, sqlite3.Error) or code_of(cause) not in NO_JOURNAL:
+        if not is_no_journal(error.__cause__):
             raise
     else:
         return spool, aside if is_followed else None
@@ -304,22 +313,30 @@ def _entries(
     to_seq: int,
     worths: Sequence[int],
 ) -> Iterator[JournalEntry]:
+    """Without rows in which a bit has flipped so that they are none of ours: SQLite sees nothing
+    wrong in them.
+    """
     parts = [
         connection.execute(
-            "SELECT seq, suffix, payload FROM message WHERE worth = ? AND "
+            "SELECT seq, CAST(suffix AS BLOB), payload FROM message WHERE worth = ? AND "
             "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
-            "seq BETWEEN ? AND ? ORDER BY seq",
+            "seq BETWEEN ? AND ? AND typeof(seq) = 'integer' AND typeof(suffix) = 'text' "
+            "AND typeof(payload) = 'blob' ORDER BY seq",
             (worth, boot_id, from_seq, to_seq),
         )
         for worth in worths
     ]
-    for row in heapq.merge(*parts, key=itemgetter(0)):
-        yield JournalEntry(*row)
+    for seq, suffix, payload in heapq.merge(*parts, key=itemgetter(0)):
+        with suppress(UnicodeDecodeError):
+            yield JournalEntry(seq, suffix.decode(), payload)
 
 
 def _boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
     for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
-        "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot ORDER BY number"
+        "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot "
+        "WHERE typeof(boot_id) = 'integer' AND typeof(acknowledged_seq) = 'integer' "
+        "AND typeof(started_utc_ns) = 'integer' AND boot_id > 0 AND acknowledged_seq >= 0 "
+        "ORDER BY number"
     ).fetchall():
         bounds = _bounds(connection, number)
         if bounds is not None:
@@ -337,7 +354,7 @@ def _bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None
         ).fetchone()
         for worth in _WORTHS
     ]
-    kept = [pair for pair in found if pair[0] is not None]
+    kept = [pair for pair in found if all(isinstance(seq, int) and seq > 0 for seq in pair)]
     if not kept:
         return None
     return min(first for first, _ in kept), max(last for _, last in kept)
