@@ -12,9 +12,10 @@ import select
 import socket
 import time
 from collections.abc import Sequence
+from typing import Any
 
 _EVERY_S = 0.3
-_AT_ONCE = 8  # attempts under way; the oldest is given up first
+_AT_ONCE = 8  # attempts under way to each address; the oldest are given up first
 
 
 class ReachabilityProbe:
@@ -44,20 +45,19 @@ class ReachabilityProbe:
         self._next_s = 0.0
 
     def _begin_attempts(self) -> None:
-        for host, port in self._places:
+        """Of a name all addresses: a station may listen on one of them only."""
+        addresses = [found for place in self._places for found in _addresses(*place)]
+        for family, kind, protocol, _, address in addresses:
             try:
-                family, kind, protocol, _, address = socket.getaddrinfo(
-                    host, port, type=socket.SOCK_STREAM
-                )[0]
                 attempt = socket.socket(family, kind, protocol)
             except OSError:
-                continue  # no such name, for now
+                continue  # the machine knows no such network
             attempt.setblocking(False)
             if attempt.connect_ex(address) in (0, errno.EINPROGRESS):
                 self._attempts.append(attempt)
             else:
                 attempt.close()  # no network at all
-        for oldest in self._attempts[: -_AT_ONCE * len(self._places)]:
+        for oldest in self._attempts[: -_AT_ONCE * max(len(addresses), 1)]:
             oldest.close()
             self._attempts.remove(oldest)
 
@@ -72,6 +72,14 @@ class ReachabilityProbe:
             attempt.close()  # refused: the machine is there, the station is not
             self._attempts.remove(attempt)
         return False
+
+
+def _addresses(host: str, port: int) -> list[Any]:
+    """As ``getaddrinfo`` has them; none where there is no such name, for now."""
+    try:
+        return socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+    except OSError:
+        return []
 
 
 def _host_and_port(endpoint: str) -> tuple[str, int]:

@@ -55,6 +55,23 @@ def test_an_ipv6_station_is_found() -> None:
         assert ReachabilityProbe([f"tcp/[::1]:{listening.getsockname()[1]}"]).wait(5.0)
 
 
+def test_a_station_is_found_by_whichever_address_of_its_name_it_listens_on(
+    port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``localhost`` is mostly ::1 first, and a station listens on 0.0.0.0."""
+
+    def looked_up(_host: str, port: int, **_: object) -> list[tuple[object, ...]]:
+        tcp = socket.SOCK_STREAM, socket.IPPROTO_TCP, ""
+        return [
+            (socket.AF_INET6, *tcp, ("::1", port, 0, 0)),
+            (socket.AF_INET, *tcp, ("127.0.0.1", port)),
+        ]
+
+    monkeypatch.setattr(socket, "getaddrinfo", looked_up)
+    with listen(port):
+        assert ReachabilityProbe([f"tcp/localhost:{port}"]).wait(5.0)
+
+
 def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> None:
     probe = ReachabilityProbe([f"tcp/127.0.0.1:{port}"])
     stations: list[socket.socket] = []
