@@ -11,7 +11,13 @@ from edge.data_folder import DataFolder
 from edge.recording_time import ahead_of
 from edge.station_clock import StationClock
 from shared.clock import NS_PER_S
-from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths, segments_within
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentReader,
+    segment_began_ns,
+    segment_paths,
+    segments_within,
+)
 from shared.messages.recording import (
     RecordedFile,
     RecordingDigest,
@@ -22,6 +28,7 @@ from shared.messages.recording import (
 MOST_PIECE_BYTES = 65_536
 _HASHED_AT_ONCE = 1 << 20
 _ON_DISK_NS = 2 * NS_PER_S  # until what is recorded can be read
+_LONGEST_NS = round(SegmentPolicy().segment_s * NS_PER_S) + NS_PER_S  # names have whole seconds
 
 
 class RecordingServer(Answers):
@@ -50,7 +57,7 @@ class RecordingServer(Answers):
             found += [
                 one
                 for one in within
-                if one != segments[-1] or _end_ns(one) + _ON_DISK_NS >= from_ns + ahead_ns
+                if one != segments[-1] or not _ends_before(one, from_ns + ahead_ns)
             ]
         first_ns = min(began_ns, default=0)
         if found:
@@ -89,10 +96,16 @@ class RecordingServer(Answers):
         return next((path for path in found if path.name == file), None)
 
 
-def _end_ns(path: Path) -> int:
-    """Log time of a segment's last record, also while it is written."""
+def _ends_before(path: Path, from_ns: int) -> bool:
+    """Whether a segment, which may still be written, has no record at this log time or later.
+
+    Mostly its name tells.  All of one that was torn has to be read for its end, and a unit that is
+    switched off has one of each boot: asked for all of them it would answer too late.
+    """
+    if segment_began_ns(path) + _LONGEST_NS < from_ns:
+        return True
     with SegmentReader(path) as reader:
-        return reader.info().end_ns
+        return reader.info().end_ns + _ON_DISK_NS < from_ns
 
 
 def sha256_of(path: Path, size_bytes: int) -> bytes:

@@ -15,7 +15,7 @@ from edge.sources import open_source
 from edge.station_clock import StationClock
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, ManualClock
-from shared.mcap_log import segment_began_ns, segment_paths
+from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths
 from shared.messages.clock import ClockAnswer
 from shared.messages.recording import RecordingIndex
 
@@ -89,6 +89,31 @@ def test_a_window_is_found_whatever_the_clock_said_when(
             assert found(server, start_s + 20.0) == [name], "and no other"
         assert found(server, -60.0) == []
         assert found(server, SECONDS + 60.0) == []
+    folder.close()
+
+
+def test_of_boots_that_ended_long_before_nothing_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The end of one that was switched off costs reading it, and the station waits five seconds."""
+    read: list[Path] = []
+
+    class Counted(SegmentReader):
+        def __init__(self, path: Path) -> None:
+            read.append(path)
+            super().__init__(path)
+
+    folder, machine = DataFolder(tmp_path), Machine(utc_ns=STATION_NS)
+    clock = record(folder, machine, STATION_NS, set_at_s=-1.0)
+    last = segment_paths(next(folder.black_box.iterdir()))[-1]
+    last.write_bytes(last.read_bytes()[:-100])
+    monkeypatch.setattr("edge.recording_server.SegmentReader", Counted)
+    server = RecordingServer(U, folder, clock)
+    assert found(server, SECONDS - 20.0) == [f"{last.parent.name}/{last.name}"]
+    assert found(server, SECONDS + 60.0) == []
+    assert read == [last, last]
+    assert found(server, SECONDS + 1000.0) == []
+    assert read == [last, last]
     folder.close()
 
 
