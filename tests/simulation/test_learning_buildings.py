@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pytest
@@ -18,8 +19,11 @@ from base_station.bench.incident.run import (
     fuse_all,
 )
 from base_station.bench.incident.scores import CHI2_95_2DOF
+from base_station.bench.rig import said
 from base_station.fusion.learnt.building import LearntBuilding
-from base_station.fusion.port import Fuser, FuserKind
+from base_station.fusion.port import Estimate, Fuser, FuserKind, PlaceFix, Start
+from shared.geo import wrap_pi
+from shared.messages import Header
 
 SEEDS = range(12)
 INCIDENTS = range(8001, 8007)
@@ -80,6 +84,52 @@ def test_nobody_is_turned_to_walls_that_they_do_not_follow(kind: FuserKind, seed
         errors_m, normalised2 = _inside([person], [run])
         assert np.percentile(errors_m, 95) < 6.0
         assert np.median(normalised2) < 10.6  # chi-square of 2 degrees of freedom, 99.5 %
+
+
+@pytest.mark.parametrize("angle_deg", [10.0, 20.0, 30.0, 45.0])
+def test_walls_of_another_building_turn_nobody(kind: FuserKind, angle_deg: float) -> None:
+    """Fixes on the way there told the heading, which is right to the last digit."""
+    estimates = list(_through_two_buildings(kind.new(), 60, math.radians(angle_deg)))
+    off_rad = [abs(wrap_pi(one.heading_rad)) for one in estimates]
+    assert max(off_rad) < math.radians(4.0)
+    assert estimates[-1].heading_std_rad < math.radians(6.0), "these walls hold it, too"
+
+
+@pytest.mark.parametrize("angle_deg", [30.0, 45.0])
+def test_walls_of_a_wing_leave_open_who_is_right(kind: FuserKind, angle_deg: float) -> None:
+    """Nothing else tells that it is not the heading that was turned."""
+    estimates = list(_through_two_buildings(kind.new(), 0, math.radians(angle_deg)))
+    off_rad = [abs(wrap_pi(one.heading_rad)) for one in estimates]
+    assert max(off_rad) < math.radians(4.0)
+    assert estimates[-1].heading_std_rad > math.radians(0.4 * angle_deg)
+
+
+def _through_two_buildings(fuser: Fuser, outside_m: int, angle_rad: float) -> Iterator[Estimate]:
+    """Of an own path that goes round rooms in one, then outside, and round rooms in another whose
+    walls stand at an angle; the own heading is given as 0, so that the fused one is how far off it
+    is believed to be.
+    """
+    rounds = [side * math.pi / 2.0 for side in range(4)] * 8
+    ways = [(direction_rad, 12, False) for direction_rad in rounds]
+    ways += [(0.0, 2 * outside_m, True)] if outside_m else []
+    ways += [(direction_rad + angle_rad, 12, False) for direction_rad in rounds]
+    fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.03))
+    place, learnt, row = 0j, LearntBuilding(), 0
+    for direction_rad, steps, fixed in ways:
+        for _ in range(steps):
+            place, row = place + 0.5 * np.exp(1j * direction_rad), row + 1
+            header = Header("FF-01", 1, row, said.mono_ns(0.5 * row))
+            north_m, east_m, way_m = float(place.real), float(place.imag), 0.5 * row
+            position = said.position(
+                header, north_m=north_m, east_m=east_m, distance_m=way_m, heading_std_rad=0.03
+            )
+            fuser.advance(position)
+            learnt = fuser.recognise(learnt)
+            if fixed:
+                fuser.correct(PlaceFix(header.t_mono_ns, north_m, east_m, 0.0, 1.5, None))
+            estimate = fuser.estimate()
+            assert estimate is not None
+            yield estimate
 
 
 def _inside(people: Sequence[Person], runs: Sequence[Run]) -> tuple[Floats, Floats]:

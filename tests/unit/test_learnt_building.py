@@ -142,15 +142,22 @@ def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
     assert 0.04**2 < variance < 0.12**2
 
 
-def test_legs_that_agree_with_each_other_and_not_with_the_axis_turn_the_heading() -> None:
-    """Something other than drift turned it: the very legs that are followed show it."""
+@pytest.mark.parametrize("off_deg", [35.0, 45.0])
+def test_legs_that_agree_with_each_other_and_not_with_the_axis_leave_both_open(
+    off_deg: float,
+) -> None:
+    """Something has turned the heading, or these walls stand at another angle."""
     axis, turn_rad, variance = AxisFilter(), 0.0, 0.03**2
-    for number in range(24):
-        direction_rad = number % 2 * math.pi / 2.0 + (0.0 if number < 6 else 0.6)
+    known, off_rad = Axis(0.0, 0.02**2), math.radians(off_deg)
+    for number in range(40):
+        direction_rad = number % 2 * math.pi / 2.0 + (0.0 if number < 6 else off_rad)
         leg = Leg(direction_rad, 5.0)
-        turn_rad, variance = axis.look(leg, turn_rad, variance, Axis(0.0, 0.02**2))
-    assert turn_rad == pytest.approx(-0.6, abs=0.05)
-    assert math.sqrt(variance) < 0.1
+        turn_rad, variance = axis.look(leg, turn_rad, variance, None if axis.apart else known)
+    assert axis.apart
+    assert turn_rad == pytest.approx(0.0, abs=0.05)
+    assert math.sqrt(variance) == pytest.approx(off_rad / 2.0, rel=0.2)
+    assert axis.axis is not None, "these walls hold it, too"
+    assert quarter(axis.axis.direction_rad - off_rad) == pytest.approx(0.0, abs=0.05)
 
 
 # How far off the walls somebody went who crossed rooms as often as not, leg by leg.

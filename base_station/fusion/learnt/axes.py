@@ -30,7 +30,6 @@ ABOUT_RAD = math.radians(8.0)  # what shows an axis tells no more of its directi
 WIDE_RAD = math.radians(10.0)  # a direction less known than this may be any by a single leg
 SETTLED_RAD = math.radians(5.0)  # and is known again by several
 KEPT = 0.3  # of the belief in a direction, with which it is held on to
-LOST_RAD = math.radians(20.0)  # so far may a heading have gone astray that is not
 SHARED_STD_RAD = math.radians(1.0)  # walls of one building are not quite parallel
 TOLD = 1.0  # log odds from which legs show an axis that others know
 EITHER_RAD = QUARTER_RAD / 2.0 / OFF  # less known than this it may be the next wall as well
@@ -47,6 +46,7 @@ class AxisFilter(msgspec.Struct):
     axis: Axis | None = None  # in the incident frame
     turn_variance: float = 0.0
     crossed: float = 0.0  # covariance of both
+    apart: bool = False  # what others know of walls is not of these
 
     def look(
         self,
@@ -75,11 +75,18 @@ class AxisFilter(msgspec.Struct):
                 return turn_rad, variance
         elif shown.kept > KEPT:
             return self._follow(leg, held, turn_rad, variance)
-        else:  # something has turned it
-            variance += LOST_RAD**2
-            held = self._held(turn_rad, variance)
+        else:
+            return turn_rad, self._leave(off_rad**2 + shown.variance, variance)
         self.legs.clear()  # they have told what they know
         return self._tell(held, (off_rad, shown.variance), turn_rad, variance)
+
+    def _leave(self, off2: float, variance: float) -> float:
+        """Something has turned the heading, or walls stand at another angle here, and nobody can
+        tell which: its variance then is such that its region holds both.
+        """
+        self.axis, self.apart = None, True
+        self.legs.clear()
+        return max(variance, off2 / 4.0)
 
     def _find(
         self, turn_rad: float, variance: float, known: Axis | None, drift: Drift

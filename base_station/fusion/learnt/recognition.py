@@ -54,6 +54,8 @@ class Recognition(msgspec.Struct):
         if climb is None and leg is None:
             return learnt
         self.climb = self.leg = None
+        if not inside:
+            self.axis = AxisFilter()  # the next building may stand at another angle
         if not (inside and horizontal.is_plain):
             return learnt
         if climb is not None:
@@ -88,11 +90,12 @@ class Recognition(msgspec.Struct):
         drift = Drift(float(mean[DRIFT]), max(float(covariance[DRIFT, DRIFT]), 0.0))
         leg = msgspec.structs.replace(leg, moved_s=self.moved_s)
         was_known = self.axis.axis is not None
-        turned = self.axis.look(leg, turn_rad, std_rad**2, learnt.axis, drift)
+        known = None if self.axis.apart else learnt.axis
+        turned = self.axis.look(leg, turn_rad, std_rad**2, known, drift)
         if self.axis.axis is not None and not was_known:
             learnt = learnt.with_axis(unit_id, self.axis.axis)
         axis = learnt.axis
-        if axis is not None:
+        if axis is not None and not self.axis.apart:
             turned = self.axis.hear(axis, *turned)
         if turned != (turn_rad, std_rad**2):
             horizontal.face(*turned)
