@@ -6,14 +6,14 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
-from math import hypot, isfinite, nan
+from math import hypot, nan
 from pathlib import Path
 from typing import get_args
 from urllib.parse import parse_qsl
 
 from msgspec.structs import replace
 
-from edge.simulation.legs import Point, Segment, Stand, Walk
+from edge.simulation.legs import MOST_M, Point, Segment, Stand, Walk
 from edge.simulation.scenario import Scenario, read_scenario
 from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
@@ -55,8 +55,11 @@ def _place(text: str, said: str) -> Point:
         north_m, east_m = map(float, said.split(","))
     except ValueError:
         north_m = east_m = nan
-    if not (isfinite(north_m) and isfinite(east_m)):
-        raise ConfigError(f"simulated:{text}: from is {said!r}; give two numbers, NORTH,EAST in m")
+    if not max(abs(north_m), abs(east_m)) <= MOST_M:  # and not NaN
+        raise ConfigError(
+            f"simulated:{text}: from is {said!r}; give two numbers, NORTH,EAST in m, of "
+            f"{MOST_M:.0f} at most"
+        )
     return north_m, east_m
 
 

@@ -11,6 +11,7 @@ from msgspec import Meta
 
 from edge.ranging import EXPONENT, POWER_DBM, range_of
 from edge.samples import BEACON, SightingSample
+from edge.simulation.legs import Metres
 from shared.clock import NS_PER_S
 
 HEARD_STD_DB = 4.0
@@ -22,9 +23,9 @@ class BeaconPlace(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where one hangs, in the site frame."""
 
     beacon_id: Annotated[str, Meta(min_length=1, max_length=64)]
-    north_m: float
-    east_m: float
-    down_m: float = 0.0
+    north_m: Metres
+    east_m: Metres
+    down_m: Metres = 0.0
 
 
 class Beacons:

@@ -11,9 +11,12 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-Point = tuple[float, float]
+MOST_M = 1e5  # that anybody goes; what is farther would be planned for minutes, stride by stride
+Metres = Annotated[float, Meta(ge=-MOST_M, le=MOST_M)]
+Degrees = Annotated[float, Meta(ge=-36_000.0, le=36_000.0)]
+Point = tuple[Metres, Metres]
 Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
-Seconds = Annotated[float, Meta(gt=0.0, le=1e6)]
+Seconds = Annotated[float, Meta(ge=1e-3, le=1e6)]
 Pace = Literal[
     "search", "walk", "hurry", "run", "sprint", "laden", "limp", "backwards", "sideways", "hose",
     "rubble",
@@ -29,14 +32,14 @@ class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):
 
     to: Points
     pace: Pace = "walk"
-    rise_m: float = 0.0  # of the ramp, over the whole way
+    rise_m: Metres = 0.0  # of the ramp, over the whole way
 
 
 class Stairs(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=True):
     """Climb (``rise_m`` positive) or descend one straight flight that starts here."""
 
     to: Point
-    rise_m: float
+    rise_m: Metres
     risers: Risers
     at_once: AtOnce = 1
     pace: StairsPace = "walk"
@@ -46,8 +49,8 @@ class Spiral(msgspec.Struct, frozen=True, tag="spiral", forbid_unknown_fields=Tr
     """Climb or descend winding stairs that start here and turn about ``middle``."""
 
     middle: Point
-    turn_deg: float  # clockwise seen from above
-    rise_m: float
+    turn_deg: Degrees  # clockwise seen from above
+    rise_m: Metres
     risers: Risers
     at_once: AtOnce = 1
     pace: StairsPace = "walk"
@@ -80,14 +83,14 @@ class Sit(msgspec.Struct, frozen=True, tag="sit", forbid_unknown_fields=True):
 class Ride(msgspec.Struct, frozen=True, tag="ride", forbid_unknown_fields=True):
     """Stand in a lift that goes up (``rise_m`` positive) or down without a stop."""
 
-    rise_m: float
+    rise_m: Metres
     speed_mps: Annotated[float, Meta(gt=0.0, le=10.0)] = 1.6  # at most
 
 
 class Turn(msgspec.Struct, frozen=True, tag="turn", forbid_unknown_fields=True):
     """Turn on the spot to a heading, clockwise from north."""
 
-    heading_deg: float
+    heading_deg: Degrees
 
 
 class Lie(msgspec.Struct, frozen=True, tag="lie", forbid_unknown_fields=True):

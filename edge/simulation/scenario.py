@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from difflib import get_close_matches
+from math import pi
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,9 +12,12 @@ import msgspec
 from msgspec import Meta
 
 from edge.simulation.beacons import BeaconPlace
-from edge.simulation.legs import Leg, Point, Segment
+from edge.simulation.legs import Degrees, Leg, Metres, Point, Segment
 from shared.errors import ConfigError
 from shared.geo import Anchor
+
+Time = Annotated[float, Meta(ge=0.0, le=1e6)]
+Warmth = Annotated[float, Meta(ge=-100.0, le=2000.0)]
 
 
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -27,16 +31,18 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         3600.0  # of the looping; without a loop the walk ends with its legs
     )
     start: Point = (0.0, 0.0)
-    heading_deg: float = 0.0
-    down_m: float = 0.0
+    heading_deg: Degrees = 0.0
+    down_m: Metres = 0.0
     building: bool = False  # in the training house, or on open ground
-    steel_ut: Annotated[float, Meta(ge=0.0)] = 3.0  # how far each of its waves bends the field
-    anchor: Anchor | None = None  # of the site frame; the training house's when left out
-    ambient_degc: tuple[tuple[float, float], ...] = ((0.0, 18.0),)  # (time, value), linear between
-    radio_outages_s: tuple[tuple[float, float], ...] = ()  # (start, duration)
+    steel_ut: Annotated[float, Meta(ge=0.0, le=1e3)] = (
+        3.0  # how far each of its waves bends the field
+    )
+    anchor: Anchor | None = None  # of the site frame, for GPS and the earth's field; the house's
+    ambient_degc: tuple[tuple[Time, Warmth], ...] = ((0.0, 18.0),)  # (time, value), linear between
+    radio_outages_s: tuple[tuple[Time, Time], ...] = ()  # (start, duration)
     beacons: tuple[BeaconPlace, ...] = ()  # heard by a receiver that the wearer carries
     battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
-    battery_life_s: Annotated[float, Meta(ge=1.0)] = 6 * 3600.0  # from full to empty
+    battery_life_s: Annotated[float, Meta(ge=1.0, le=1e9)] = 6 * 3600.0  # from full to empty
     acknowledges_every_s: Annotated[int, Meta(ge=1)] | None = None  # looks at the unit so often
     worn_on: Segment = "foot"
     rate_hz: Annotated[float, Meta(ge=20.0, le=5000.0)] = 200.0
@@ -45,6 +51,17 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         times_s = [t_s for t_s, _ in self.ambient_degc]
         if not times_s or times_s != sorted(times_s):
             raise ValueError("ambient_degc must be [time, value] pairs in order of time")
+        if self.anchor is not None and not _is_on_earth(self.anchor):
+            raise ValueError("the anchor is no place on the earth")
+
+
+def _is_on_earth(anchor: Anchor) -> bool:
+    return (
+        abs(anchor.lat_deg) <= 90.0
+        and abs(anchor.lon_deg) <= 180.0
+        and abs(anchor.height_m) < 1e4
+        and abs(anchor.rotation_rad) <= 2.0 * pi
+    )
 
 
 def read_scenario(path: Path) -> Scenario:

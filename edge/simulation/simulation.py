@@ -41,6 +41,7 @@ from edge.simulation.surroundings import (
     MagErrors,
     MagneticField,
     Magnetometer,
+    earth_n_ut,
 )
 from shared.errors import ConfigError
 from shared.messages.status import Activity
@@ -137,8 +138,7 @@ class Simulation:
         rate_hz = self.scenario.rate_hz
         imu_rng, mag_rng, baro_rng, gps_rng, other_rng = self.sensor_rngs()
         imu = Imu(self.sensors.imu, self._rotation_bs, rate_hz, imu_rng)
-        field = MagneticField(self._building, mag_rng, self.scenario.steel_ut)
-        mag = Magnetometer(self.sensors.mag, field, mag_rng)
+        mag = Magnetometer(self.sensors.mag, self._field(mag_rng), mag_rng)
         baro = Barometer(
             self.sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
         )
@@ -162,6 +162,12 @@ class Simulation:
                 ),
                 others.between(float(t_s[0]), (start + len(index)) / rate_hz),
             )
+
+    def _field(self, rng: np.random.Generator) -> MagneticField:
+        scenario = self.scenario
+        if scenario.anchor is None:
+            return MagneticField(self._building, rng, scenario.steel_ut)
+        return MagneticField(self._building, rng, scenario.steel_ut, earth_n_ut(scenario.anchor))
 
     def ambient_degc(self, t_s: Floats) -> Floats:
         """Temperature around the equipment at times ``t_s`` (n,)."""

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 
 from edge.samples import Floats
 from edge.simulation.building import Building
-from shared.geo import pressure_pa_at
+from shared.clock import NS_PER_S
+from shared.earth_field import EarthField, earth_field
+from shared.geo import Anchor, pressure_pa_at
 
 # At the training house in 2026 (World Magnetic Model 2025): north, east, down.
 _EARTH_FIELD_N_UT = np.array([16.07, 1.48, 48.56])
+_IN_2026_NS = 1_783_000_000 * NS_PER_S
 _AIR_SCALE_HEIGHT_M = 8434.0  # isothermal air at 15 degC
 
 
@@ -45,9 +49,14 @@ class MagneticField:
     """The earth's field, bent by steel inside a building."""
 
     def __init__(
-        self, building: Building | None, rng: np.random.Generator, steel_ut: float = 3.0
+        self,
+        building: Building | None,
+        rng: np.random.Generator,
+        steel_ut: float = 3.0,
+        earth_n_ut: Floats = _EARTH_FIELD_N_UT,
     ) -> None:
         self._building = building
+        self._earth_n_ut = earth_n_ut
         wave_m = rng.uniform(1.5, 5.0, 6)
         direction = rng.normal(0.0, 1.0, (6, 3))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -57,13 +66,27 @@ class MagneticField:
 
     def at(self, position_n_m: Floats) -> Floats:
         """Flux density (n, 3) in navigation axes."""
-        field_ut = np.tile(_EARTH_FIELD_N_UT, (len(position_n_m), 1))
+        field_ut = np.tile(self._earth_n_ut, (len(position_n_m), 1))
         if self._building is not None:
             depth_m = self._building.depth_inside_m(position_n_m[:, 0], position_n_m[:, 1])
             share = np.clip((depth_m + 1.0) / 2.0, 0.0, 1.0)[:, None]
             waves = np.sin(position_n_m @ self._wave_per_m.T + self._phase)
             field_ut += share * (waves @ self._amplitude_ut)
         return field_ut
+
+
+def earth_n_ut(anchor: Anchor) -> Floats:
+    """The undisturbed field (3,) at a site in 2026, in the site's axes."""
+    found = earth_field(anchor.lat_deg, anchor.lon_deg, anchor.height_m, _IN_2026_NS)
+    assert isinstance(found, EarthField)
+    heading_rad = found.declination_rad - anchor.rotation_rad
+    return np.array(
+        [
+            found.horizontal_ut * cos(heading_rad),
+            found.horizontal_ut * sin(heading_rad),
+            found.down_ut,
+        ]
+    )
 
 
 class Magnetometer:

@@ -27,8 +27,10 @@ from edge.simulation.legs import (
     Wait,
     Walk,
 )
+from edge.simulation.simulation import IDEAL_SENSORS
 from edge.sources.simulated import SimulatedSource
 from shared.errors import ConfigError
+from shared.geo import Anchor
 from shared.messages.status import Activity
 from tests.conftest import PROJECT_ROOT
 
@@ -135,10 +137,34 @@ def test_who_comes_from_farther_away_meets_everything_later() -> None:
     assert later - first == pytest.approx(later_s, abs=4.0)
 
 
-@pytest.mark.parametrize("place", ["", "here", "1", "1,2,3", "nan,0"])
+@pytest.mark.parametrize("place", ["", "here", "1", "1,2,3", "nan,0", "0,inf", "1e9,0"])
 def test_a_place_that_is_none_is_refused(place: str) -> None:
     with pytest.raises(ConfigError, match="NORTH,EAST"):
         open_simulation(f"goes-down?from={place}")
+
+
+SYDNEY = Anchor(-33.87, 151.21, 20.0)
+
+
+@pytest.mark.parametrize(
+    ("anchor", "field_ut"),
+    [
+        (None, (16.1, 1.5, 48.5)),
+        (SYDNEY, (24.0, 5.5, -51.4)),
+        (Anchor(-33.87, 151.21, 20.0, np.pi / 2.0), (5.5, -24.0, -51.4)),
+    ],
+    ids=["the house", "Sydney", "turned to the east"],
+)
+def test_the_magnetic_field_is_that_of_the_site(
+    anchor: Anchor | None, field_ut: tuple[float, float, float]
+) -> None:
+    """World Magnetic Model 2025, in the axes of the site."""
+    scenario = Scenario("test", "", (Stand(1.0),), anchor=anchor)
+    simulation = Simulation(scenario, sensors=IDEAL_SENSORS)
+    (batch, *_) = simulation.batches()
+    assert batch.imu.mag_ut is not None
+    rotation_nb = simulation.truth(np.zeros(1)).rotation_nb[0]
+    assert rotation_nb @ batch.imu.mag_ut[0] == pytest.approx(field_ut, abs=0.2)
 
 
 def test_the_radio_is_lost_and_comes_back() -> None:
@@ -300,6 +326,15 @@ def test_a_scenario_file_is_played(tmp_path: Path) -> None:
         (("start =", "rate_hz = 1.0\nstart ="), "rate_hz"),
         (("building = true", "building ="), "is not TOML"),
         (("[[legs]]", "[[loop]]"), "legs"),
+        (("[3.0, 12.0]", "[nan, 12.0]"), "legs[1].to[1][0]"),
+        (("[3.0, 12.0]", "[3.0, 1e7]"), "legs[1].to[1][1]"),
+        (('pace = "hurry"', "rise_m = inf"), "legs[1].rise_m"),
+        (("start = [-5.0", "start = [nan"), "start[0]"),
+        (("start =", "heading_deg = nan\nstart ="), "heading_deg"),
+        (("start =", "anchor = {lat_deg = nan, lon_deg = 0, height_m = 0}\nstart ="), "anchor"),
+        (("[60.0, 80.0]", "[60.0, nan]"), "ambient_degc[1][1]"),
+        (("[[10.0, 5.0]]", "[[10.0, -5.0]]"), "radio_outages_s[0][1]"),
+        (("duration_s = 2.0", "duration_s = 1e-17"), "duration_s"),
     ],
 )
 def test_a_bad_scenario_file_is_explained(
