@@ -11,6 +11,8 @@ import signal
 import socket
 from collections.abc import Callable, Generator
 from pathlib import Path
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import uvicorn
 from starlette.types import ASGIApp
@@ -27,7 +29,7 @@ _BACKLOG = 512
 _LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
 _MOST_CONNECTIONS = 2000
 _MOST_OF_ONE = 500  # place: a proxy, or two hundred consoles behind one router
-_ASK_WITHIN_S = 10.0  # the head of a request
+_ASK_WITHIN_S = 10.0  # the head of a request, and before it the greeting of TLS
 _GO_ON_WITHIN_S = 60.0  # with a body, for a radio that loses much
 
 
@@ -40,18 +42,56 @@ class _Server(uvicorn.Server):
         """Signals are the station's, which stops everything in order."""
         yield
 
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listens by itself: uvicorn leaves whoever begins a greeting of TLS a minute for it."""
+        await super().startup(sockets=[])
+        config = self.config
+
+        def new_connection() -> _Connection:
+            return _Connection(config, self.server_state, self.lifespan.state)
+
+        for one in sockets or ():
+            listener = await asyncio.get_running_loop().create_server(
+                new_connection,
+                sock=one,
+                backlog=_BACKLOG,
+                ssl=config.ssl,
+                ssl_handshake_timeout=_ASK_WITHIN_S if config.ssl else None,
+            )
+            self.servers.append(listener)
+
+
+class _Door(socket.socket):
+    """Nobody takes all the station's connections.  They are counted from when they come in: over
+    TLS it takes a while until one can ask anything, and all that while it takes memory.
+    """
+
+    def __init__(
+        self, family: int = -1, kind: int = -1, protocol: int = -1, fileno: int | None = None
+    ) -> None:
+        super().__init__(family, kind, protocol, fileno)
+        self._places: WeakKeyDictionary[socket.socket, str] = WeakKeyDictionary()
+
+    def accept(self) -> tuple[socket.socket, Any]:
+        """Raises ConnectionAbortedError in the place of one too many, which it lets go."""
+        accepted, address = super().accept()
+        for gone in [one for one in self._places if one.fileno() < 0]:
+            del self._places[gone]
+        place, places = network_of(address[0]), list(self._places.values())
+        if len(places) >= _MOST_CONNECTIONS or places.count(place) >= _MOST_OF_ONE:
+            accepted.close()
+            raise ConnectionAbortedError
+        self._places[accepted] = place
+        return accepted, address
+
 
 class _Connection(H11Protocol):
-    """Nobody takes all the station's connections, or holds one without asking anything."""
+    """Nobody holds one without asking anything."""
 
     _deadline: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        place = _place_of(self)
-        same = sum(1 for one in self.connections if _place_of(one) == place)
-        if len(self.connections) > _MOST_CONNECTIONS or same > _MOST_OF_ONE:
-            transport.abort()
         self._mind_deadline()
 
     def data_received(self, data: bytes) -> None:
@@ -84,11 +124,6 @@ class _Connection(H11Protocol):
             self.transport.close()
 
 
-def _place_of(connection: object) -> str:
-    client = getattr(connection, "client", None)
-    return network_of(client[0]) if client else ""
-
-
 class ConsoleServer:
     """Serves an application on a socket from ``bind``, over TLS where it has a certificate."""
 
@@ -107,7 +142,6 @@ class ConsoleServer:
         self.address = f"{scheme}://{f'[{host}]' if ':' in host else host}:{port}"
         config = uvicorn.Config(
             app,
-            http=_Connection,
             ssl_certfile=certificate,
             ssl_keyfile=private_key,
             log_config=None,
@@ -191,7 +225,7 @@ def bind(host: str, port: int) -> socket.socket:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
-        bound = socket.socket(family, kind, protocol)
+        bound = _Door(family, kind, protocol)
     except OSError as error:
         raise ConfigError(f"the console cannot listen on {host}:{port}: {error}") from error
     try:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import resource
+import ssl
 from collections.abc import AsyncIterator
-from types import SimpleNamespace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import pytest
 import pytest_asyncio
@@ -14,7 +16,10 @@ from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
 
 from base_station import server
+from base_station.networks import network_of
+from base_station.pki.certificates import issue, make_authority
 from base_station.server import ConsoleServer, allow_many_files, bind
+from shared.enrolment import Holder
 from tests.waiting import PATIENCE_S
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
@@ -31,13 +36,33 @@ async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> No
         await PlainTextResponse(f"{asks}here")(scope, receive, send)
 
 
-@pytest_asyncio.fixture
-async def port(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[int]:
+@pytest.fixture
+def bounds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "_ASK_WITHIN_S", 1.0)
     monkeypatch.setattr(server, "_GO_ON_WITHIN_S", 1.0)
     monkeypatch.setattr(server, "_MOST_OF_ONE", 5)
+
+
+@pytest_asyncio.fixture
+async def port(bounds: None) -> AsyncIterator[int]:
+    async for one in served():
+        yield one
+
+
+@pytest_asyncio.fixture
+async def secure_port(bounds: None, tmp_path: Path) -> AsyncIterator[int]:
+    now, day = datetime.now(UTC), timedelta(days=1)
+    issued = issue(make_authority("Test", now, 2 * day), "station", Holder.STATION, now, day)
+    certificate, key = tmp_path / "station.pem", tmp_path / "station.key"
+    certificate.write_bytes(issued.certificate_pem())
+    key.write_bytes(issued.key_pem())
+    async for one in served(certificate, key):
+        yield one
+
+
+async def served(*identity: Path) -> AsyncIterator[int]:
     listening = bind("127.0.0.1", 0)
-    serving = ConsoleServer(answer_what_was_read, listening)
+    serving = ConsoleServer(answer_what_was_read, listening, *identity)
     task = asyncio.create_task(serving.serve())
     await serving.wait_started()
     yield listening.getsockname()[1]
@@ -45,8 +70,16 @@ async def port(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[int]:
     await task
 
 
-async def connect(port: int, place: str = "127.0.0.1") -> Stream:
-    return await asyncio.open_connection("127.0.0.1", port, local_addr=(place, 0))
+async def connect(
+    port: int, place: str = "127.0.0.1", secured: ssl.SSLContext | None = None
+) -> Stream:
+    return await asyncio.open_connection("127.0.0.1", port, local_addr=(place, 0), ssl=secured)
+
+
+def trusting() -> ssl.SSLContext:
+    context = ssl.create_default_context()
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    return context
 
 
 async def answer_of(stream: Stream) -> bytes:
@@ -106,6 +139,30 @@ async def test_one_place_has_only_so_many(port: int) -> None:
     assert answer == b"HTTP/1.1 200 OK"
 
 
+async def test_who_does_not_end_a_greeting_of_tls_is_let_go(secure_port: int) -> None:
+    streams = [await connect(secure_port) for _ in range(2)]
+    streams[1][1].write(b"\x16\x03\x01")  # and no more of it
+    for reader, writer in streams:
+        async with asyncio.timeout(PATIENCE_S):
+            assert await reader.read() == b""
+        writer.close()
+
+
+async def test_who_does_not_get_to_ask_over_tls_counts_too(
+    secure_port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each takes more of the station's memory than who asks."""
+    monkeypatch.setattr(server, "_ASK_WITHIN_S", 1000.0)
+    held = [await connect(secure_port) for _ in range(5)]
+    with pytest.raises((ssl.SSLError, ConnectionError)):
+        await connect(secure_port, secured=trusting())
+    elsewhere = await connect(secure_port, "127.0.0.2", trusting())
+    elsewhere[1].write(GET + b"\r\n")
+    assert await answer_of(elsewhere) == b"HTTP/1.1 200 OK"
+    for _, writer in (*held, elsewhere):
+        writer.close()
+
+
 async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "_MOST_CONNECTIONS", 3)
     streams = [await connect(port, f"127.0.0.{number}") for number in range(1, 6)]
@@ -127,12 +184,9 @@ async def test_who_asks_is_who_connected_whatever_a_header_says(port: int) -> No
 
 
 def test_a_network_of_ipv6_is_one_place() -> None:
-    def place(address: str) -> str:
-        return server._place_of(SimpleNamespace(client=(address, 1)))
-
-    assert place("2001:db8:1:2::1") == place("2001:db8:1:2:3:4:5:6")
-    assert place("2001:db8:1:2::1") != place("2001:db8:1:3::1")
-    assert place("192.0.2.1") != place("192.0.2.2")
+    assert network_of("2001:db8:1:2::1") == network_of("2001:db8:1:2:3:4:5:6")
+    assert network_of("2001:db8:1:2::1") != network_of("2001:db8:1:3::1")
+    assert network_of("192.0.2.1") != network_of("192.0.2.2")
 
 
 def test_connections_take_no_files_from_the_log() -> None:
