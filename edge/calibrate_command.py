@@ -39,7 +39,8 @@ Recording = Annotated[
     typer.Option(help="Recording of this step: a path, or a source such as mcap:PATH."),
 ]
 Sensor = Annotated[
-    str | None, typer.Option(help="Name of the sensor; the source's own if left out.")
+    str | None,
+    typer.Option(help="Name of the sensor; guided, the source's own if left out."),
 ]
 
 
@@ -62,6 +63,7 @@ def calibrate(
     from edge.app import opened_source  # noqa: PLC0415
     from edge.calibration.session import calibrate_guided, calibrate_recorded  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
+    from edge.membership import bus_unit  # noqa: PLC0415
     from shared.channels import validate_unit_id  # noqa: PLC0415
 
     given = {"still": still, "poses": poses, "turning": turning, "warm-up": warm_up}
@@ -73,12 +75,19 @@ def calibrate(
         )
     if unit:
         validate_unit_id(unit)
+    if sensor is not None and not sensor.isprintable():
+        raise UserError(f"the sensor's name {sensor!r} has signs that cannot be printed")
     if source is None:
+        if with_warm_up:
+            raise UserError("--with-warm-up is for being guided; give the recording: --warm-up")
         calibrate_recorded(recordings, out, unit, sensor)
         return
-    if source.startswith("bus:"):
-        unit = unit or source.partition(":")[2]
-        typer.echo(f"Waiting for the samples of {unit} ...", err=True)
     config = EdgeConfig(source, enrolment=enrolment, connect=tuple(connect or ()))
+    followed = bus_unit(config)
+    if followed is not None:
+        if unit not in ("", followed):
+            raise UserError(f"{source} has the samples of {followed}, not of {unit}")
+        unit = followed
+        typer.echo(f"Waiting for the samples of {unit} ...", err=True)
     with opened_source(config) as opened:
         calibrate_guided(opened, out, unit, sensor, with_warm_up=with_warm_up, speed=speed)

@@ -76,6 +76,11 @@ def solve(steps: Sequence[Step], unit: str, sensor: str, made: datetime) -> Cali
     poses = [] if turned_over is None else turned_over.poses()
     still = next((step for step in steps if isinstance(step, StillStep)), None)
     windows = [] if still is None else still.windows()
+    if warmth is not None and not (windows or poses):
+        raise UserError(
+            "the warm-up says how the biases follow the temperature, and not what they are: give "
+            "it with the still and poses steps"
+        )
     if warmth is not None and not all(
         isfinite(window.temperature_degc) for window in (*windows, *poses)
     ):

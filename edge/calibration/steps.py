@@ -30,6 +30,7 @@ _MISREAD_DEGC = 2.0  # off those around it: no sensor warms so fast
 _DIRECTIONS = 3.0  # steps from -1 to 1 on each axis in which directions of the field are told
 _FLAT = 0.06  # spread off the best plane against that in it: turned about one axis only
 _FIELDS_UT = (15.0, 90.0)  # of the earth, with what a unit's own iron may add or take
+_MISREAD_SHARE = 0.02  # of the readings; more are no mistakes
 _ENOUGH_FIELDS = 40
 _GOOD_FIELDS = 110
 
@@ -177,7 +178,7 @@ class TurningStep:
             self._stale = False
             whole = np.vstack(self._parts)
             self._parts = [whole]
-            self._binned = _mean_by_direction(whole) if len(whole) else whole
+            self._binned = _mean_by_direction(_readings_of_one_field(whole))
         return self._binned
 
     def missing(self) -> str | None:
@@ -286,8 +287,19 @@ def _without_misread(windows: list[Window]) -> list[Window]:
     return [window for window, by in zip(windows, off, strict=True) if by < _MISREAD_DEGC]
 
 
+def _readings_of_one_field(fields_ut: Floats) -> Floats:
+    """Without the few (n, 3) that no turning in the others' field can give."""
+    if not len(fields_ut):
+        return fields_ut
+    off_ut = np.abs(fields_ut - np.median(fields_ut, axis=0)).max(axis=1)
+    misread = off_ut > 2.0 * _FIELDS_UT[1]
+    return fields_ut if misread.mean() > _MISREAD_SHARE else fields_ut[~misread]
+
+
 def _mean_by_direction(fields_ut: Floats) -> Floats:
     """Means (n, 3) of the readings that point to the same part of the sphere they lie on."""
+    if not len(fields_ut):
+        return fields_ut
     low, high = fields_ut.min(axis=0), fields_ut.max(axis=0)
     directions = fields_ut - (low + high) / 2.0
     lengths = np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-9)

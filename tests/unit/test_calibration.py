@@ -106,7 +106,8 @@ def test_the_biases_slopes_with_temperature_are_found():
     off = []
     for seed in SEEDS:
         unit = HandledUnit(seed)
-        found = known(solved(gathered(WarmUpStep(), unit.warm_up(400.0))).warmth)
+        warm_up = gathered(WarmUpStep(), unit.warm_up(400.0))
+        found = known(solved(warm_up, gathered(StillStep(), [unit.rest(14.0)])).warmth)
         for slope, std, triad in (
             (found.accel_bias_per_degc_mps2, found.accel_std_mps2, unit.imu._accel),
             (found.gyro_bias_per_degc_radps, found.gyro_std_radps, unit.imu._gyro),

@@ -116,6 +116,16 @@ def test_a_warm_up_needs_the_temperature_of_the_other_steps():
         solved(still, warm_up)
 
 
+def test_a_warm_up_by_itself_says_nothing_that_could_be_used():
+    """Its slopes would be in the file, and taken out of no sample."""
+    unit = HandledUnit(0)
+    warm_up = gathered(WarmUpStep(), unit.warm_up(400.0))
+    with pytest.raises(UserError, match="give it with the still and poses steps"):
+        solved(warm_up)
+    with pytest.raises(UserError, match="give it with the still and poses steps"):
+        solved(gathered(TurningStep(), unit.turning(45)), warm_up)
+
+
 def test_too_little_warmth_is_refused_with_the_figure():
     said = refusal(WarmUpStep(), HandledUnit(0).warm_up(100.0, from_degc=21.5))
     assert "changed by only 1.2 degC; 10 are needed" in said

@@ -239,6 +239,18 @@ def test_readings_that_were_missed_are_left_out() -> None:
     assert holed.fields_ut().tolist() == whole.fields_ut().tolist()
 
 
+@pytest.mark.parametrize("wrong_ut", [500.0, -4900.0])
+def test_some_readings_that_were_misread_spoil_no_turning(wrong_ut: float) -> None:
+    """A sensor's answer is lost for a moment; he who turned it all around has done it."""
+    turned = 48.0 * sphere(2000) + IRON_UT
+    spoilt = turned.copy()
+    spoilt[::100, 1] = wrong_ut
+    step = TurningStep()
+    fields(step, spoilt)
+    assert step.wanted() is None
+    assert np.abs(step.fields_ut() - IRON_UT).max() < 49.0
+
+
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_hardly_a_reading_is_hardly_turned(count: int) -> None:
     step = TurningStep()

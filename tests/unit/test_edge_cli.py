@@ -147,6 +147,10 @@ def test_calibrating_without_a_source_says_what_to_give(tmp_path):
         (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "0"), "--speed"),
         (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "nan"), "--speed"),
         (("calibrate", "--still", "bench:1", "--out", "c.toml", "--unit", "a/b"), "unit id 'a/b'"),
+        (("calibrate", "--still", "bench:1", "--out", "c.toml", "--sensor", "a\x7f"), "'a\\x7f'"),
+        (("calibrate", "--still", "bench:1", "--out", "c.toml", "--with-warm-up"), "--warm-up"),
+        (("calibrate", "--source", "bus:u1", "--out", "c.toml", "--unit", "u2"), "not of u2"),
+        (("calibrate", "--source", "bus:", "--out", "c.toml"), "unit id ''"),
         (("run", "--source", WALK, "--unit", "u1", "--for", "inf"), "--for"),
     ],
 )
