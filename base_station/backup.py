@@ -17,7 +17,7 @@ from pathlib import Path
 from base_station.data_folder import DataFolder
 from base_station.db.store import copy_database, known_segments
 from base_station.pki.folder import PkiFolder
-from base_station.standby.setting_aside import APART
+from base_station.standby.setting_aside import APART, TOLD
 from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
 from shared.own_files import give_to_owner, make_folder
@@ -100,6 +100,7 @@ def _copy_files(
     source: DataFolder, copy: DataFolder, on_progress: Callable[[float], None]
 ) -> Backup:
     done = Backup()
+    _rename_told(source, copy)
     sizes = {path: _size_of(path) for path in _files(source)}
     total, passed = sum(sizes.values()) or 1, 0
     for path, size in sizes.items():
@@ -121,6 +122,19 @@ def _copy_files(
     here = {path.name for path in segment_paths(source.log)}
     done.gone = sum(path.name not in here for path in segment_paths(copy.log))
     return done
+
+
+def _rename_told(source: DataFolder, copy: DataFolder) -> None:
+    """What was set aside is called otherwise once the other station has it.  Put back under both
+    names it would be told once more, and under the old one nobody would forget what is in it.
+    """
+    for told in (source.path / APART).glob(f"*{TOLD}"):
+        now = copy.path / APART / told.name
+        before = now.with_name(told.name.removesuffix(TOLD))
+        if now.exists():
+            shutil.rmtree(before, ignore_errors=True)
+        elif before.exists():
+            before.rename(now)
 
 
 def _size_of(path: Path) -> int:

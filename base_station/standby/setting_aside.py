@@ -18,7 +18,7 @@ from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_lo
 from shared.own_files import make_folder
 
 APART = "apart"
-_TOLD = ".told"
+TOLD = ".told"  # of a part's name
 _ONE_SEGMENT = SegmentPolicy(segment_s=1e9, index_entries_max=2**31)
 
 
@@ -57,7 +57,7 @@ def parts(data: Path) -> list[str]:
     if not folder.is_dir():
         return []
     names = (path.name for path in folder.iterdir() if path.is_dir())
-    return sorted(name for name in names if not name.endswith(_TOLD))
+    return sorted(name for name in names if not name.endswith(TOLD))
 
 
 def read_part(data: Path, name: str) -> Iterator[Record]:
@@ -68,7 +68,7 @@ def read_part(data: Path, name: str) -> Iterator[Record]:
 
 def mark_told(data: Path, name: str) -> None:
     part = data / APART / name
-    part.rename(part.with_name(name + _TOLD))
+    part.rename(part.with_name(name + TOLD))
 
 
 def _new_part(data: Path, place: Place) -> Path:

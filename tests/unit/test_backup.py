@@ -238,3 +238,20 @@ def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: P
 def test_a_folder_without_a_station_has_nothing_to_copy(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no station's log"):
         run(tmp_path / "nothing", tmp_path / "backup")
+
+
+def test_what_was_set_aside_and_is_told_since_is_not_kept_twice(data: Path, tmp_path: Path) -> None:
+    """Put back, it would be told once more; and what is forgotten in it would stay."""
+    target = tmp_path / "backup"
+    part, told = data / "apart" / "1-1-1", data / "apart" / "1-1-1.told"
+    part.mkdir()
+    (part / SECOND).write_text("of Ada")
+    run(data, target)
+    part.rename(told)
+    run(data, target)
+    (target / "apart" / part.name).mkdir()  # as it once was kept
+    (target / "apart" / part.name / SECOND).write_text("of Ada")
+    (told / SECOND).write_text("(forgotten)")
+    run(data, target)
+    assert files(target / "apart") == {SECOND, f"1-1-1.told/{SECOND}"}
+    assert (target / "apart" / "1-1-1.told" / SECOND).read_text() == "(forgotten)"
