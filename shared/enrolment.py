@@ -83,9 +83,13 @@ class Enrolment:
 
         Raises ConfigError where one is already, or it cannot be written: then there is none.
         """
+        write_secret(path, self.to_toml().encode(), self.made_again)
+
+    @property
+    def made_again(self) -> str:
+        """The command, for a person."""
         of_kind = {Holder.TRACKER: "--tracker ", Holder.OPERATOR: "--operator "}
-        again = f"`muster pki renew {of_kind.get(self.holder, '')}{self.name}`"
-        write_secret(path, self.to_toml(), again)
+        return f"`muster pki renew {of_kind.get(self.holder, '')}{self.name}`"
 
 
 class _Compact(msgspec.Struct, array_like=True):

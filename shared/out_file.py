@@ -53,7 +53,7 @@ def _not_written(path: Path, error: OSError) -> UserError:
     return UserError(f"cannot write {path}: {error.strerror or error}; choose another place")
 
 
-def write_secret(path: Path, text: str, again: str) -> None:
+def write_secret(path: Path, content: bytes, again: str) -> None:
     """A new file that its owner alone can read.  ``again``: what makes what it holds once more.
 
     Raises ConfigError where one is already, or where the disk does not take all of it: then
@@ -66,8 +66,8 @@ def write_secret(path: Path, text: str, again: str) -> None:
     except OSError as error:
         raise ConfigError(f"{path} cannot be written: {error.strerror}") from error
     try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
     except OSError as error:

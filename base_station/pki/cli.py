@@ -259,7 +259,7 @@ def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, q
             source = f"--source bus:{enrolment.name}"
             typer.echo(f"start it with `muster edge run --enrolment {target.name} {source}`")
     if png is not None:
-        save_png(qr_code(enrolment), png)
+        save_png(qr_code(enrolment), png, enrolment.made_again)
         typer.echo(f"{png}: the enrolment as a QR code")
     if qr:
         typer.echo(as_text(qr_code(enrolment)))

@@ -8,7 +8,7 @@ from pathlib import Path
 import segno
 
 from shared.enrolment import Enrolment
-from shared.errors import ConfigError
+from shared.out_file import write_secret
 
 _PIXELS_A_MODULE = 6
 
@@ -25,12 +25,8 @@ def as_text(code: segno.QRCode) -> str:
     return text.getvalue()
 
 
-def save_png(code: segno.QRCode, path: Path) -> None:
-    """Readable by its owner alone: it holds the private key.  ConfigError where a file is."""
-    try:
-        path.touch(mode=0o600, exist_ok=False)
-        code.save(str(path), kind="png", scale=_PIXELS_A_MODULE)
-    except FileExistsError:
-        raise ConfigError(f"{path} is there already; move it away or choose another") from None
-    except OSError as error:
-        raise ConfigError(f"{path} cannot be written: {error}") from error
+def save_png(code: segno.QRCode, path: Path, again: str) -> None:
+    """As ``write_secret``: it holds the private key."""
+    picture = io.BytesIO()
+    code.save(picture, kind="png", scale=_PIXELS_A_MODULE)
+    write_secret(path, picture.getvalue(), again)

@@ -32,7 +32,7 @@ class StationEnrolment:
 
     def write(self, path: Path) -> None:
         """Readable by its owner alone; ConfigError where there is one already, or none can be."""
-        write_secret(path, self.to_toml(), "the same command")
+        write_secret(path, self.to_toml().encode(), "the same command")
 
     def to_toml(self) -> str:
         return (

@@ -39,11 +39,11 @@ def test_nobody_is_guided_through_a_calibration_that_cannot_be_kept(tmp_path):
 
 def test_a_secret_is_its_owners_alone_and_nothing_is_written_over(tmp_path):
     path = tmp_path / "FF-01.enrolment.toml"
-    write_secret(path, "key", "renew")
+    write_secret(path, b"key", "renew")
     assert path.read_text() == "key"
     assert path.stat().st_mode & 0o777 == 0o600
     with pytest.raises(ConfigError, match="there already"):
-        write_secret(path, "other", "renew")
+        write_secret(path, b"other", "renew")
     assert path.read_text() == "key"
 
 
@@ -56,7 +56,7 @@ def test_of_a_secret_for_which_there_is_no_room_nothing_is_left(tmp_path, monkey
     with pytest.raises(
         ConfigError, match=r"No space left.*make it again: `muster pki renew FF-01`"
     ):
-        write_secret(path, "key", "`muster pki renew FF-01`")
+        write_secret(path, b"key", "`muster pki renew FF-01`")
     assert not path.exists()
 
 

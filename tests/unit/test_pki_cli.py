@@ -12,6 +12,7 @@ from base_station.pki.cli import app
 from base_station.pki.folder import PkiFolder
 from shared.enrolment import Holder, parse_enrolment, read_enrolment
 from shared.errors import ConfigError, MusterError
+from tests.full_disk import files_of_at_most
 
 
 def run(*arguments: str | Path) -> str:
@@ -118,6 +119,19 @@ def test_enroll_shows_a_code_and_writes_no_file(
     assert "█" in said
     assert {path.name for path in tmp_path.iterdir()} == {"data", "code.png"}
     assert stat.S_IMODE((tmp_path / "code.png").stat().st_mode) == 0o600  # it holds the key
+
+
+def test_of_a_code_for_which_there_is_no_room_nothing_is_left(data: Path, tmp_path: Path) -> None:
+    """It holds a private key, and half of it lets nobody in."""
+    code = tmp_path / "code.png"
+    with (
+        files_of_at_most(2000),  # so much room there is for who is enrolled
+        pytest.raises(ConfigError, match=r"cannot be written .*`muster pki renew FF-01`"),
+    ):
+        run("enroll", "FF-01", "--data", data, "--png", code)
+    assert not code.exists()
+    run("renew", "FF-01", "--data", data, "--png", code)
+    assert code.stat().st_size > 2000
 
 
 def test_a_file_in_the_way_is_seen_before_anybody_is_enrolled(data: Path, tmp_path: Path) -> None:

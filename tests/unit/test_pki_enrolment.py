@@ -77,11 +77,11 @@ def test_a_qr_code_holds_it_in_its_densest_mode(enrolment: Enrolment, tmp_path: 
     lines = as_text(code).splitlines()
     assert len(lines) < 60  # a terminal shows it without scrolling
     path = tmp_path / "code.png"
-    save_png(code, path)
+    save_png(code, path, "renew")
     assert path.read_bytes().startswith(b"\x89PNG")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     with pytest.raises(ConfigError, match="is there already"):
-        save_png(code, path)
+        save_png(code, path, "renew")
 
 
 def test_the_private_key_is_not_shown(enrolment: Enrolment) -> None:
