@@ -12,7 +12,7 @@ from shared.sequence_set import Run
 
 _MAX_MESSAGES = 10_000
 _REPLY_BYTES = 16_384
-_TOTAL_BYTES = 1_048_576
+_MOST_REPLY_BYTES = _TOTAL_BYTES = 1_048_576  # a reply is made in memory
 _ENTRY_OVERHEAD_BYTES = 24
 _WORTHS = {"range": EVERYTHING, "urgent": URGENT, "raw": RAW}
 
@@ -42,7 +42,7 @@ class JournalServer(Answers):
         if boot_id == self._spool.boot_id:
             last = min(last, self._spool.last_seq)  # what is not written yet is not lost
         most = int(values.get("max", _MAX_MESSAGES))
-        reply_bytes = int(values.get("bytes", _REPLY_BYTES))
+        reply_bytes = min(int(values.get("bytes", _REPLY_BYTES)), _MOST_REPLY_BYTES)
         bytes_left = int(values.get("total", _TOTAL_BYTES))
         entries: list[JournalEntry] = []
         size = 0

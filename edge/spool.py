@@ -179,7 +179,12 @@ class Spool:
                 yield payload
 
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
-        """The station has everything of this boot up to ``to_seq`` on its own disk."""
+        """The station has everything of this boot up to ``to_seq`` on its own disk.
+
+        Of what is still to come it can have nothing, whatever it says.
+        """
+        if boot_id == self.boot_id:
+            to_seq = min(to_seq, self.last_seq)
         with in_words(self._path), self._lock, self._writer:
             self._writer.execute(
                 "UPDATE boot SET acknowledged_seq = MAX(acknowledged_seq, ?) WHERE boot_id = ?",

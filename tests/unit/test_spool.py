@@ -148,6 +148,18 @@ def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_pa
     second.close()
 
 
+def test_what_is_still_to_come_cannot_have_been_acknowledged(tmp_path):
+    """Else it would be given up first, and nobody would have it."""
+    spool = spool_at(tmp_path)
+    spool.append([entry(1), entry(2)])
+    spool.acknowledge(spool.boot_id, 10**6)
+    assert spool.pending == 0
+    spool.append([entry(3)])
+    assert spool.pending == 1
+    assert [boot.acknowledged_seq for boot in spool.boots()] == [2]
+    spool.close()
+
+
 @pytest.fixture
 def steps(monkeypatch):
     """Counts what SQLite does on connections that are made from now on."""
