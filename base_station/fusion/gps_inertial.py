@@ -228,6 +228,7 @@ class GpsInertialFuser:
             reason,
             None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
             memory.height_assumed,
+            memory.assumed,
         )
 
     def _walk(self, stretch: Stretch, own_std_m: float) -> None:

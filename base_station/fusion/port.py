@@ -95,6 +95,7 @@ class Estimate(msgspec.Struct, frozen=True):
     quality_reason: str
     since_gps_s: float | None
     height_assumed: bool = False  # nothing said how high the own frame begins: on the ground?
+    assumed: bool = False  # nothing said where it lies: shown as if it were the incident frame
 
 
 class Fuser(Protocol):

@@ -158,6 +158,11 @@ class PathHistory(msgspec.Struct):
         """What a person said of where an own frame begins that is in the path."""
         return None if self.is_start_over else self.start
 
+    def leave_satellites(self) -> None:
+        """What they told of it holds no more, nor where runs led that are over."""
+        self._cut(self.boot_begin_ns)
+        self.fixes, self.since_gps_s, self.is_refixed = PathFixes(), None, False
+
     def lead(self, led: StartCorrection) -> None:
         """It was not where it was shown since a run of the unit's program began."""
         led.points(self.points)
@@ -336,8 +341,10 @@ def _follow(point: Point, position: Position) -> None:
 
 
 def _show(point: Point, estimate: Estimate, floor: int | None) -> None:
+    """Of a place that is assumed nothing is known."""
     point.shown_north_m, point.shown_east_m = estimate.north_m, estimate.east_m
-    point.shown_std_m = max(estimate.std_north_m, estimate.std_east_m)
+    stated_m = max(estimate.std_north_m, estimate.std_east_m)
+    point.shown_std_m = 0.0 if estimate.assumed else stated_m
     point.shown_down_m, point.shown_down_std_m = estimate.down_m, estimate.std_down_m
     point.floor = NO_FLOOR if floor is None else floor
 

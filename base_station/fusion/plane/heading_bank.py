@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 HYPOTHESES = 72
 SPACING_RAD = 2.0 * math.pi / HYPOTHESES
 _PLAUSIBLE = 1e-3  # of the best hypothesis' weight
+SCALE_KNOWN = 0.1  # standard deviation; a solution that tells no heading has several times that
 
 
 class Sighting(msgspec.Struct, frozen=True):
@@ -77,18 +78,29 @@ class HeadingBank:
     @staticmethod
     def given(mean: Floats, covariance: Floats) -> HeadingBank:
         """Of a normal distribution (8,), (8, 8) of ``[north, east, c, s, b_n, b_e, k_n, k_e]``:
-        given the heading, the rest of it is normal too.
+        given the heading, the rest of it is normal too.  Where the scale is known, ``(c, s)`` lies
+        on an arc, of which the distribution has the tangent; else nothing is known of the turn but
+        as of a plane, and a heading is one place of that.
         """
         own, turn = PLACE_AND_SLOW, [2, 3]
+        spread, crossed = covariance[np.ix_(turn, turn)], covariance[np.ix_(own, turn)]
         c, s = float(mean[2]), float(mean[3])
-        across = np.array([-s, c]) / (c * c + s * s)
-        with_turn = covariance[np.ix_(own, turn)] @ across
-        turn_var = float(across @ covariance[np.ix_(turn, turn)] @ across)
+        about_rad, scale2 = math.atan2(s, c), c * c + s * s
         offsets_rad = SPACING_RAD * np.arange(-HYPOTHESES // 2, HYPOTHESES // 2, dtype=np.float64)
-        means = mean[own] + np.outer(offsets_rad, with_turn / turn_var)
-        left = covariance[np.ix_(own, own)] - np.outer(with_turn, with_turn) / turn_var
-        weights = np.exp(-0.5 * offsets_rad**2 / turn_var)
-        turns_rad = math.atan2(s, c) + offsets_rad
+        turns_rad = about_rad + offsets_rad
+        along = np.array([math.cos(about_rad), math.sin(about_rad)])
+        if float(along @ spread @ along) < SCALE_KNOWN**2:
+            told = np.array([[-s, c]]) / scale2
+            off = offsets_rad[:, None]
+        else:
+            told = np.eye(2)
+            off = np.column_stack((np.cos(turns_rad), np.sin(turns_rad))) - mean[turn]
+        inverse = np.linalg.inv(told @ spread @ told.T)
+        gain = crossed @ told.T @ inverse
+        means, left = mean[own] + off @ gain.T, covariance[np.ix_(own, own)]
+        exponents = -0.5 * ((off @ inverse) * off).sum(axis=1)
+        weights = np.exp(exponents - exponents.max())
+        left = left - gain @ told @ crossed.T
         return HeadingBank(means, left, turns_rad, weights / weights.sum())
 
     @staticmethod

@@ -1,0 +1,82 @@
+"""A past that is solved without any word of a heading: each heading leads somewhere else, and fixes
+that come then tell which one it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from base_station.fusion.plane.heading_bank import HeadingBank, Sighting
+from base_station.fusion.plane.state import turn_of
+from shared.geo import Anchor, rotate
+from shared.messages.pins import StartTogether
+from shared.messages.station import OpenIncident, SetAnchor
+from tests.station_script import Script
+
+U = "FF-01"
+BEGAN_M, OWN_M = np.array([5.0, -3.0]), np.array([40.0, 0.0])
+
+
+def solved(turn_rad: float | None, turn_std_rad: float) -> HeadingBank:
+    """Of a path of 40 m from a place that is known, as the smoother solves it."""
+    if turn_rad is None:  # a plane: neither turn nor scale is known
+        turn, spread = np.zeros(2), 0.5 * np.eye(2)
+    else:
+        turn = np.array([math.cos(turn_rad), math.sin(turn_rad)])
+        across = np.array([-turn[1], turn[0]])
+        spread = turn_std_rad**2 * np.outer(across, across) + 1e-4 * np.outer(turn, turn)
+    walked = np.zeros((8, 4))  # of where it began, and how it is turned
+    walked[:4, :4] = np.eye(4)
+    walked[:2, 2:] = [[OWN_M[0], -OWN_M[1]], [OWN_M[1], OWN_M[0]]]
+    known = np.zeros((4, 4))
+    known[:2, :2], known[2:, 2:] = 0.25 * np.eye(2), spread
+    covariance = walked @ known @ walked.T
+    covariance[4:, 4:] = np.eye(4)
+    return HeadingBank.given(walked @ np.concatenate((BEGAN_M, turn)), covariance)
+
+
+@pytest.mark.parametrize("true_rad", np.linspace(-3.0, 3.0, 7).tolist())
+def test_any_heading_that_nothing_tells_leads_from_where_the_path_began(true_rad: float) -> None:
+    bank = solved(None, math.pi)
+    there_m = BEGAN_M + rotate(float(OWN_M[0]), float(OWN_M[1]), true_rad)
+    north_m, east_m = there_m.tolist()
+    seen = Sighting(north_m, east_m, 0.0, 0.0, slow_m=0.0, common_m=0.0, white_m2=1.0)
+    assert bank.distance2(seen) < 3.0, "headings are five degrees apart"
+    bank.update(seen)
+    mean, covariance = bank.moments()
+    turn_rad, std_rad = turn_of(mean, covariance)
+    assert turn_rad == pytest.approx(true_rad, abs=0.06)
+    assert std_rad < 0.1
+    assert mean[:2] == pytest.approx(there_m, abs=1.0)
+
+
+def test_a_heading_that_is_told_in_part_stays_so() -> None:
+    mean, covariance = solved(0.7, 0.3).moments()
+    turn_rad, std_rad = turn_of(mean, covariance)
+    assert turn_rad == pytest.approx(0.7, abs=0.01)
+    assert std_rad == pytest.approx(0.3, rel=0.1)
+
+
+@pytest.mark.parametrize("turned_rad", [-2.0, -0.5, 1.0, 2.5])
+def test_a_start_that_is_said_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float) -> None:
+    script, anchor = Script(), Anchor(52.0, 4.0, 0.0)
+    script.register(U)
+    script.act(OpenIncident("i", "Mill Lane"))
+    script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
+    there_m = 0.0, 0.0
+    for second in range(60):
+        script.now_s += 1.0
+        there_m = float(min(second, 20)), float(max(second - 20, 0))
+        own_m = rotate(*there_m, turned_rad)
+        script.position(U, *own_m, distance_m=float(second), heading_std_rad=0.02)
+        if second == 35:
+            script.act(StartTogether("s", (U,), 0, 0.0, 0.0, 0.5, None, None, 0.3, ""))
+        if second > 35:
+            lat_deg, lon_deg, height_m = anchor.to_geodetic(*there_m, 0.0)
+            script.gps(U, lat_deg, lon_deg, height_m=height_m, horizontal_std_m=2.0)
+    assert script.pipeline.state.pin_verdicts[f"s:{U}"].state == "used"
+    shown = script.fused[-1]
+    assert math.dist((shown.north_m, shown.east_m), there_m) < 3.0
