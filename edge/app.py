@@ -26,7 +26,7 @@ from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.previous_boot import answers_before, mayday_before
+from edge.previous_boot import answers_before, mayday_before, position_rate_before
 from edge.raw_stream import RawStream, sensor_of
 from edge.raw_uplink import RawUplink
 from edge.reachability_probe import ReachabilityProbe
@@ -169,7 +169,7 @@ def compose_agent(
         worn = tracked_unit(unit_id) or unit_id
         calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
         description = _description(config, raw, source, calibration, clock)
-        pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool)
+        pipeline = _pipeline(config, sensor_of(description), calibration, stamper, spool, clock)
         black_box = BlackBox(
             folder.black_box,
             description,
@@ -259,6 +259,7 @@ def _pipeline(
     calibration: Calibration | None,
     stamper: Stamper,
     spool: Spool,
+    clock: StationClock,
 ) -> TrackerPipeline:
     if calibration is not None:
         sensor = calibration.described(sensor)
@@ -267,7 +268,7 @@ def _pipeline(
         UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
         make_tracker(config.tracker, sensor) if tracks else NoTracker(),
         stamper,
-        config.position_rate_hz,
+        position_rate_before(spool, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=mayday_before(spool),
         raw_uplink=None if tracks else RawUplink(stamper),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
 
@@ -15,6 +16,14 @@ logger = logging.getLogger(__name__)
 
 POSITION_RATE_HZ = (0.1, 50.0)
 REMEMBERED = 1000
+_RATE_SET = "positions at {:g} Hz"
+_SAYS_RATE = re.compile(r"positions at (\d+(?:\.\d+)?) Hz")
+
+
+def position_rate_of(reply: CommandReply) -> float | None:
+    """What a unit says in it to have set the rate to, in Hz."""
+    said = _SAYS_RATE.fullmatch(reply.detail)
+    return float(said[1]) if said and reply.state is CommandState.RECEIVED else None
 
 
 class CommandDesk:
@@ -65,6 +74,7 @@ class CommandDesk:
         # By the station's own clock alone: a unit whose clock is wrong obeys all the same.
         if 0 < command.expires_utc_ns <= command.header.t_utc_ns:
             return CommandState.REFUSED, "it had expired when it was sent"
+        detail = ""
         match command.kind:
             case CommandKind.UNKNOWN:
                 return CommandState.REFUSED, "this unit does not know this kind of command"
@@ -77,5 +87,6 @@ class CommandDesk:
                         f"{most_hz:g} Hz",
                     )
                 self._set_position_rate(command.position_rate_hz)
+                detail = _RATE_SET.format(command.position_rate_hz)
         logger.info("%s from %s %s", command.kind.name, command.issued_by, command.text)
-        return CommandState.RECEIVED, ""
+        return CommandState.RECEIVED, detail

@@ -137,8 +137,8 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
         station.bus.close()
 
 
-def test_a_command_is_answered_and_done(station, start):
-    start()
+def test_a_command_is_answered_and_done_and_a_kill_does_not_undo_it(station, start):
+    agent = start()
     until(lambda: station.of(Position))
     header = Stamper("station", 1, SystemClock()).header()
     command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=20.0)
@@ -148,6 +148,11 @@ def test_a_command_is_answered_and_done(station, start):
     (reply,) = station.of(CommandReply)
     assert isinstance(reply, CommandReply)
     assert (reply.command_id, reply.state) == ("c1", CommandState.RECEIVED)
+    until(lambda: closest_positions_ns(station) <= 60_000_000)
+    agent.kill()
+    until(lambda: station.alive == [True, False])
+    station.messages.clear()
+    start()
     until(lambda: closest_positions_ns(station) <= 60_000_000)
 
 

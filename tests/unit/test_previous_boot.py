@@ -11,11 +11,16 @@ import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.previous_boot import FAILED, answers_before, mayday_before
+from edge.previous_boot import (
+    FAILED,
+    answers_before,
+    mayday_before,
+    position_rate_before,
+)
 from edge.samples import SensorDescription
 from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker
-from shared.channels import EVENT, REPLY
+from shared.channels import EVENT, REPLY, channel_of
 from shared.clock import ManualClock
 from shared.codec import encode
 from shared.envelope import Stamper
@@ -157,6 +162,52 @@ def test_what_the_wearer_had_not_acknowledged_is_still_asked_after_a_restart(tmp
     assert second.take("c1", CommandKind.EVACUATE).state is CommandState.ACKNOWLEDGED
     assert [reply.command_id for reply in second.desk.acknowledge()] == ["c2"]
     second.spool.close()
+
+
+class RateBoot:
+    """A boot of a machine that has been on for ``on_s``; its agent was told these rates."""
+
+    def __init__(self, path: Path, on_s: float, *rates_hz: float, detail: str = "") -> None:
+        """``detail`` of a stop in order, or of one that failed; none: it came to a sudden end."""
+        spool = Spool(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
+        clock = ManualClock()
+        clock.advance(on_s)
+        self.known_hz = position_rate_before(spool, clock.monotonic_ns())
+        stamper = Stamper("u1", spool.boot_id, clock)
+        desk = CommandDesk(stamper, lambda _: None, answers_before(spool))
+        said: list[UnitEvent | CommandReply] = [UnitEvent(stamper.header(), STARTED)]
+        for rate_hz in rates_hz:
+            clock.advance(60.0)
+            for kind in (CommandKind.SET_POSITION_RATE, CommandKind.LOCATE):
+                name, header = f"{spool.boot_id} {kind} {rate_hz}", Header("station", 1, 1, 0)
+                command = Command(header, name, kind, "anna", 0, position_rate_hz=rate_hz)
+                said.append(desk.take(command))
+        if detail:
+            said.append(UnitEvent(stamper.header(), STOPPED, detail))
+        spool.append([Journaled(one.header.seq, channel_of(one), 0, encode(one)) for one in said])
+        spool.close()
+
+
+def test_the_rate_that_was_set_holds_until_the_agent_is_stopped(tmp_path):
+    """It fails and is started again within a second: nobody at the station would know."""
+    assert RateBoot(tmp_path, 30.0, 2.0, 0.125, 51.0).known_hz is None
+    assert RateBoot(tmp_path, 500.0).known_hz == 0.125
+    assert RateBoot(tmp_path, 600.0, detail=FAILED).known_hz == 0.125
+    assert RateBoot(tmp_path, 700.0, 20.0).known_hz == 0.125
+    assert RateBoot(tmp_path, 800.0, detail="told to stop").known_hz == 20.0
+    assert RateBoot(tmp_path, 900.0).known_hz is None
+    assert RateBoot(tmp_path, 1000.0).known_hz is None
+
+
+def test_the_rate_that_was_set_is_gone_when_the_unit_was_switched_off(tmp_path):
+    """However long it is on by then: it may be another incident, and another commander."""
+    RateBoot(tmp_path, 30.0, 2.0)
+    assert RateBoot(tmp_path, 40.0).known_hz is None
+    assert RateBoot(tmp_path, 7200.0).known_hz is None
+    RateBoot(tmp_path, 7300.0, 3.0)
+    RateBoot(tmp_path, 9000.0)
+    RateBoot(tmp_path, 50.0)
+    assert RateBoot(tmp_path, 20_000.0).known_hz is None
 
 
 def test_the_newest_answers_are_remembered_across_boots(tmp_path):
