@@ -17,6 +17,7 @@ from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
 from base_station.feed import LogFeed
+from base_station.forgetting.desk import forget_now
 from base_station.forgetting.forgetter import ClosedLog, Forgetter, Forgotten
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
@@ -75,7 +76,8 @@ def forget(
 ) -> Forgotten:
     """Forget a person (id or name) or an incident (id) in a folder that no station runs on.
 
-    ``confirm`` gets what it will be about and may raise.
+    ``confirm`` gets what it will be about and may raise.  Cut short, the station goes on with it
+    when it is started.
     """
     folder = DataFolder(data)
     folder.require()
@@ -94,17 +96,34 @@ def forget(
                 RecordingDesk(_ask_nobody, folder.recordings, clock),
             )
             incident = records.incident(what)
-            if incident is not None:
-                confirm(f"incident {incident.name!r} of {what}")
-                return forgetter.incident(_BY_COMMAND, what, on_progress)
-            named = [one.person_id for one in roster.people() if what in (one.name, one.person_id)]
-            if len(named) > 1:
-                raise UserError(f"{len(named)} people are called {what}: give one of {named}")
-            person_id = named[0] if named else what
-            confirm(f"person {what}")
-            return forgetter.person(_BY_COMMAND, person_id, on_progress)
+            if incident is None:
+                kind, subject_id, about = "person", _person_called(what, roster), f"person {what}"
+            else:
+                kind, subject_id, about = "incident", what, f"incident {incident.name!r} of {what}"
+            _require_nobody_in_action(records)
+            confirm(about)
+            return forget_now(
+                forgetter, folder.forgettings, _BY_COMMAND, kind, subject_id, on_progress
+            )
     finally:
         lock.close()
+
+
+def _person_called(what: str, roster: Roster) -> str:
+    """The id; UserError where that is not one person, or the person wears a unit."""
+    named = [one.person_id for one in roster.people() if what in (one.name, one.person_id)]
+    if len(named) > 1:
+        raise UserError(f"{len(named)} people are called {what}: give one of {named}")
+    person_id = named[0] if named else what
+    if worn := roster.worn_by(person_id):
+        raise UserError(f"{what} wears {', '.join(worn)}; unassign that first")
+    return person_id
+
+
+def _require_nobody_in_action(records: Records) -> None:
+    for incident in records.incidents():
+        if incident.closed_ns is None:
+            raise UserError(f"the incident {incident.name} is open; close it first")
 
 
 def _ask_nobody(_unit_id: str, _question: str) -> None:

@@ -17,7 +17,7 @@ from threading import Event, Thread
 
 import msgspec
 
-from base_station.forgetting.forgetter import Forgetter, Tally
+from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress, Tally
 from base_station.jobs import Jobs
 from shared.errors import MusterError, UserError
 
@@ -96,12 +96,7 @@ class ForgettingDesk:
 
         Raises StoreError where the disk does not take it.
         """
-
-        def job(under_way: list[Forgetting]) -> Forgetting:
-            same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
-            return next(same, Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told))
-
-        added = self._jobs.add(job)
+        added = self._jobs.add(_wish(by, kind, subject_id, told=told))
         self._changed.set()
         return added
 
@@ -138,12 +133,11 @@ class ForgettingDesk:
 
     def _work(self, job: Forgetting) -> bool:
         """False where it is to be tried again later."""
-        tally = Tally(job.records, job.files, job.began, job.damaged)
+        tally = _tally_of(job)
         self._note(job, state=ForgettingState.WORKING, problem="", began=True)
-        forget = self._forgetter.person if job.kind == "person" else self._forgetter.incident
         problem = ""
         try:
-            forget(job.by, job.subject_id, lambda share: self._go_on(job, share, tally), tally)
+            _forget(self._forgetter, job, lambda share: self._go_on(job, share, tally), tally)
         except _Ended:
             return False
         except UserError as error:
@@ -172,6 +166,56 @@ class ForgettingDesk:
 
     def _note(self, job: Forgetting, **now: object) -> None:
         self._jobs.note(job, save=True, **now)
+
+
+def forget_now(
+    forgetter: Forgetter, kept: Path, by: str, kind: str, subject_id: str, on_progress: Progress
+) -> Forgotten:
+    """Without a desk; cut short, one goes on with it that is given the same file.
+
+    Raises UserError where it makes no sense, or a person ends it in the middle.
+    """
+    jobs = Jobs(kept, Forgetting)
+    added = jobs.add(_wish(by, kind, subject_id, told=False))
+    (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
+    tally = _tally_of(job)
+    jobs.note(job, save=True, state=ForgettingState.WORKING, began=True)
+    try:
+        done = _forget(forgetter, job, on_progress, tally)
+    except UserError as error:
+        jobs.note(job, save=True, state=ForgettingState.FAILED, problem=str(error))
+        raise
+    except KeyboardInterrupt as ended:
+        raise UserError(
+            "a part of it is forgotten: the same command, or the station when it is started, "
+            "goes on with the rest"
+        ) from ended
+    finally:
+        jobs.note(job, save=True, **_so_far(tally))
+    jobs.note(job, save=True, state=ForgettingState.DONE, share=1.0)
+    return done
+
+
+def _wish(
+    by: str, kind: str, subject_id: str, *, told: bool
+) -> Callable[[list[Forgetting]], Forgetting]:
+    def among(under_way: list[Forgetting]) -> Forgetting:
+        same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
+        return next(same, Forgetting(secrets.token_hex(4), by, kind, subject_id, told=told))
+
+    return among
+
+
+def _forget(
+    forgetter: Forgetter, job: Forgetting, on_progress: Progress, tally: Tally
+) -> Forgotten:
+    forget = forgetter.person if job.kind == "person" else forgetter.incident
+    return forget(job.by, job.subject_id, on_progress, tally)
+
+
+def _tally_of(job: Forgetting) -> Tally:
+    """Of the tries before."""
+    return Tally(job.records, job.files, job.began, job.damaged)
 
 
 def _so_far(tally: Tally) -> dict[str, object]:

@@ -14,6 +14,8 @@ from base_station.db.records import EVER, FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import event_of
+from base_station.forgetting.desk import Forgetting, ForgettingState
+from base_station.jobs import Jobs
 from base_station.live_state import FORGOTTEN
 from shared.channels import STATUS, Direction, backfilled_key, channel_of
 from shared.clock import SystemClock
@@ -28,6 +30,7 @@ from shared.messages import (
 )
 from shared.messages.pins import SetPin
 from shared.messages.station import (
+    Assign,
     OpenIncident,
     SetStart,
 )
@@ -188,8 +191,43 @@ def test_an_open_incident_and_a_stranger_are_refused(story: Story) -> None:
     with LiveStation(story.folder) as station:
         station.act(OpenIncident("i2", "Another"))
     station_app.rebuild(story.folder, lambda _: None)
-    with pytest.raises(UserError, match="open"):
-        forget(story, "i2")
+    for what in ("i2", "p-77"):  # whose name would be gone from what goes on
+        with pytest.raises(UserError, match="incident Another is open; close it first"):
+            forget(story, what)
+
+
+def test_who_wears_a_unit_is_refused(story: Story) -> None:
+    """What the unit goes on saying would be nobody's, and never forgotten."""
+    with LiveStation(story.folder) as station:
+        station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
+    station_app.rebuild(story.folder, lambda _: None)
+    with pytest.raises(UserError, match="wears FF-01; unassign that first"):
+        forget(story, ANA)
+
+
+@pytest.mark.parametrize("what", ["p-77", "i1"])
+def test_what_a_command_left_half_done_the_station_goes_on_with(
+    story: Story, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
+    def cut_short(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("base_station.forgetting.forgetter.forget_in", cut_short)
+        with pytest.raises(UserError, match="the same command, or the station when it is started"):
+            forget(story, what)
+    (job,) = Jobs(story.folder / "forgetting.json", Forgetting).under_way()
+    assert (job.by, job.subject_id, job.began) == ("muster base forget", what, True)
+    forget(story, what)
+    stored = story.stored()
+    assert [payload for payload in story.ana_said if payload in stored] == []
+    (job,) = Jobs(story.folder / "forgetting.json", Forgetting).all()
+    assert job.state is ForgettingState.DONE
+    with Store(story.folder / "station.sqlite") as store:
+        audit = Records(store, SystemClock()).audit_entries(EVER)
+    (entry,) = [one for one in audit if one.action.startswith("Forgot")]
+    assert entry.detail.endswith(f"{job.records} records of the log in {job.files} files")
+    assert job.records > 0
 
 
 def test_a_name_is_found_whatever_holds_it(story: Story) -> None:
