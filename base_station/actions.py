@@ -24,6 +24,7 @@ from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
 from shared.errors import UserError
 from shared.geo import Anchor
+from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
@@ -65,7 +66,7 @@ class Actions:
 
     def _effects(self, state: StationState, by: str, action: Action) -> Iterable[Effect]:
         if isinstance(action, PinAction):
-            return [_pins_of(change_pins(state, by, action))]
+            return self._pin(state, by, action)
         effects: Iterable[Effect] = state.units.values()
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
@@ -102,9 +103,17 @@ class Actions:
             state.sky = Sky()
         else:
             state.plan = read_plan(action.geojson)
-            self._positioning.consider(state.plan)
+            self._positioning.consider(state.laid_plan)
             for unit_id in sorted(set().union(*map(units_of, state.pins.values()))):
                 note_late(state.late, unit_id, state.t_ns)  # one by one: live goes first
+
+    def _pin(self, state: StationState, by: str, action: PinAction) -> Iterator[Effect]:
+        is_first = isinstance(action, SetPin | StartTogether | PlaceBeacon) and _is_first(state)
+        changed = change_pins(state, by, action)
+        if is_first:
+            yield from map(TrailFilled, moved := sorted(self._positioning.lay_on_plan(state)))
+            changed |= set(moved)
+        yield _pins_of(changed)
 
     def _alarm(
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
@@ -182,9 +191,12 @@ class Actions:
             action.std_m,
             action.heading_std_rad,
         )
+        touched = {unit.unit_id}
+        if _is_first(state):
+            touched |= self._positioning.lay_on_plan(state)
         self._positioning.start(state, unit, start)
-        yield _pins_of({unit.unit_id})
-        yield TrailFilled(unit.unit_id)
+        yield _pins_of(touched)
+        yield from map(TrailFilled, sorted(touched))
 
 
 PeopleAction = (
@@ -266,6 +278,15 @@ def _without_wearer(state: StationState, unit: UnitState) -> UnitState:
     unit.person, unit.worn_since_ns, unit.inside_since_ns = None, state.t_ns, None
     accountability.end(state, unit)
     return unit
+
+
+def _is_first(state: StationState) -> bool:
+    """Whether a place that is said now is the first one that is said on a plan, of which nobody
+    knows where it lies: people are where satellites have them.
+    """
+    pinned = any(pin.kind in {"place", "start"} for pin in state.pins.values())
+    said = state.start_set or pinned or bool(state.beacons)
+    return state.plan is not state.laid_plan and not said
 
 
 def _anchor(action: SetAnchor) -> Anchor:

@@ -267,6 +267,13 @@ class StationState(msgspec.Struct):
         unit = self.units.get(tracked_unit(unit_id) or unit_id)
         return None if unit is None else unit.tracker
 
+    @property
+    def laid_plan(self) -> Plan | None:
+        """The plan, unless nobody knows where on it people are: they are where the first fix put
+        the frame, before there was any.
+        """
+        return None if self.anchor_by_gps else self.plan
+
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
         """Of the building there, lowest first: the plan's, or else those that were learnt."""
         if self.plan is not None and self.plan.storeys:

@@ -85,7 +85,7 @@ class StationPipeline:
             checkpoint.fusers if checkpoint is not None and usable else {},
             checkpoint.pinned if checkpoint is not None and usable else {},
         )
-        self._positioning.consider(self.state.plan)
+        self._positioning.consider(self.state.laid_plan)
         self._book = AlarmBook(rules)
         self._book.use(self.state.thresholds)
         self._actions = Actions(self._book, self._positioning)

@@ -184,7 +184,7 @@ class Hindsight:
             until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
             state = self._state_at(until_ns, on_progress)
-            evidence = evidence_of_all(state, FloorGrid.of(state.plan))
+            evidence = evidence_of_all(state, FloorGrid.of(state.laid_plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
                 solution = self._smoother.smooth(evidence, ties_of(state))

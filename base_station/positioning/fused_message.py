@@ -8,6 +8,7 @@ from base_station.fusion.port import Estimate
 from base_station.live_state import StationState, UnitState
 from base_station.site.storeys import floor_at, sureness
 from shared.messages import FusedPosition, Header
+from shared.quality import Quality
 
 ASSUMED_STD_M = 6.0  # a unit may have been switched on upstairs
 
@@ -29,6 +30,9 @@ def fused_message(
     sure = None
     if floor is not None:
         sure = sureness(storeys, floor, estimate.down_m, std_down_m)
+    quality, reason = estimate.quality, estimate.quality_reason
+    if state.plan is not state.laid_plan and quality is not Quality.LOST:
+        quality, reason = Quality.DEGRADED, "nobody has said where the plan lies"
     return FusedPosition(  # by place: every position comes through here
         header,
         unit.unit_id,
@@ -43,8 +47,8 @@ def fused_message(
         estimate.heading_rad,
         estimate.heading_std_rad,
         floor,
-        estimate.quality,
-        estimate.quality_reason,
+        quality,
+        reason,
         fuser,
         estimate.since_gps_s,
         sure,

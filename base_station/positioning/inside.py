@@ -27,9 +27,10 @@ def note_inside(state: StationState, unit: UnitState) -> None:
     fused = unit.fused
     if fused is None:
         return
-    if state.plan is not None and state.plan.outlines:
+    plan = state.laid_plan
+    if plan is not None and plan.outlines:
         was_inside = unit.inside_since_ns is not None
-        is_inside = state.plan.is_inside(fused.north_m, fused.east_m, was_inside)
+        is_inside = plan.is_inside(fused.north_m, fused.east_m, was_inside)
     else:
         at_work = state.incident is not None and state.incident.closed_ns is None
         walked_m = unit.position.distance_m if unit.position else 0.0

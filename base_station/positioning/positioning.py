@@ -27,7 +27,7 @@ from base_station.positioning.frame import reframe
 from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.lost_contact import LostContact
-from base_station.positioning.unit_starts import begin, unlearn
+from base_station.positioning.unit_starts import begin, lead_on, unlearn
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import BEGAN_M, Landing
 from base_station.site.plan import Plan, Ring
@@ -84,7 +84,7 @@ class Positioning:
             _count(unit, reason)
         for one in told[1:]:
             one.advance(position, away_s)
-        outside = is_outside(state.plan, history)
+        outside = is_outside(state.laid_plan, history)
         air = state.barometers.hear(unit.unit_id, t_ns, position, is_outside=outside)
         bearing = _bearing(state, position)
         for one in told:
@@ -141,6 +141,7 @@ class Positioning:
         return verdict
 
     def start(self, state: StationState, unit: UnitState, start: Start) -> None:
+        """On the plan, where there is one that people lie on (``lay_on_plan``)."""
         state.start_set = True
         if unit.unit_id == state.barometers.reference_id:
             state.sky = Sky()
@@ -151,6 +152,26 @@ class Positioning:
             history = state.paths[unit.unit_id] = history.of_next_run()
             unlearn(state, unit.unit_id)
         begin(state, unit, self._fuser(unit), history, start)
+
+    def lay_on_plan(self, state: StationState) -> set[str]:
+        """A person has said a place on the plan, and nobody had said any before: the frame is the
+        plan's, and where satellites had people tells nothing in it.  Gives whose past that changes.
+        """
+        state.anchor, state.anchor_by_gps, state.sky = None, False, Sky()
+        self.consider(state.laid_plan)
+        for unit_id, history in state.paths.items():
+            unit, before = state.units[unit_id], self._fusers.pop(unit_id, None)
+            self._pinned.forget(unit)
+            history.leave_satellites()
+            unlearn(state, unit_id)
+            unit.change_plain_trail(0, [])
+            if unit.position is None:
+                unit.fused = None
+                continue
+            self._fuser(unit).advance(unit.position)
+            was = None if before is None else before.estimate()
+            lead_on(state, unit, self._fuser(unit), history, was)
+        return set(state.paths)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Where its wearers were, and what was learnt of their walk."""
@@ -178,6 +199,7 @@ class Positioning:
             else:
                 move_fixes(state, turn_rad, *shift[:2])
         state.anchor, state.anchor_by_gps, state.sky = anchor, False, Sky()
+        self.consider(state.laid_plan)
 
     def fused(self, state: StationState, unit: UnitState, header: Header) -> FusedPosition | None:
         """The unit's place as it is now; the live state, its trail included, follows it."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.start_correction import StartCorrection
-from base_station.fusion.port import Fuser, Start
+from base_station.fusion.port import Estimate, Fuser, Start
 from base_station.live_state import StationState, UnitState
 from base_station.pins.pinning import trail_of
 
@@ -19,6 +19,17 @@ def begin(
     before = fuser.estimate()
     fuser.start(start)
     history.begin_with(start)
+    lead_on(state, unit, fuser, history, before)
+
+
+def lead_on(
+    state: StationState,
+    unit: UnitState,
+    fuser: Fuser,
+    history: PathHistory,
+    before: Estimate | None,
+) -> None:
+    """The path and the trail of the run follow the fuser, which had the wearer there ``before``."""
     after = fuser.estimate()
     led = None
     if unit.position is not None and before is not None and after is not None:
