@@ -53,6 +53,11 @@ def recover_log(folder: Path) -> list[Recovery]:
             for path in segment_paths(folder)
             if (recovery := _recover_segment(path)) is not None
         ]
+    except PermissionError as error:
+        raise LogError(
+            f"the log in {folder} cannot be read or changed ({error.strerror}): run this as the "
+            "user to whom it belongs, or give it to the one who runs this"
+        ) from error
     except OSError as error:
         raise LogError(
             f"the log in {folder} was not ended in order and cannot be mended "

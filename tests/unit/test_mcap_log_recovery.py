@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
+from shared.errors import LogError
 from shared.mcap_log import (
     SegmentReader,
     SegmentWriter,
@@ -136,3 +139,14 @@ def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) ->
     [recovery] = recover_log(tmp_path)
     assert "is lost" in str(recovery)
     assert "whole" not in str(recovery)
+
+
+def test_a_log_that_is_somebody_elses_is_not_called_torn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(_: Path) -> NoReturn:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "iterdir", refused)
+    with pytest.raises(LogError, match="cannot be read or changed .*the user to whom it belongs"):
+        recover_log(tmp_path)
