@@ -41,6 +41,7 @@ from edge.sources.port import Beside, Source
 from edge.sources.sighting_reader import SightingReader
 from edge.spool import Spool, open_spool
 from edge.station_clock import StationClock
+from edge.timeline import Follower, Places
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
 from edge.unit_listener import UnitListener
@@ -190,7 +191,7 @@ def compose_agent(
         agent = Agent(
             Parts(
                 source=source,
-                reader=SourceReader(source, clock, speed, beside),
+                reader=SourceReader(source, clock, speed, beside, _places(source)),
                 raw=raw,
                 pipeline=pipeline,
                 desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
@@ -207,6 +208,10 @@ def compose_agent(
         )
         in_trouble.pop_all()  # the agent closes it at its end
     return agent
+
+
+def _places(source: Source) -> Places | None:
+    return Follower() if isinstance(source, BusSource) else None
 
 
 def _set_aside(folder: DataFolder, damaged: Path | None) -> Iterator[str]:

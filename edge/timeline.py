@@ -1,12 +1,15 @@
-"""How a source's own time lies on the unit's monotonic clock, and when a batch is due."""
+"""How a source's own time lies on this machine's monotonic clock, and when a batch is due."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from shared.clock import NS_PER_S
 
 _JUMP_NS = 10 * NS_PER_S
+_BACK_NS = NS_PER_S  # by which a clock goes back that was set
+_DRIFT = 2e-4  # of one quartz against another, at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +27,14 @@ class Timeline:
         return self.mono_origin_ns + elapsed_ns
 
 
+class Places(Protocol):
+    """Lays a source's time on the machine's, batch by batch."""
+
+    def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:
+        """The timeline of the batch whose samples lie between the two times."""
+        ...
+
+
 class Pacer:
     """Plays recorded time on the machine's clock.
 
@@ -36,7 +47,6 @@ class Pacer:
         self._last_t_ns: int | None = None
 
     def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:
-        """The timeline of the batch whose samples lie between the two times."""
         before_ns = self._last_t_ns
         if before_ns is None or not -NS_PER_S < first_t_ns - before_ns < _JUMP_NS:
             self._timeline = replace(
@@ -44,3 +54,25 @@ class Pacer:
             )
         self._last_t_ns = last_t_ns
         return self._timeline
+
+
+class Follower:
+    """Lays the clock of another machine on this one, while its samples come.
+
+    The quickest of them says how the two stand: one that the radio held up says nothing, and a
+    backlog neither.  Over a shift two clocks drift seconds apart, and that is followed.
+    """
+
+    def __init__(self) -> None:
+        self._last_t_ns = 0
+        self._ahead_ns: int | None = None  # this machine's time less the other's
+
+    def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:
+        came_ns = now_mono_ns - last_t_ns
+        elapsed_ns = last_t_ns - self._last_t_ns
+        if self._ahead_ns is None or elapsed_ns < -_BACK_NS:
+            self._ahead_ns = came_ns
+        else:
+            self._ahead_ns = min(came_ns, self._ahead_ns + round(_DRIFT * max(elapsed_ns, 0)))
+        self._last_t_ns = last_t_ns
+        return Timeline(first_t_ns, first_t_ns + self._ahead_ns)
