@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from functools import partial
 
 from edge.answers import Answer, Answers, Parameters
-from edge.spool import EVERYTHING, RAW, URGENT, Spool
+from edge.journal_rows import EVERYTHING, RAW, URGENT
+from edge.spool import Spool
 from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 

@@ -1,9 +1,7 @@
 """The journal of everything a unit sends: on disk before it is on the air.
 
 One SQLite file in WAL mode with ``synchronous=FULL``: what ``append`` has returned from
-survives ``kill -9`` and power loss.  Messages are named by boot id and sequence number, as
-in their headers.  Rows are clustered by how much they are worth, so that making room frees
-whole pages: what the station is known to have goes first, then the oldest of the least worth.
+survives ``kill -9`` and power loss.
 
 A file that turns out to be damaged while it is in use is left alone: who reads it has it open.  A
 new one is begun beside it, and takes its name at the next start.
@@ -11,12 +9,10 @@ new one is begun beside it, and takes its name at the next start.
 
 from __future__ import annotations
 
-import heapq
 import logging
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing, suppress
-from operator import itemgetter
+from contextlib import ExitStack, closing
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -31,33 +27,21 @@ from edge.journal_file import (
     is_no_journal,
     rename,
 )
-from shared.channels import GPS, IMU, POSITION, Channel, Qos
+from edge.journal_room import bytes_used, make_room
+from edge.journal_rows import (
+    EVERYTHING,
+    SCHEMA,
+    boots,
+    bounds,
+    entries,
+    newest_first,
+    worth_of,
+)
+from shared.channels import Channel
 from shared.errors import StoreError
 from shared.messages import JournalBoot, JournalEntry
 
 logger = logging.getLogger(__name__)
-
-_SCHEMA = """
-CREATE TABLE IF NOT EXISTS boot (
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    boot_id INTEGER NOT NULL UNIQUE,
-    started_utc_ns INTEGER NOT NULL,
-    acknowledged_seq INTEGER NOT NULL DEFAULT 0
-);
-CREATE TABLE IF NOT EXISTS message (
-    worth INTEGER NOT NULL,
-    boot INTEGER NOT NULL REFERENCES boot(number),
-    seq INTEGER NOT NULL,
-    suffix TEXT NOT NULL,
-    t_utc_ns INTEGER NOT NULL,
-    payload BLOB NOT NULL,
-    PRIMARY KEY (worth, boot, seq)
-) WITHOUT ROWID;
-"""
-_RAW, _ROUTINE, _TRACK, _ALERT = _WORTHS = tuple(range(4))
-EVERYTHING, URGENT, RAW = _WORTHS, (_ALERT,), (_RAW,)
-_ROWS_FREED_AT_ONCE = 50
-_FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append
 
 
 class Journaled(NamedTuple):
@@ -136,7 +120,7 @@ class Spool:
             past = 1
             while from_seq <= to_seq:
                 try:
-                    for entry in _entries(reader, boot_id, from_seq, to_seq, worths):
+                    for entry in entries(reader, boot_id, from_seq, to_seq, worths):
                         if entry.seq >= from_seq:  # one whose number is damaged comes twice
                             yield entry
                             from_seq, past = entry.seq + 1, 1
@@ -154,7 +138,7 @@ class Spool:
         path = self._path
         with in_words(path), closing(connect(path)) as reader:
             try:
-                return tuple(_boots(reader))
+                return tuple(boots(reader))
             except sqlite3.Error as error:
                 # Where nobody can be told what there is, nothing of it will be asked for.
                 if path == self._path and code_of(error) in DAMAGE:
@@ -170,13 +154,7 @@ class Spool:
     def newest_first(self, boot_id: int, channel: Channel) -> Iterator[bytes]:
         """What is kept of one channel of a boot; reads while it is iterated."""
         with in_words(self._path), closing(connect(self._path)) as reader:
-            for (payload,) in reader.execute(
-                "SELECT payload FROM message WHERE worth = ? AND "
-                "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
-                "AND typeof(payload) = 'blob' ORDER BY seq DESC",
-                (_worth(channel), boot_id, channel.suffix),
-            ):
-                yield payload
+            yield from newest_first(reader, boot_id, channel)
 
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
         """The station has everything of this boot up to ``to_seq`` on its own disk.
@@ -200,10 +178,10 @@ class Spool:
 
     def _insert(self, messages: Sequence[Journaled]) -> None:
         """Room is made before: what is safe must not be said to have failed, and be given again."""
-        if self._bytes_used() > self._limit_bytes:
+        if bytes_used(self._writer) > self._limit_bytes:
             self._make_room()
         rows = [
-            (_worth(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
+            (worth_of(each.channel), self._boot, each.seq, each.channel.suffix, each.t_utc_ns,
              each.payload)
             for each in messages
         ]  # fmt: skip
@@ -233,7 +211,7 @@ class Spool:
         connection = connect(self._path)
         with ExitStack() as in_trouble:
             in_trouble.callback(connection.close)
-            connection.executescript(_SCHEMA)
+            connection.executescript(SCHEMA)
             try:
                 with connection:
                     cursor = connection.execute(
@@ -248,43 +226,10 @@ class Spool:
             in_trouble.pop_all()
         return True
 
-    def _bytes_used(self) -> int:
-        (pages,) = self._writer.execute("PRAGMA page_count").fetchone()
-        (free,) = self._writer.execute("PRAGMA freelist_count").fetchone()
-        (page_bytes,) = self._writer.execute("PRAGMA page_size").fetchone()
-        return int((pages - free) * page_bytes)
-
     def _make_room(self) -> None:
-        with self._writer:
-            for number, to_seq in self._writer.execute(
-                "SELECT number, acknowledged_seq FROM boot WHERE acknowledged_seq > 0 "
-                "ORDER BY number"
-            ).fetchall():
-                for worth in _WORTHS:
-                    known = (worth, number, to_seq)
-                    self._free_while_full("worth = ? AND boot = ? AND seq <= ?", known)
-            given_up = sum(self._free_while_full("worth = ?", (worth,)) for worth in _WORTHS)
-        self.rows_freed += given_up
-        bounds = _bounds(self._writer, self._boot)
-        self.first_seq = self.last_seq + 1 if bounds is None else bounds[0]
-
-    def _free_while_full(self, condition: str, arguments: tuple[int, ...]) -> int:
-        """How many rows were freed: none of these is left, or there is room."""
-        freed = 0
-        while self._bytes_used() > _FREE_DOWN_TO * self._limit_bytes:
-            rows = self._free(condition, arguments)
-            if not rows:
-                break
-            freed += rows
-        return freed
-
-    def _free(self, condition: str, arguments: tuple[int, ...]) -> int:
-        cursor = self._writer.execute(
-            "DELETE FROM message WHERE (worth, boot, seq) IN (SELECT worth, boot, seq "  # noqa: S608  # all text is ours
-            f"FROM message WHERE {condition} ORDER BY worth, boot, seq LIMIT ?)",
-            (*arguments, _ROWS_FREED_AT_ONCE),
-        )
-        return cursor.rowcount
+        self.rows_freed += make_room(self._writer, self._limit_bytes)
+        kept = bounds(self._writer, self._boot)
+        self.first_seq = self.last_seq + 1 if kept is None else kept[0]
 
 
 def open_spool(
@@ -309,65 +254,3 @@ def open_spool(
     with in_words(path):
         rename(path, aside)
     return Spool(path, new_boot_id, started_utc_ns, limit_bytes), aside
-
-
-def _entries(
-    connection: sqlite3.Connection,
-    boot_id: int,
-    from_seq: int,
-    to_seq: int,
-    worths: Sequence[int],
-) -> Iterator[JournalEntry]:
-    """Without rows in which a bit has flipped so that they are none of ours: SQLite sees nothing
-    wrong in them.
-    """
-    parts = [
-        connection.execute(
-            "SELECT seq, CAST(suffix AS BLOB), payload FROM message WHERE worth = ? AND "
-            "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
-            "seq BETWEEN ? AND ? AND typeof(seq) = 'integer' AND typeof(suffix) = 'text' "
-            "AND typeof(payload) = 'blob' ORDER BY seq",
-            (worth, boot_id, from_seq, to_seq),
-        )
-        for worth in worths
-    ]
-    for seq, suffix, payload in heapq.merge(*parts, key=itemgetter(0)):
-        with suppress(UnicodeDecodeError):
-            yield JournalEntry(seq, suffix.decode(), payload)
-
-
-def _boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
-    for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
-        "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot "
-        "WHERE typeof(boot_id) = 'integer' AND typeof(acknowledged_seq) = 'integer' "
-        "AND typeof(started_utc_ns) = 'integer' AND boot_id > 0 AND acknowledged_seq >= 0 "
-        "ORDER BY number"
-    ).fetchall():
-        bounds = _bounds(connection, number)
-        if bounds is not None:
-            yield JournalBoot(boot_id, *bounds, acknowledged_seq, started_utc_ns)
-
-
-def _bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
-    """First and last sequence number kept of one boot."""
-    # Each in a query of its own: both in one would read every message that is between them.
-    found = [
-        connection.execute(
-            "SELECT (SELECT MIN(seq) FROM message WHERE worth = :worth AND boot = :boot), "
-            "(SELECT MAX(seq) FROM message WHERE worth = :worth AND boot = :boot)",
-            {"worth": worth, "boot": boot},
-        ).fetchone()
-        for worth in _WORTHS
-    ]
-    kept = [pair for pair in found if all(isinstance(seq, int) and seq > 0 for seq in pair)]
-    if not kept:
-        return None
-    return min(first for first, _ in kept), max(last for _, last in kept)
-
-
-def _worth(channel: Channel) -> int:
-    if channel is IMU:
-        return _RAW
-    if channel in (POSITION, GPS):
-        return _TRACK
-    return _ALERT if channel.qos is Qos.ALERT else _ROUTINE

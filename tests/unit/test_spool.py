@@ -5,12 +5,14 @@ from __future__ import annotations
 import itertools
 import sqlite3
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from edge import journal_file
+from edge import journal_file, journal_room
 from edge import spool as spool_module
-from edge.spool import RAW, Journaled, Spool, open_spool
+from edge.journal_rows import RAW
+from edge.spool import Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
 from tests.spoiled_journal import spoil_page
@@ -197,7 +199,7 @@ def test_boots_of_which_nothing_is_left_do_not_slow_the_making_of_room(
     tmp_path, steps, monkeypatch
 ):
     """A unit that has been started a thousand times knows of a thousand boots."""
-    monkeypatch.setattr(spool_module, "_ROWS_FREED_AT_ONCE", 5)
+    monkeypatch.setattr(journal_room, "_ROWS_FREED_AT_ONCE", 5)
     taken = []
     for number, boots in enumerate((1, 50)):
         folder = tmp_path / str(number)
@@ -219,14 +221,14 @@ def test_what_could_not_be_given_up_after_all_is_not_counted(tmp_path, monkeypat
     spool = spool_at(tmp_path, limit_bytes=1 * MB)
     spool.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
     with monkeypatch.context() as broken:
-        free, calls = spool._free, itertools.count(1)
+        free, calls = journal_room._free, itertools.count(1)
 
-        def refuse_then(condition: str, arguments: tuple[int, ...]) -> int:
+        def refuse_then(*what: Any) -> int:
             if next(calls) == 2:
                 raise sqlite3.OperationalError("disk I/O error")
-            return free(condition, arguments)
+            return free(*what)
 
-        broken.setattr(spool, "_free", refuse_then)
+        broken.setattr(journal_room, "_free", refuse_then)
         with pytest.raises(StoreError, match="I/O"):
             spool.append([entry(1501)])
     assert len(seqs(spool, spool.boot_id)) == 1500

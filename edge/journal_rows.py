@@ -1,0 +1,109 @@
+"""What stands in the journal's file, and how it is read, on a connection that is given.
+
+Messages are named by boot id and sequence number, as in their headers.  Rows are clustered by how
+much they are worth, so that making room frees whole pages.
+"""
+
+from __future__ import annotations
+
+import heapq
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from operator import itemgetter
+
+from shared.channels import GPS, IMU, POSITION, Channel, Qos
+from shared.messages import JournalBoot, JournalEntry
+
+SCHEMA = """
+CREATE TABLE IF NOT EXISTS boot (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    boot_id INTEGER NOT NULL UNIQUE,
+    started_utc_ns INTEGER NOT NULL,
+    acknowledged_seq INTEGER NOT NULL DEFAULT 0
+);
+CREATE TABLE IF NOT EXISTS message (
+    worth INTEGER NOT NULL,
+    boot INTEGER NOT NULL REFERENCES boot(number),
+    seq INTEGER NOT NULL,
+    suffix TEXT NOT NULL,
+    t_utc_ns INTEGER NOT NULL,
+    payload BLOB NOT NULL,
+    PRIMARY KEY (worth, boot, seq)
+) WITHOUT ROWID;
+"""
+_RAW, _ROUTINE, _TRACK, _ALERT = WORTHS = tuple(range(4))  # the least first
+EVERYTHING, URGENT, RAW = WORTHS, (_ALERT,), (_RAW,)
+
+
+def worth_of(channel: Channel) -> int:
+    if channel is IMU:
+        return _RAW
+    if channel in (POSITION, GPS):
+        return _TRACK
+    return _ALERT if channel.qos is Qos.ALERT else _ROUTINE
+
+
+def entries(
+    connection: sqlite3.Connection,
+    boot_id: int,
+    from_seq: int,
+    to_seq: int,
+    worths: Sequence[int],
+) -> Iterator[JournalEntry]:
+    """Without rows in which a bit has flipped so that they are none of ours: SQLite sees nothing
+    wrong in them.
+    """
+    parts = [
+        connection.execute(
+            "SELECT seq, CAST(suffix AS BLOB), payload FROM message WHERE worth = ? AND "
+            "boot = (SELECT number FROM boot WHERE boot_id = ?) AND "
+            "seq BETWEEN ? AND ? AND typeof(seq) = 'integer' AND typeof(suffix) = 'text' "
+            "AND typeof(payload) = 'blob' ORDER BY seq",
+            (worth, boot_id, from_seq, to_seq),
+        )
+        for worth in worths
+    ]
+    for seq, suffix, payload in heapq.merge(*parts, key=itemgetter(0)):
+        with suppress(UnicodeDecodeError):
+            yield JournalEntry(seq, suffix.decode(), payload)
+
+
+def boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
+    for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
+        "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot "
+        "WHERE typeof(boot_id) = 'integer' AND typeof(acknowledged_seq) = 'integer' "
+        "AND typeof(started_utc_ns) = 'integer' AND boot_id > 0 AND acknowledged_seq >= 0 "
+        "ORDER BY number"
+    ).fetchall():
+        kept = bounds(connection, number)
+        if kept is not None:
+            yield JournalBoot(boot_id, *kept, acknowledged_seq, started_utc_ns)
+
+
+def bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
+    """First and last sequence number kept of one boot."""
+    # Each in a query of its own: both in one would read every message that is between them.
+    found = [
+        connection.execute(
+            "SELECT (SELECT MIN(seq) FROM message WHERE worth = :worth AND boot = :boot), "
+            "(SELECT MAX(seq) FROM message WHERE worth = :worth AND boot = :boot)",
+            {"worth": worth, "boot": boot},
+        ).fetchone()
+        for worth in WORTHS
+    ]
+    kept = [pair for pair in found if all(isinstance(seq, int) and seq > 0 for seq in pair)]
+    if not kept:
+        return None
+    return min(first for first, _ in kept), max(last for _, last in kept)
+
+
+def newest_first(connection: sqlite3.Connection, boot_id: int, channel: Channel) -> Iterator[bytes]:
+    """What is kept of one channel of a boot."""
+    for (payload,) in connection.execute(
+        "SELECT payload FROM message WHERE worth = ? AND "
+        "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
+        "AND typeof(payload) = 'blob' ORDER BY seq DESC",
+        (worth_of(channel), boot_id, channel.suffix),
+    ):
+        yield payload
