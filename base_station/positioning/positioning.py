@@ -272,13 +272,16 @@ class Positioning:
                 fuser.rest_on(storeys)
 
     def _correct(self, state: StationState, unit: UnitState, place: PlaceFix) -> FixVerdict:
-        """The past is solved again with the fix as it came, and with the station's receiver."""
+        """The past is solved again with the fix as it came, and with the station's receiver; soon
+        where the fix fits all but the pins.
+        """
         own = without_sky(state, unit, place)
-        verdict, *_ = [fuser.correct(own) for fuser in self._told(unit)]
+        verdict, *pinned = [fuser.correct(own) for fuser in self._told(unit)]
         if verdict.accepted:
             t_ns = station_ns(state, unit, place.t_mono_ns)
             _history(state, unit).fix(place, t_ns)
-            if t_ns < state.t_ns - LATE_NS:
+            contradicts_pins = not all(one.accepted for one in pinned)
+            if contradicts_pins or t_ns < state.t_ns - LATE_NS:
                 _note_late(state, unit)
         return verdict
 

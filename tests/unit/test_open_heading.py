@@ -12,12 +12,50 @@ import pytest
 from base_station.fusion.plane.heading_bank import HeadingBank, Sighting
 from base_station.fusion.plane.state import turn_of
 from shared.geo import Anchor, rotate
-from shared.messages.pins import StartTogether
+from shared.messages.pins import SetPin, StartTogether
 from shared.messages.station import OpenIncident, SetAnchor
 from tests.station_script import Script
 
 U = "FF-01"
+ANCHOR = Anchor(52.0, 4.0, 0.0)
 BEGAN_M, OWN_M = np.array([5.0, -3.0]), np.array([40.0, 0.0])
+
+
+class Walk:
+    """Twenty metres north from where the anchor is, and east from there, a metre a second."""
+
+    def __init__(self, turned_rad: float) -> None:
+        self.script, self._turned_rad, self._walked_m = Script(), turned_rad, 0
+        self.script.register(U)
+        self.script.act(OpenIncident("i", "Mill Lane"))
+        self.script.act(SetAnchor(ANCHOR.lat_deg, ANCHOR.lon_deg, 0.0, 0.0))
+
+    @property
+    def there_m(self) -> tuple[float, float]:
+        return float(min(self._walked_m, 20)), float(max(self._walked_m - 20, 0))
+
+    def go(self, metres: int, *, with_fixes: bool = False) -> None:
+        for _ in range(metres):
+            self.script.now_s += 1.0
+            self._walked_m += 1
+            own_m = rotate(*self.there_m, self._turned_rad)
+            way_m = float(self._walked_m)
+            self.script.position(U, *own_m, distance_m=way_m, heading_std_rad=0.02)
+            if with_fixes:
+                lat_deg, lon_deg, height_m = ANCHOR.to_geodetic(*self.there_m, 0.0)
+                self.script.gps(U, lat_deg, lon_deg, height_m=height_m, horizontal_std_m=2.0)
+            self.script.tick()
+
+    def say_start(self) -> None:
+        self.script.act(StartTogether("s", (U,), 0, 0.0, 0.0, 0.5, None, None, 0.3, ""))
+
+    def state(self, pin_id: str) -> str:
+        return self.script.pipeline.state.pin_verdicts[pin_id].state
+
+    def off_m(self) -> float:
+        shown = self.script.pipeline.state.units[U].fused
+        assert shown is not None
+        return math.dist((shown.north_m, shown.east_m), self.there_m)
 
 
 def solved(turn_rad: float | None, turn_std_rad: float) -> HeadingBank:
@@ -62,21 +100,22 @@ def test_a_heading_that_is_told_in_part_stays_so() -> None:
 
 @pytest.mark.parametrize("turned_rad", [-2.0, -0.5, 1.0, 2.5])
 def test_a_start_that_is_said_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float) -> None:
-    script, anchor = Script(), Anchor(52.0, 4.0, 0.0)
-    script.register(U)
-    script.act(OpenIncident("i", "Mill Lane"))
-    script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
-    there_m = 0.0, 0.0
-    for second in range(60):
-        script.now_s += 1.0
-        there_m = float(min(second, 20)), float(max(second - 20, 0))
-        own_m = rotate(*there_m, turned_rad)
-        script.position(U, *own_m, distance_m=float(second), heading_std_rad=0.02)
-        if second == 35:
-            script.act(StartTogether("s", (U,), 0, 0.0, 0.0, 0.5, None, None, 0.3, ""))
-        if second > 35:
-            lat_deg, lon_deg, height_m = anchor.to_geodetic(*there_m, 0.0)
-            script.gps(U, lat_deg, lon_deg, height_m=height_m, horizontal_std_m=2.0)
-    assert script.pipeline.state.pin_verdicts[f"s:{U}"].state == "used"
-    shown = script.fused[-1]
-    assert math.dist((shown.north_m, shown.east_m), there_m) < 3.0
+    walk = Walk(turned_rad)
+    walk.go(35)
+    walk.say_start()
+    walk.go(25, with_fixes=True)
+    assert walk.state(f"s:{U}") == "used"
+    assert walk.off_m() < 3.0
+
+
+def test_fixes_that_come_after_a_pin_and_refute_it_are_heard_within_ten_seconds() -> None:
+    """Beforehand it could be true: nothing told in which direction the path led."""
+    walk = Walk(1.0)
+    walk.say_start()
+    walk.go(40)
+    pin_m = rotate(*walk.there_m, 1.2)
+    walk.script.act(SetPin("wrong", U, walk.script.t_ns, *pin_m, 0.5, None, None, 0.0, ""))
+    assert walk.state("wrong") == "used"
+    walk.go(13, with_fixes=True)
+    assert walk.state("wrong") == "conflict"
+    assert walk.off_m() < 3.0
