@@ -107,6 +107,7 @@ class UnitState(Sender):
     heartbeat: Heartbeat | None = None
     fused: FusedPosition | None = None
     unplaced_since_ns: int | None = None  # the fused position is lost
+    recalled_s: int = 0  # of which second of station time it was told last, late, where it was
     trail: list[TrailStep] = msgspec.field(default_factory=list)
     plain_trail: list[TrailStep] | None = None  # as it would be without any pin; None: as it is
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident

@@ -232,20 +232,29 @@ class Positioning:
     def recalled(
         self, state: StationState, unit: UnitState, position: Position, header: Header
     ) -> FusedPosition | None:
-        """Where the wearer was at a position that came late; the trail is filled in there."""
-        estimate = self._fuser(unit).recall(position)
-        boot = unit.path_boot
-        if estimate is None or boot.boot_id != position.header.boot_id or not boot.is_placed:
+        """Where the wearer was at a position that came late; the trail is filled in there.  Said
+        once for each second, as trails and the store keep it.
+        """
+        boot, t_mono_ns = unit.path_boot, position.header.t_mono_ns
+        if boot.boot_id != position.header.boot_id or not boot.is_placed:
             return None
-        self._fuser(unit).remember(position)
+        fuser, pinned = self._fuser(unit), self._pinned.get(unit.unit_id)
+        fuser.remember(position)
+        if pinned is not None:
+            pinned.remember(position)
+        second = boot.station_ns(t_mono_ns) // NS_PER_S
+        if second == unit.recalled_s:
+            return None
+        estimate = fuser.recall(position)
+        if estimate is None:
+            return None
+        unit.recalled_s = second
         fused = plain = fused_message(state, unit, estimate, self._kind.name, None, header)
         is_drawn = _is_drawn(state, plain)
         if is_drawn:
             unit.fill_plain_trail(plain)
-        pinned = self._pinned.get(unit.unit_id)
         known = None if pinned is None else pinned.recall(position)
-        if pinned is not None and known is not None:
-            pinned.remember(position)
+        if known is not None:
             fused = fused_message(state, unit, known, self._kind.name, None, header)
         if is_drawn:
             unit.fill_trail(fused)

@@ -6,8 +6,10 @@ import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
+from base_station.checkpoint import read_checkpoint
 from base_station.events import Received, Rejected, TrailFilled, event_of
 from base_station.fusion import FUSERS
+from base_station.fusion.fuser_memory import Memory
 from base_station.pipeline import StationPipeline
 from shared.channels import EVENT, POSITION, backfilled_key
 from shared.clock import NS_PER_S
@@ -27,18 +29,18 @@ class Walked:
         self.pipeline.step(Received(START_NS, STATION_ID, action))
         self._make_position = make_position
 
-    def position(self, second: int):
-        header = Header("FF-01", 7, second + 1, second * NS_PER_S)
-        north_m = float(second)
-        return self._make_position(header=header, north_m=north_m, east_m=0.0, distance_m=north_m)
+    def position(self, second: int, part: float = 0.0):
+        t_s = second + part
+        header = Header("FF-01", 7, second + 1 + round(1000 * part), round(t_s * NS_PER_S))
+        return self._make_position(header=header, north_m=t_s, east_m=0.0, distance_m=t_s)
 
     def live(self, second: int):
         key, payload = POSITION.key("FF-01"), encode(self.position(second))
         return self.pipeline.step(event_of(START_NS + second * NS_PER_S, key, payload))
 
-    def late(self, second: int, at_second: int):
+    def late(self, second: int, at_second: int, part: float = 0.0):
         key = backfilled_key("FF-01", POSITION.suffix)
-        payload = encode(self.position(second))
+        payload = encode(self.position(second, part))
         return self.pipeline.step(event_of(START_NS + at_second * NS_PER_S, key, payload))
 
     @property
@@ -64,6 +66,22 @@ def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
     trail = walked.unit.trail
     assert [round(step.north_m) for step in trail] == list(range(31))
     assert [step.t_ns for step in trail] == sorted(step.t_ns for step in trail)
+
+
+def test_where_somebody_was_is_said_once_for_each_second(walked):
+    """Of five positions a second, as trail and store keep it; a late fix finds all of them."""
+    said = [
+        output.north_m
+        for second in (11, 12)
+        for part in (0.1, 0.3, 0.5, 0.7, 0.9)
+        for output in walked.late(second, at_second=31, part=part)
+        if isinstance(output, FusedPosition)
+    ]
+    assert said == pytest.approx([11.1, 12.1])
+    saved = read_checkpoint(walked.pipeline.checkpoint()).fusers["FF-01"]
+    path = msgspec.msgpack.decode(saved, type=Memory).path
+    known_s = {round(point.t_ns / NS_PER_S, 1) for point in path.points}
+    assert known_s >= {11.1, 11.3, 11.5, 11.7, 11.9, 12.1, 12.3, 12.5, 12.7, 12.9}
 
 
 def test_the_present_stays(walked):
