@@ -19,6 +19,7 @@ from shared.errors import LogError, StoreError, UserError
 from tests.full_disk import files_of_at_most
 
 FIRST, SECOND = "000001-20261121T100000Z.mcap", "000002-20261121T101500Z.mcap"
+LONG_AGO_S = 1_700_000_000
 
 
 @pytest.fixture
@@ -39,6 +40,7 @@ def data(tmp_path: Path) -> Path:
     }.items():
         (data / name).parent.mkdir(parents=True, exist_ok=True)
         (data / name).write_text(text)
+        os.utime(data / name, (LONG_AGO_S, LONG_AGO_S))
     with Store(data / "station.sqlite"):
         pass
     return data

@@ -61,6 +61,9 @@ def test_how_things_stand_is_told_while_the_disk_hangs(
     assert jobs.note(first, save=True, share=1.0)
     again = Jobs(tmp_path / "jobs.json", Job)
     assert [(one.name, one.share) for one in again.all()] == [("first", 1.0), ("second", 0.0)]
+    again.note_each(lambda one: one.name == "first", share=0.0)
+    told_later = Jobs(tmp_path / "jobs.json", Job).all()
+    assert [one.share for one in told_later] == [0.0, 0.0]
 
 
 def test_of_those_that_are_over_the_last_are_told_and_all_that_are_not(tmp_path: Path) -> None:

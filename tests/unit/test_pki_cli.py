@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import socket
 import stat
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -41,6 +43,21 @@ def test_init_without_a_host_takes_what_the_machine_has(tmp_path: Path) -> None:
     registry = PkiFolder(tmp_path).registry()
     assert {"localhost", "127.0.0.1", "::1"} <= set(registry.hosts)
     assert len(registry.connect) == 1
+
+
+def test_units_are_given_an_address_of_the_network_and_ipv4_where_there_is_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    addresses = ["fd00::7", "127.0.0.1", "fe80::1%eth0", "169.254.1.1", "192.0.2.7", "10.0.0.1"]
+    family = {True: socket.AF_INET6, False: socket.AF_INET}
+    cards = {one: [SimpleNamespace(family=family[":" in one], address=one)] for one in addresses}
+    monkeypatch.setattr("psutil.net_if_addrs", lambda: cards)
+    monkeypatch.setattr("socket.gethostname", lambda: "station")
+    run("init", "--data", tmp_path)
+    registry = PkiFolder(tmp_path).registry()
+    assert registry.hosts[:4] == ("10.0.0.1", "192.0.2.7", "fd00::7", "station")
+    assert not {"fe80::1%eth0", "169.254.1.1"} & set(registry.hosts)
+    assert registry.connect == ("tls/10.0.0.1:7447",)
 
 
 @pytest.mark.parametrize(

@@ -118,6 +118,15 @@ def test_a_folder_that_cannot_be_written_is_said(pki: PkiFolder) -> None:
         pki.enroll("anna")
 
 
+def test_a_folder_that_cannot_be_read_is_said(pki: PkiFolder, tmp_path: Path) -> None:
+    pki.registry_path.unlink()
+    pki.registry_path.mkdir()
+    with pytest.raises(ConfigError, match=r"registry\.json cannot be read: .*directory"):
+        pki.registry()
+    with pytest.raises(StoreError, match="nowhere cannot be used: No such file"):
+        locked(tmp_path / "nowhere").__enter__()
+
+
 def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
     own = x509.load_pem_x509_certificate(pki.station_identity().certificate)
     names = own.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
