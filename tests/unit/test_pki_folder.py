@@ -125,6 +125,9 @@ def test_a_folder_that_cannot_be_read_is_said(pki: PkiFolder, tmp_path: Path) ->
         pki.registry()
     with pytest.raises(StoreError, match="nowhere cannot be used: No such file"):
         locked(tmp_path / "nowhere").__enter__()
+    (tmp_path / "file").touch()
+    with pytest.raises(StoreError, match="pki cannot be made: File exists"):
+        PkiFolder(tmp_path / "file").create("Test", [], [])
 
 
 def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
