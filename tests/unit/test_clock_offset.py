@@ -112,3 +112,82 @@ def test_the_quickest_of_them_says_how_far_the_two_ways_can_differ(settled: Cloc
     for at_s in range(10, 40):
         settled.note(exchange(float(at_s), 0.2, 0.2))
     assert estimate(settled, 40.0).std_s < 0.01
+
+
+AT_ONCE = (0.0, 0.0)  # there and back
+
+
+def test_how_long_the_station_thought_about_it_is_no_part_of_the_way() -> None:
+    asked, received, sent, answered = exchange(0.0, 0.1, 0.1)
+    thought_ns = 3 * NS_PER_S
+    slow = Exchange(asked, received, sent + thought_ns, answered + thought_ns)
+    assert slow.round_trip_s == pytest.approx(0.2)
+    assert slow.offset_ns == round(OFFSET_S * NS_PER_S)
+
+
+def test_an_answer_at_once_is_as_sure_as_a_timestamp_and_less_by_what_any_quartz_may_be_off() -> (
+    None
+):
+    offset = ClockOffset()
+    assert offset.note(exchange(0.0, *AT_ONCE))
+    assert estimate(offset, 0.0).std_s == pytest.approx(math.sqrt(2.0) * 2e-4)
+    assert estimate(offset, 1000.0).std_s == pytest.approx(5e-5 * 1000.0, rel=0.01)
+
+
+def test_a_quartz_that_is_known_well_wanders_all_the_same() -> None:
+    """By the integral of a random walk: a third of the cube of the time."""
+    offset = ClockOffset()
+    for number in range(2000):
+        offset.note(exchange(15.0 * number, *AT_ONCE))
+    away_s = 1e6
+    expected_s = 1e-8 * math.sqrt(away_s**3 / 3.0)
+    assert estimate(offset, 15.0 * 1999 + away_s).std_s == pytest.approx(expected_s, rel=0.1)
+
+
+@pytest.mark.parametrize(("off_ms", "is_used"), [(4.0, True), (-4.0, True), (9.0, False)])
+def test_some_milliseconds_are_a_machine_that_was_busy(off_ms: float, is_used: bool) -> None:
+    offset = ClockOffset()
+    for number in range(100):
+        offset.note(exchange(float(number), *AT_ONCE))
+    late = exchange(100.0, *AT_ONCE, offset_s=OFFSET_S + off_ms * 1e-3)
+    assert offset.note(late) is is_used
+
+
+@pytest.mark.parametrize(("off_s", "is_used"), [(0.45, True), (-0.45, True), (0.9, False)])
+def test_half_the_round_trip_is_how_far_an_exchange_can_be_off(
+    settled: ClockOffset, off_s: float, is_used: bool
+) -> None:
+    assert settled.note(exchange(10.0, 0.5, 0.5, OFFSET_S + off_s)) is is_used
+
+
+def test_a_way_that_was_slow_there_and_is_slow_back_now_is_possible() -> None:
+    """What all of them err by together no number of them shows."""
+    offset = ClockOffset()
+    for number in range(300):
+        assert offset.note(exchange(float(number), there_s=1.0, back_s=0.0))
+    assert offset.note(exchange(300.0, there_s=0.0, back_s=1.0))
+
+
+def test_the_quickest_of_the_last_ones_counts_whenever_it_came() -> None:
+    offset = ClockOffset()
+    for number in range(70):
+        offset.note(exchange(float(number), 0.2, 0.2))
+    assert estimate(offset, 70.0).std_s > 0.1
+    offset.note(exchange(70.0))
+    for number in range(71, 134):
+        offset.note(exchange(float(number), 0.2, 0.2))
+    assert estimate(offset, 134.0).std_s < 0.02
+    offset.note(exchange(134.0, 0.2, 0.2))
+    assert estimate(offset, 135.0).std_s > 0.1, "64 slow ones: the way is another by now"
+
+
+def test_another_clock_is_laid_by_its_own_exchanges_alone(settled: ClockOffset) -> None:
+    wrong_s = OFFSET_S + HOUR_S
+    for number in range(3):
+        settled.note(exchange(10.0 + number, 0.2, 0.2, wrong_s))
+    assert estimate(settled, 13.0).std_s > 0.1, (
+        "how quick the way to the other one was says nothing"
+    )
+    for number in range(2):
+        assert not settled.note(exchange(13.0 + number))
+    assert off_s(settled, 15.0) == pytest.approx(HOUR_S, abs=0.01)
