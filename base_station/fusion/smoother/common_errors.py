@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from base_station.fusion.fixes.sky import COMMON_S, common_m2
 from base_station.fusion.port import Start
 from base_station.fusion.smoother.equations import Equations
+from base_station.fusion.smoother.legs import AXES
 from base_station.fusion.smoother.port import UnitEvidence
 from shared.clock import NS_PER_S
 
@@ -29,20 +30,20 @@ SKY_S = 600.0  # from one knot of the common error to the next
 
 
 class CommonErrors:
-    """Columns behind those of the chains: what has to be added to the building's axis, and pairs
+    """Columns behind those of the chains: what has to be added to the buildings' axes, and pairs
     of north and east: how far off each place is where units begin, the receivers' common error at
     knots of time, how far off the plan lies, and landmarks.  At the end, how far across each line
     lies that people walk along.
     """
 
     def __init__(self, first: int, units: Mapping[str, UnitEvidence]) -> None:
-        self.axis = first
+        self._first, self.axes = first, first + np.arange(AXES)
         self._starts: dict[tuple[float, float, float], int] = {}
         for unit in units.values():
             if unit.start is not None:
-                self._starts.setdefault(_said(unit.start), first + 1 + 2 * len(self._starts))
+                self._starts.setdefault(_said(unit.start), first + AXES + 2 * len(self._starts))
         fixes = [unit.path.fix_t_ns for unit in units.values() if len(unit.path.fix_t_ns)]
-        self._sky = first + 1 + 2 * len(self._starts)
+        self._sky = first + AXES + 2 * len(self._starts)
         self._sky_t_ns, self.sky_std_m = np.zeros(0, dtype=np.int64), 0.0
         if fixes:
             begin, end = min(t_ns[0] for t_ns in fixes), max(t_ns[-1] for t_ns in fixes)
@@ -55,7 +56,7 @@ class CommonErrors:
         self._x = np.zeros(self.end - first)  # as last believed
 
     def add_priors(self, equations: Equations) -> None:
-        equations.add(AXIS_STD_RAD, 0.0, (np.array([self.axis]), 1.0))
+        equations.add(AXIS_STD_RAD, 0.0, (self.axes, 1.0))
         for (_, _, std_m), column in self._starts.items():
             equations.add(np.sqrt(START_PART) * std_m, 0.0, (np.array([column, column + 1]), 1.0))
         equations.add(PLAN_STD_M, 0.0, (np.array([self.plan, self.plan + 1]), 1.0))
@@ -97,27 +98,27 @@ class CommonErrors:
 
     def forget(self) -> None:
         """Believe nothing any more."""
-        self._x = np.zeros(self.lines - self.axis)
+        self._x = np.zeros(self.lines - self._first)
 
     def take(self, x: Floats) -> None:
         """Believe a solution."""
-        self._x = x[self.axis : self.lines]
+        self._x = x[self._first : self.lines]
 
     @property
     def plan_m(self) -> Floats:
         """How far north and east (2,) of where it should be the plan lies, as it is believed."""
-        return self._x[self.plan - self.axis :][:2]
+        return self._x[self.plan - self._first :][:2]
 
     @property
     def landmarks_m(self) -> Floats:
         """Where landmarks are (n, 2), as it is believed."""
-        return self._x[self.landmarks - self.axis :].reshape(-1, 2)
+        return self._x[self.landmarks - self._first :].reshape(-1, 2)
 
     def sky_m(self, t_ns: Ints) -> Floats:
         """The common error (n, 2), as it is believed."""
         off_m = np.zeros((len(t_ns), 2))
         for columns, parts in self.sky(t_ns):
-            rows = columns - self.axis
+            rows = columns - self._first
             off_m += np.asarray(parts)[:, None] * self._x[rows[:, None] + [0, 1]]
         return off_m
 

@@ -18,7 +18,7 @@ from base_station.fusion.smoother.chain import STATES, Belief, Chain, WalkNoise,
 from base_station.fusion.smoother.common_errors import CommonErrors
 from base_station.fusion.smoother.equations import Equations, NormalEquations
 from base_station.fusion.smoother.landmarks import Landmark, Visit, Visited
-from base_station.fusion.smoother.legs import Legs, add_legs, axis_of
+from base_station.fusion.smoother.legs import Axes, Legs, add_legs
 from base_station.fusion.smoother.live_estimates import add_shown
 from base_station.fusion.smoother.marginals import chain_covariances, shared_spreads
 from base_station.fusion.smoother.path_equations import add_path, add_places, add_seen
@@ -55,7 +55,7 @@ class Graph:
         self._bases = {unit_id: columns.start for unit_id, columns in self._columns.items()}
         self.visited = Visited(self._bases, self.beliefs)
         self._legs = {unit_id: Legs.of(chain) for unit_id, chain in chains.items()}
-        self._axis_rad: float | None = None
+        self._axes: Axes | None = None
         self._normal: NormalEquations
 
     def visit(self, unit_id: str, t_ns: int) -> Visit:
@@ -72,10 +72,10 @@ class Graph:
         """Lines that people walk along again and again, as it looks now, in place of those found
         before; false: there are and were none.
         """
-        if self._axis_rad is None:
+        if self._axes is None or not self._axes.are_shown:
             return False
         before, spreads = self._lines, self.own_spreads()
-        self._lines = find_lines(self._legs, self.beliefs, spreads, self._axis_rad)
+        self._lines = find_lines(self._legs, self.beliefs, spreads, self._axes)
         self.common.set_lines(len(self._lines))
         return bool(before or self._lines)
 
@@ -84,7 +84,7 @@ class Graph:
         for unit_id, chain in self.chains.items():
             self.beliefs[unit_id] = Belief.none(len(chain))
         self.common.forget()
-        self._axis_rad = None
+        self._axes = None
         self.step(noise)
         self._align()
         self.settle(noise)
@@ -92,8 +92,9 @@ class Graph:
     def settle(self, noise: WalkNoise) -> None:
         """Solve about what is believed, again and again, until nothing moves."""
         for _ in range(TURNS):
-            if self._axis_rad is None:
-                self._axis_rad = axis_of(self._legs, self.beliefs)
+            if self._axes is None:
+                self._axes = Axes(self._legs, self.beliefs)
+            self._axes.look(self.beliefs)
             if self.step(noise) < SETTLED_M:
                 break
 
@@ -101,8 +102,8 @@ class Graph:
         """Solve once about what is believed; gives how far the furthest knot moved."""
         self._normal = self._equations(noise)
         x, moved_m = self._normal.solve(), 0.0
-        if self._axis_rad is not None:
-            self._axis_rad += float(x[self.common.axis])
+        if self._axes is not None:
+            self._axes.rad += x[self.common.axes]
         self.common.take(x)
         for unit_id, columns in self._columns.items():
             belief, now = self.beliefs[unit_id], x[columns].reshape(-1, STATES)
@@ -118,9 +119,10 @@ class Graph:
             add_path(equations, base, chain, belief, common, noise)
             add_receiver(equations, base, chain, belief, common)
             add_seen(equations, base, chain, self.places[unit_id])
-            if self._axis_rad is not None:
-                axis = self._axis_rad, common.axis
-                add_legs(equations, base, self._legs[unit_id], belief, axis)
+            if self._axes is not None:
+                columns = common.axes[0] + self._axes.building[unit_id]
+                axes = self._axes.of(unit_id), columns
+                add_legs(equations, base, self._legs[unit_id], belief, axes)
             if unit_id in self.shown:
                 add_shown(equations, base, chain, belief, self.shown[unit_id])
             if unit_id in self.words:
@@ -129,10 +131,10 @@ class Graph:
         for landmark, place_m in zip(self.landmarks, common.landmarks_m, strict=True):
             self.visited.add(equations, landmark, column, place_m)
             column += 2
-        if self._axis_rad is not None:
-            axis = self._axis_rad, common.axis
+        if self._axes is not None:
+            axes = self._axes.rad, common.axes
             for column, line in enumerate(self._lines, start=common.lines):
-                add_line(equations, line, column, axis, self._bases, self.beliefs)
+                add_line(equations, line, column, axes, self._bases, self.beliefs)
         return equations.normal(self._columns, STATES)
 
     def _align(self) -> None:
@@ -185,7 +187,7 @@ class Graph:
         """Covariances of all knots (k, 7, 7) by unit; ``on_plan``: of where they lie on the plan,
         which may lie aside itself.
         """
-        plus = self.common.plan - self.common.axis if on_plan else None
+        plus = self.common.plan - int(self.common.axes[0]) if on_plan else None
         normal = self._normal
         shared = shared_spreads(normal.leans, normal.shared_covariance, STATES, plus)
         own = self.own_spreads()

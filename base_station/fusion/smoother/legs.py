@@ -1,13 +1,14 @@
-"""Straight legs along the walls of one building, two ways at right angles (``learnt.legs``).
+"""Straight legs along the walls of a building, two ways at right angles (``learnt.legs``).
 
-The axis is what all legs of all units show together; each leg then tells its unit's heading, as far
-as it may be one along a wall.
+A building's axis is what all legs of all units there show together; each leg then tells its unit's
+heading, as far as it may be one along a wall.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,11 +23,12 @@ from base_station.fusion.learnt.legs import (
     Leg,
     LegWatch,
     evidence,
+    quarter,
     remember,
 )
 from base_station.fusion.learnt.stairs import SLOPE
 from base_station.fusion.path.points import BREAK, RESTART, PathArrays
-from base_station.fusion.smoother.chain import STATES, Belief, Chain
+from base_station.fusion.smoother.chain import STATES, Belief, Chain, place_of
 from base_station.fusion.smoother.equations import Equations
 
 Floats = NDArray[np.float64]
@@ -34,9 +36,12 @@ Ints = NDArray[np.int64]
 
 OUTSIDE_NS = 10_000_000_000  # so near a fix people are outside, where nothing is at right angles
 UNSURE_RAD = 0.1  # of headings before they have heard of an axis
+TRIED_RAD = math.radians(1.0)
 WALLS_STD_RAD = math.radians(1.5)  # walls of one building are not quite parallel
 ASIDE_M = 0.4  # so far from the wall's direction leads one end of a leg from the other
 UNLIKELY = 0.05
+AXES = 4  # of the buildings in which most legs were walked
+CELL_M = 12.5  # of ground; legs in cells that touch are of one building
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,10 @@ class Legs:
         middles = _middles(chain, np.array(rows, dtype=np.int64), length_m)
         return Legs(knot, direction_rad, length_m, variances, *middles)
 
+    def middles_m(self, belief: Belief) -> Floats:
+        """Where they are (n, 2), as it is believed."""
+        return place_of(belief.x[self.middle_knot], self.since_m)
+
     def turned_rad(self, belief: Belief) -> Floats:
         """Their directions in the incident frame, as it is believed."""
         turn = belief.x[self.knot, 2:4]
@@ -96,27 +105,84 @@ def _middles(
     return knot, own_m - chain.own_m[knot], down_m, np.abs(rise_m) > SLOPE * length_m
 
 
-def axis_of(legs: Mapping[str, Legs], beliefs: Mapping[str, Belief]) -> float | None:
-    """The direction that most legs have or stand at right angles to; None: they show none."""
-    whole, turned = 0j, list[Leg]()
-    for unit_id, one in legs.items():
-        told = beliefs[unit_id].aligned[one.knot]
-        turned_rad = one.turned_rad(beliefs[unit_id])[told]
-        whole += complex(np.exp(4j * turned_rad) @ one.length_m[told])
-        for direction_rad, length_m in zip(turned_rad, one.length_m[told], strict=True):
-            remember(turned, Leg(float(direction_rad), float(length_m)))
-    axis = Axis(math.atan2(whole.imag, whole.real) / 4.0, UNSURE_RAD**2)
-    return axis.direction_rad if evidence(turned, axis) > SHOWN + TRIALS else None
+class Axes:
+    """Of the buildings in which legs were walked."""
+
+    def __init__(self, legs: Mapping[str, Legs], beliefs: Mapping[str, Belief]) -> None:
+        """Legs are of one building or another by where they are believed to be now."""
+        self._legs = legs
+        self.rad = np.full(AXES, np.nan)  # of each building, as it is believed; NaN: none shows
+        cells = {
+            unit_id: np.rint(one.middles_m(beliefs[unit_id]) / CELL_M).astype(np.int64)
+            for unit_id, one in legs.items()
+        }
+        buildings = _buildings(np.concatenate(list(cells.values())))
+        self.building = {  # of each leg; ``AXES``: none
+            unit_id: np.array([buildings.get(cell, AXES) for cell in map(tuple, own.tolist())], int)
+            for unit_id, own in cells.items()
+        }
+
+    @property
+    def are_shown(self) -> bool:
+        """In any building."""
+        return bool(np.isfinite(self.rad).any())
+
+    def of(self, unit_id: str) -> Floats:
+        """The axis (n,) of each leg's building."""
+        found: Floats = np.append(self.rad, np.nan)[self.building[unit_id]]
+        return found
+
+    def look(self, beliefs: Mapping[str, Belief]) -> None:
+        """Find those that legs show by now."""
+        for building in np.flatnonzero(np.isnan(self.rad)):
+            turned = list[Leg]()
+            for unit_id, one in self._legs.items():
+                told = beliefs[unit_id].aligned[one.knot] & (self.building[unit_id] == building)
+                turned_rad = one.turned_rad(beliefs[unit_id])[told]
+                for direction_rad, length_m in zip(turned_rad, one.length_m[told], strict=True):
+                    remember(turned, Leg(float(direction_rad), float(length_m)))
+            axis = Axis(_most(turned), UNSURE_RAD**2)
+            if evidence(turned, axis) > SHOWN + TRIALS:
+                self.rad[building] = axis.direction_rad
+
+
+def _buildings(cells: Ints) -> dict[tuple[int, ...], int]:
+    """By cell of ground (n, 2): which of the buildings it is of, the most frequented first."""
+    legs = Counter(map(tuple, cells.tolist()))
+    left, groups = dict(legs), []
+    while left:
+        group, edge = [], [left.popitem()[0]]
+        while edge:
+            north, east = cell = edge.pop()
+            group.append(cell)
+            beside = [(north + n, east + e) for n in (-1, 0, 1) for e in (-1, 0, 1)]
+            edge += [one for one in beside if left.pop(one, None)]
+        groups.append(group)
+    groups.sort(key=lambda group: (-sum(legs[cell] for cell in group), min(group)))
+    return {cell: row for row, group in enumerate(groups[:AXES]) for cell in group}
+
+
+def _most(legs: Sequence[Leg]) -> float:
+    """The direction that most legs have or stand at right angles to."""
+    if not legs:
+        return 0.0
+    turned_rad = np.array([leg.direction_rad for leg in legs])
+    length_m = np.array([leg.length_m for leg in legs])
+    tried_rad = np.arange(0.0, QUARTER_RAD, TRIED_RAD)
+    off = quarter(turned_rad - tried_rad[:, None])
+    near = length_m * np.exp(-0.5 * (off / UNSURE_RAD) ** 2)
+    most = int(near.sum(axis=1).argmax())
+    return float(tried_rad[most] + near[most] @ off[most] / near[most].sum())
 
 
 def add_legs(
-    equations: Equations, base: int, legs: Legs, belief: Belief, axis: tuple[float, int]
+    equations: Equations, base: int, legs: Legs, belief: Belief, axes: tuple[Floats, Ints]
 ) -> None:
-    """Across a leg that follows a wall its unit does not go.  ``axis``: as it is believed, and the
-    column of what has to be added to it.
+    """Across a leg that follows a wall its unit does not go.  ``axes``: that of each leg's building
+    as it is believed, NaN where there is none, and the column of what has to be added to it.
     """
-    axis_rad, column = axis
-    off = (legs.turned_rad(belief) - axis_rad + QUARTER_RAD / 2.0) % QUARTER_RAD - QUARTER_RAD / 2.0
+    axis_rad, axis_columns = axes
+    off = quarter(legs.turned_rad(belief) - axis_rad)
     fits = np.exp(-0.5 * off**2 / legs.variance) / np.sqrt(math.tau * legs.variance)
     along = ALONG_WALLS * fits / (ALONG_WALLS * fits + (1.0 - ALONG_WALLS) / QUARTER_RAD)
     used = belief.aligned[legs.knot] & (along > UNLIKELY)
@@ -128,7 +194,7 @@ def add_legs(
     equations.add(
         np.sqrt(legs.variance[used] / along[used]), 0.0,
         (columns + 2, -np.sin(wanted)), (columns + 3, np.cos(wanted)),
-        (np.full(len(columns), column), -1.0),
+        (axis_columns[used], -1.0),
     )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from base_station.fusion.learnt.legs import QUARTER_RAD
 from base_station.fusion.smoother.chain import STATES, Belief, place_of
 from base_station.fusion.smoother.equations import Equations
 from base_station.fusion.smoother.landmarks import Visit
-from base_station.fusion.smoother.legs import Legs
+from base_station.fusion.smoother.legs import Axes, Legs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,6 +41,7 @@ CELL_M = 0.1
 
 @dataclass(frozen=True)
 class Line:
+    building: int
     quarter: int  # 0: along the axis, 1: at right angles to it
     visits: Sequence[Visit]  # at the middles of legs
     counts: Floats  # (v,) what part of a leg that tells by itself each one is worth
@@ -54,22 +55,35 @@ class _Gathered:
     across_m: Floats
     variance_m2: Floats
 
-    def lines(self, quarter: int) -> Iterator[Line]:
+    def lines(self, building: int, quarter: int) -> Iterator[Line]:
         likely = mixture(self.across_m, self.variance_m2)
         for each in likely.T:
             of_it = np.flatnonzero(each > UNLIKELY)
             if len(of_it) > 1:
                 visits = [self.visits[one] for one in of_it]
-                yield Line(quarter, visits, counts_of([v.unit_id for v in visits], each[of_it]))
+                counts = counts_of([v.unit_id for v in visits], each[of_it])
+                yield Line(building, quarter, visits, counts)
 
 
 def find_lines(
     legs: Mapping[str, Legs],
     beliefs: Mapping[str, Belief],
     spreads: Mapping[str, Floats],
-    axis_rad: float,
+    axes: Axes,
 ) -> list[Line]:
     """``spreads`` (k, n, n) by unit: of the knots, without what all units err by together."""
+    shown = np.flatnonzero(np.isfinite(axes.rad)).tolist()
+    return [line for one in shown for line in _lines_in(one, legs, beliefs, spreads, axes)]
+
+
+def _lines_in(
+    building: int,
+    legs: Mapping[str, Legs],
+    beliefs: Mapping[str, Belief],
+    spreads: Mapping[str, Floats],
+    axes: Axes,
+) -> Iterator[Line]:
+    axis_rad = float(axes.rad[building])
     visits: list[Visit] = []
     columns: list[Floats] = []  # quarter, level, across and its variance
     for unit_id, own in legs.items():
@@ -78,6 +92,7 @@ def find_lines(
         crooked = np.abs(turns - np.rint(turns)) * QUARTER_RAD > CROOKED_RAD
         known = np.trace(spreads[unit_id][own.middle_knot, :2, :2], axis1=1, axis2=2) < SURE_M**2
         used = belief.aligned[own.middle_knot] & known & ~crooked & ~own.climbs
+        used &= axes.building[unit_id] == building
         knot, since_m = own.middle_knot[used], own.since_m[used]
         quarter = np.rint(turns[used]) % 2.0
         across = _across(axis_rad + quarter * QUARTER_RAD)
@@ -85,17 +100,19 @@ def find_lines(
         var_m2 = np.einsum("ni,nij,nj->n", across, spreads[unit_id][knot, :2, :2], across)
         visits += [Visit(unit_id, *one) for one in zip(knot.tolist(), since_m, strict=True)]
         columns.append(np.column_stack((quarter, own.down_m[used], off_m, var_m2)))
-    return list(_lines_of(visits, np.concatenate(columns)))
+    yield from _lines_of(building, visits, np.concatenate(columns))
 
 
-def _lines_of(visits: list[Visit], columns: Floats) -> Iterator[Line]:
+def _lines_of(building: int, visits: list[Visit], columns: Floats) -> Iterator[Line]:
     for quarter in (0, 1):
         here = np.flatnonzero(columns[:, 0] == quarter)
         here = here[np.argsort(columns[here, 1], kind="stable")]
         storeys = np.flatnonzero(np.diff(columns[here, 1]) > LEVELS_M) + 1
         for rows in np.split(here, storeys):
             of_them = [visits[row] for row in rows]
-            yield from _Gathered(of_them, columns[rows, 2], columns[rows, 3]).lines(quarter)
+            yield from _Gathered(of_them, columns[rows, 2], columns[rows, 3]).lines(
+                building, quarter
+            )
 
 
 def mixture(across_m: Floats, variance_m2: Floats) -> Floats:
@@ -151,14 +168,14 @@ def add_line(
     equations: Equations,
     line: Line,
     column: int,
-    axis: tuple[float, int],
+    axes: tuple[Floats, Ints],
     bases: Mapping[str, int],
     beliefs: Mapping[str, Belief],
 ) -> None:
-    """``column``: of how far across the line lies; ``axis``: as it is believed, and the column of
-    what has to be added to it.
+    """``column``: of how far across the line lies; ``axes``: of buildings as they are believed, and
+    the columns of what has to be added to them.
     """
-    axis_rad, axis_column = axis
+    axis_rad, axis_column = (one[line.building] for one in axes)
     since_m = np.array([one.since_m for one in line.visits])
     x = np.array([beliefs[one.unit_id].x[one.knot] for one in line.visits])
     own = np.array([bases[one.unit_id] + STATES * one.knot for one in line.visits])
