@@ -66,10 +66,14 @@ def test_expired_and_unknown_commands_are_refused(desk, kind, expires_ns, state)
     assert desk.take(command(kind, expires_ns=expires_ns)).state is state
 
 
-def test_what_is_remembered_is_bounded(desk):
+def test_what_is_remembered_is_bounded_and_is_the_newest(desk, rates):
     for number in range(5000):
         desk.take(command(CommandKind.TEXT, f"c{number}"))
-    assert len(desk._answers) <= 1000
+    asked = command(CommandKind.SET_POSITION_RATE, rate_hz=10.0)
+    for _ in range(2):
+        desk.take(asked)
+    assert len(desk._answers) == 1000
+    assert rates == [10.0]
 
 
 ASKING = [CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT]
