@@ -104,6 +104,7 @@ class Actions:
         else:
             state.plan = read_plan(action.geojson)
             self._positioning.consider(state.laid_plan)
+            self._positioning.renumber(state)
             for unit_id in sorted(set().union(*map(units_of, state.pins.values()))):
                 note_late(state.late, unit_id, state.t_ns)  # one by one: live goes first
 

@@ -137,7 +137,10 @@ class StationPipeline:
         outputs.extend(CommandTouched(one.command_id) for one in command_book.expire(self.state))
         note_trust(self.state)
         late = take_due(self.state.late, self.state.t_ns)
-        return outputs if late is None else [*outputs, *self._repin([late])]
+        if late is not None:
+            return [*outputs, *self._repin([late])]
+        renumbered = self._positioning.number_one_again(self.state)
+        return outputs if renumbered is None else [*outputs, TrailFilled(renumbered)]
 
     def _act(self, message: OperatorAction) -> list[Output]:
         try:

@@ -158,6 +158,20 @@ def floors_along(state: StationState, points: PathArrays, places_m: Floats) -> l
     return floors
 
 
+def numbered_again(
+    state: StationState, trail: Sequence[TrailStep], points: PathArrays
+) -> list[TrailStep]:
+    """A trail as it was drawn, with the floors of the storeys that are known now."""
+    again: list[TrailStep] = []
+    rows = np.searchsorted(points.t_ns, [step.t_ns for step in trail]).clip(0, len(points) - 1)
+    for step, down_m in zip(trail, points.down_m[rows].tolist(), strict=True):
+        storeys = state.storeys_at(step.north_m, step.east_m)
+        held = again[-1].floor if again else None
+        floor = floor_at(storeys, down_m, held) if storeys else step.floor
+        again.append(msgspec.structs.replace(step, floor=floor))
+    return again
+
+
 def _places(
     state: StationState,
     past: Past,

@@ -20,6 +20,7 @@ from base_station.pins.book import drop, has_pins, units_of
 from base_station.pins.evidence import floors_said
 from base_station.pins.late_history import note_late
 from base_station.pins.pinned_units import PinnedUnits
+from base_station.pins.pinning import numbered_again
 from base_station.positioning.anchor_correction import move_fixes, place_again
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
@@ -104,7 +105,10 @@ class Positioning:
         """Pins of these units changed; gives whose present hangs on that, and whether the trail
         is another now.  A floor that is said numbers the storeys of everybody in that building.
         """
+        numbers = state.learnt_floors.numbers
         renumbered = state.learnt_floors.say(floors_said(state))
+        if state.learnt_floors.numbers != numbers:
+            self.renumber(state)
         past = self._pinned.past()
         units = [state.units[one] for one in unit_ids if one in state.units]
         again = [one for one in units if place_again(state, one, self._fuser(one), past)]
@@ -117,6 +121,25 @@ class Positioning:
                     solved[unit_id] = False
                     _note_late(state, state.units[unit_id])
         return solved
+
+    def renumber(self, state: StationState) -> None:
+        """Storeys have other numbers now: those along every trail are said anew, one by one."""
+        for history in state.paths.values():
+            history.is_renumbered = True
+
+    def number_one_again(self, state: StationState) -> str | None:
+        """The next trail that waits for it; gives whose it is, where it is drawn otherwise now."""
+        unit_id = next((one for one, path in state.paths.items() if path.is_renumbered), None)
+        if unit_id is None:
+            return None
+        history, unit = state.paths[unit_id], state.units[unit_id]
+        history.is_renumbered = False
+        plain = unit.trail if unit.plain_trail is None else unit.plain_trail
+        if history.begin_ns is None or not plain:
+            return None
+        before = plain.copy()
+        plain[:] = numbered_again(state, plain, history.arrays())
+        return unit_id if plain is unit.trail and plain != before else None
 
     def begin_incident(self, state: StationState, before_ns: int) -> set[str]:
         """What was known of paths and pins before that time no longer matters; gives whose past

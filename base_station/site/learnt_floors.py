@@ -159,6 +159,11 @@ class LearntFloors(msgspec.Struct):
                 storeys, nearest_m = building.storeys, away_m
         return storeys
 
+    @property
+    def numbers(self) -> list[list[int]]:
+        """Of each building's storeys, lowest first."""
+        return [[storey.floor for storey in building.storeys] for building in self.buildings]
+
     def say(self, said: Sequence[FloorSaid]) -> bool:
         """What people say of floors, in the place of what they said before; whether storeys are
         others by it.

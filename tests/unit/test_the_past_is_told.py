@@ -9,6 +9,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from copy import copy
 
+import msgspec
 import pytest
 
 from base_station.api.wire import TrailPoint
@@ -349,3 +350,44 @@ def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> f
     position = script.console.units[unit_id].position
     assert position is not None
     return math.dist((position.north_m, position.east_m), place_m)
+
+
+def test_a_plan_that_numbers_storeys_otherwise_numbers_trails_again() -> None:
+    """Of who has no pins too, whether heard or silent; pinned trails as they would be without."""
+    story = Story()
+    story.script.act(RemovePin("met"))
+    story.script.act(RemovePin("of B"))
+    story.script.away.add(B)
+    story.go(5)
+    before = story.script.pipeline.state.units[B].trail[:]
+    assert before[-1].floor == 0
+    story.script.act(SetPlan(PLAN))
+    story.script.wait(8)
+    units = story.script.pipeline.state.units
+    assert [step.floor for step in units[B].trail] == [2] * len(before)
+    assert [msgspec.structs.replace(step, floor=2) for step in before] == units[B].trail
+    assert {point.floor for point in story.script.console.trails[B]} == {2}
+    plain = units[A].plain_trail
+    assert plain is not None
+    assert {step.floor for step in (*plain, *units[A].trail)} == {2}
+
+
+def test_a_floor_that_is_said_of_one_numbers_the_trail_of_the_other_again() -> None:
+    script = Watched()
+    script.register(A, B)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(60):
+        script.now_s += 1.0
+        down_m = -9.3 * min(max(second - 15, 0) / 20.0, 1.0)
+        for unit_id in (A, B):
+            script.position(unit_id, float(second), 0.0, down_m=down_m, distance_m=float(second))
+        script.tick()
+    upstairs_ns = script.t_ns - 15 * 10**9
+    state = script.pipeline.state
+    said = {step.floor for step in state.units[B].trail if step.t_ns > upstairs_ns}
+    assert said == {3}
+    script.act(SetPin("p", A, script.t_ns, 59.0, 0.0, 0.5, 4, None, 0.0, ""))
+    script.wait(5)
+    assert {step.floor for step in state.units[B].trail if step.t_ns > upstairs_ns} == {4}
+    drawn = script.console.trails[B]
+    assert {point.floor for point in drawn if point.t_ms > upstairs_ns // 10**6} == {4}
