@@ -21,6 +21,7 @@ from shared.channels import (
 )
 from shared.enrolment import Holder
 
+INTERESTS = ("declare_subscriber", "declare_liveliness_subscriber", "liveliness_query")
 THEN = datetime(2026, 3, 1, tzinfo=UTC)
 
 
@@ -83,42 +84,47 @@ def test_every_subject_is_one_exact_common_name(rules: dict[str, Any]) -> None:
     assert all(len(subject["cert_common_names"]) == 1 for subject in rules["subjects"])
 
 
-def test_a_unit_speaks_on_the_channels_upwards_and_on_no_other(rules: dict[str, Any]) -> None:
-    upwards = {c.key("bert") for c in CHANNELS if c.direction is Direction.UP}
-    assert allowed(rules, "bert", "ingress", "put") == upwards
-    assert allowed(rules, "bert", "ingress", "liveliness_token") == {alive_key("bert")}
-    for message in ("delete", "declare_liveliness_subscriber", "liveliness_query"):
-        assert allowed(rules, "bert", "ingress", message) == set()
-
-
-def test_a_unit_asks_for_the_time_under_its_own_key_and_for_nothing_else(
-    rules: dict[str, Any],
-) -> None:
-    assert allowed(rules, "bert", "ingress", "query") == {clock_key("bert")}
-    assert allowed(rules, "bert", "egress", "reply") == {clock_key("bert")}
-    assert allowed(rules, "bert", "egress", "declare_queryable") == {clock_key("*")}
-
-
-def test_a_unit_reads_its_own_and_what_is_said_to_all(rules: dict[str, Any]) -> None:
-    readable = {"muster/v1/bert/**", COMMAND.key(EVERY_UNIT)}
-    assert allowed(rules, "bert", "ingress", "declare_subscriber") == readable
-    assert allowed(rules, "bert", "egress", "put") == readable
+def test_a_unit_may_this_and_nothing_else(rules: dict[str, Any]) -> None:
+    assert rights(rules, "bert") == rights_of_sender("bert")
 
 
 def test_a_tracking_agent_is_a_unit_of_its_own_that_hears_the_raw_stream_of_another(
     rules: dict[str, Any],
 ) -> None:
     name = tracker_id("bert")
-    upwards = {c.key(name) for c in CHANNELS if c.direction is Direction.UP}
-    assert allowed(rules, name, "ingress", "put") == upwards
-    assert allowed(rules, name, "ingress", "liveliness_token") == {alive_key(name)}
+    more = rights_of_sender(name)
     raw = {"muster/v1/bert/up/imu", "muster/v1/bert/up/description"}
-    readable = {f"muster/v1/{name}/**", COMMAND.key(EVERY_UNIT)} | raw
-    assert allowed(rules, name, "ingress", "declare_subscriber") == readable
-    assert allowed(rules, name, "egress", "put") == readable
-    asked = {raw_journal_key("bert"), clock_key(name)}
-    assert allowed(rules, name, "ingress", "query") == asked
-    assert allowed(rules, name, "egress", "reply") == asked
+    more["ingress", "declare_subscriber"] |= raw
+    more["egress", "put"] |= raw
+    more["egress", "declare_queryable"] |= {"muster/v1/bert/journal/**"}
+    for flow, message in (("ingress", "query"), ("egress", "reply")):
+        more[flow, message] |= {raw_journal_key("bert")}
+    assert rights(rules, name) == more
+
+
+def rights(rules: dict[str, Any], common_name: str) -> dict[tuple[str, str], set[str]]:
+    """All that the holder of this common name may do: where it may do what."""
+    said = {message for rule in rules["rules"] for message in rule["messages"]}
+    every = ((flow, message) for flow in ("ingress", "egress") for message in said)
+    found = {one: allowed(rules, common_name, *one) for one in every}
+    return {one: keys for one, keys in found.items() if keys}
+
+
+def rights_of_sender(name: str) -> dict[tuple[str, str], set[str]]:
+    """Of a unit, or of an agent that tracks for one, under its own key."""
+    own, clock = f"muster/v1/{name}/**", clock_key(name)
+    return {
+        ("ingress", "put"): {c.key(name) for c in CHANNELS if c.direction is Direction.UP},
+        ("ingress", "liveliness_token"): {alive_key(name)},
+        ("ingress", "declare_queryable"): {own},
+        ("ingress", "reply"): {own},
+        ("ingress", "query"): {clock},
+        ("ingress", "declare_subscriber"): {own, COMMAND.key(EVERY_UNIT)},
+        ("egress", "put"): {own, COMMAND.key(EVERY_UNIT)},
+        ("egress", "query"): {own, COMMAND.key(EVERY_UNIT)},
+        ("egress", "reply"): {clock},
+        ("egress", "declare_queryable"): {clock_key("*")},
+    } | {("egress", interest): {"muster/v1/**"} for interest in INTERESTS}
 
 
 def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:
@@ -127,19 +133,21 @@ def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[s
 
 
 def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
-    name = "operator:chief"
-    assert allowed(rules, name, "egress", "put") == {"muster/v1/**"}
-    for message in ("put", "delete", "query", "reply", "liveliness_token", "declare_queryable"):
-        assert allowed(rules, name, "ingress", message) == set()
+    asks = {("ingress", interest): {"muster/v1/**"} for interest in INTERESTS}
+    hears = {("egress", message): {"muster/v1/**"} for message in ("put", "liveliness_token")}
+    assert rights(rules, "operator:chief") == asks | hears
 
 
-def test_the_station_may_do_everything_below_the_root(rules: dict[str, Any]) -> None:
-    for flow in ("ingress", "egress"):
-        for message in ("put", "query", "reply", "liveliness_token", "declare_subscriber"):
-            assert allowed(rules, "station", flow, message) == {
-                "muster/v1/**",
-                "muster/stations/v1/**",
-            }
+def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
+    rules: dict[str, Any],
+) -> None:
+    everything = {"muster/v1/**", "muster/stations/v1/**"}
+    messages = ("put", "delete", "query", "reply", "declare_queryable", "liveliness_token")
+    assert rights(rules, "station") == {
+        (flow, message): everything
+        for flow in ("ingress", "egress")
+        for message in (*messages, *INTERESTS)
+    }
 
 
 def test_each_asks_for_the_time_under_a_key_of_its_own(registry: Registry) -> None:
