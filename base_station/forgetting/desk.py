@@ -176,6 +176,9 @@ def forget_now(
     Raises UserError where it makes no sense, or a person ends it in the middle.
     """
     jobs = Jobs(kept, Forgetting)
+    began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
+    if kind == "person" and not began:  # what is no id may be a name, and there are none in it
+        forgetter.require_person(subject_id)
     added = jobs.add(_wish(by, kind, subject_id, told=False))
     (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
     tally = _tally_of(job)

@@ -172,14 +172,14 @@ class Forgetter:
         gone but for the entry in the audit.
         """
         tally = tally or Tally()
-        with self._store.read() as session:
-            names = known_names(session, person_id)
-        found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
-        everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
-        erasure = msgspec.structs.replace(found, names=tuple(everything))
-        if not (erasure.wearings or erasure.names or tally.again):
-            raise UserError(f"neither the roster nor the log knows a person {person_id}")
+        erasure = self._erasure_of(person_id)
+        if not tally.again:
+            _require_known(erasure)
         return self._forget(by, erasure, f"person {person_id}", on_progress, tally)
+
+    def require_person(self, person_id: str) -> None:
+        """UserError where nobody has ever heard of that person."""
+        _require_known(self._erasure_of(person_id))
 
     def incident(
         self,
@@ -194,6 +194,13 @@ class Forgetter:
             erasure = erasure_of_incident(self._actions(), incident_id)
             self._begun.keep(erasure)
         return self._forget(by, erasure, f"incident {incident_id}", on_progress, tally or Tally())
+
+    def _erasure_of(self, person_id: str) -> Erasure:
+        with self._store.read() as session:
+            names = known_names(session, person_id)
+        found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
+        everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
+        return msgspec.structs.replace(found, names=tuple(everything))
 
     def _forget(
         self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: Tally
@@ -290,6 +297,11 @@ class Forgetter:
             if isinstance(event, Received):
                 clocks.note(event.t_ns, event.message.header)
         return clocks
+
+
+def _require_known(erasure: Erasure) -> None:
+    if not (erasure.wearings or erasure.names):
+        raise UserError(f"neither the roster nor the log knows a person {erasure.person_id}")
 
 
 def _actions_in(path: Path) -> Iterator[Record]:
