@@ -252,6 +252,7 @@ class StationState(msgspec.Struct):
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
     trust_ns: int = 0  # when lights were last looked at
+    sighted_ns: int = 0  # when a sighting was last solved at once
     late: dict[str, Late] = msgspec.field(default_factory=dict)  # pinned units: to be solved again
     learnt_building: LearntBuilding = LearntBuilding()
     learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)

@@ -33,12 +33,13 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, StationState, UnitState
-from base_station.pins.late_history import take_due
+from base_station.pins.late_history import note_late, take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
 from base_station.sender import News, Sender
 from base_station.unit_updates import note
 from shared.channels import Channel, Direction, channel_of, tracked_unit
+from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import (
     STATION_ID,
@@ -234,13 +235,24 @@ class StationPipeline:
                 if self._positioning.fix(self.state, unit, message).accepted:
                     return self._fuse(unit)
             case Sighting():
-                changed = note_sighting(self.state, unit, message)
-                return self._repin(changed) if changed else []
+                return self._note_sighting(unit, message)
             case CommandReply():
                 return self._note_reply(unit, message)
             case _:
                 pass
         return []
+
+    def _note_sighting(self, unit: UnitState, sighting: Sighting) -> list[Output]:
+        """Its pin is solved at once, but one in a second at most: others wait, one unit a tick."""
+        state = self.state
+        changed = note_sighting(state, unit, sighting)
+        if changed and state.t_ns - state.sighted_ns < NS_PER_S:
+            for unit_id in changed:
+                note_late(state.late, unit_id, state.t_ns)
+            return [PinsTouched(tuple(sorted(changed)))]
+        if changed:
+            state.sighted_ns = state.t_ns
+        return self._repin(changed) if changed else []
 
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
         now_ns = self.state.t_ns  # an answer may have waited in the unit's journal

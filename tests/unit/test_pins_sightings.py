@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
+from base_station.events import PinsTouched, TrailFilled
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.path_graph import PathGraph
@@ -104,6 +105,25 @@ def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
     walk.go(30)
     sighting(walk, SightingKind.BEACON, "b1", 4.0)
     assert len(walk.script.pipeline.state.pins) == 2
+
+
+def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
+    """Each costs a whole past, and what is said live waits for it."""
+    script, begin_s = walk.script, walk.script.now_s - walk.walked_s
+    script.act(PlaceBeacon("door", "", *truth(10.0), None, 0.3, 3.0))
+    begun = len(script.outputs)
+    for number in range(30):
+        header = script.header("FF-01", begin_s + 10.0 * number)
+        sighting = Sighting(header, SightingKind.BEACON, "door", 2.0)
+        script.now_s += 0.01
+        script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(sighting))
+    told = script.outputs[begun:]
+    assert sum(isinstance(one, TrailFilled) for one in told) <= 1
+    assert sum(isinstance(one, PinsTouched) for one in told) == len(script.pipeline.state.pins) > 9
+    script.wait(4)
+    told = script.outputs[begun:]
+    assert sum(isinstance(one, TrailFilled) for one in told) <= 2
+    assert "waiting" not in {walk.state(one) for one in script.pipeline.state.pins}
 
 
 def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None:
