@@ -146,7 +146,7 @@ class GpsInertialFuser:
 
     def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
         memory, last = self._memory, self._memory.last
-        if last is None:
+        if last is None or memory.assumed:  # it is another frame, and tells nothing of this one
             return learnt
         fix_ns = memory.fix_t_mono_ns
         inside = fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS

@@ -104,6 +104,23 @@ def test_walls_of_a_wing_leave_open_who_is_right(kind: FuserKind, angle_deg: flo
     assert estimates[-1].heading_std_rad > math.radians(0.4 * angle_deg)
 
 
+@pytest.mark.parametrize("is_said", [True, False], ids=["a start is said", "nothing is"])
+def test_who_is_in_a_frame_of_their_own_tells_nothing_of_the_building(
+    kind: FuserKind, is_said: bool
+) -> None:
+    """Rooms round and round, and nothing says where the own frame lies."""
+    fuser, learnt, place = kind.new(), LearntBuilding(), 0j
+    if is_said:
+        fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.03))
+    for row in range(600):
+        place += 0.5 * 1j ** (row // 12)
+        header = Header("FF-01", 1, row + 1, said.mono_ns(0.5 * row))
+        north_m, east_m, way_m = place.real, place.imag, 0.5 * row
+        fuser.advance(said.position(header, north_m=north_m, east_m=east_m, distance_m=way_m))
+        learnt = fuser.recognise(learnt)
+    assert (learnt.axis is not None) is is_said
+
+
 def _through_two_buildings(fuser: Fuser, outside_m: int, angle_rad: float) -> Iterator[Estimate]:
     """Of an own path that goes round rooms in one, then outside, and round rooms in another whose
     walls stand at an angle; the own heading is given as 0, so that the fused one is how far off it
