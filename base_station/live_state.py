@@ -138,12 +138,21 @@ class UnitState(Sender):
         """In whose clock, and since whose start, its positions are: of a run that has only just
         begun there are none yet.
         """
-        agent, position = self.tracker, self.position
-        boots = self.boots if agent is None or not self.is_tracked_remotely else agent.boots
+        boots, position = self._path_boots, self.position
         if position is None or boots[-1].boot_id == position.header.boot_id:  # nearly always
             return boots[-1]
-        of_path = (one for one in boots if one.boot_id == position.header.boot_id)
-        return next(of_path, boots[-1])
+        return self.path_boot_of(position) or boots[-1]
+
+    def path_boot_of(self, position: Position) -> BootState | None:
+        """The run that said this position; None: nobody knows it."""
+        boot_id = position.header.boot_id
+        return next((one for one in reversed(self._path_boots) if one.boot_id == boot_id), None)
+
+    @property
+    def _path_boots(self) -> list[BootState]:
+        """The runs of its program, or of the agent that tracks for it."""
+        agent = self.tracker
+        return self.boots if agent is None or not self.is_tracked_remotely else agent.boots
 
     @property
     def shown_status(self) -> Status | None:

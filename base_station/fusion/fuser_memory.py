@@ -18,6 +18,7 @@ class Memory(msgspec.Struct):
     horizontal: SavedWalled | None = None
     height: SavedHeight | None = None
     own: bytes = b""  # the own path
+    ended: bytes = b""  # of the run before this one, as it ended
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
     height_assumed: bool = True  # and nothing told yet that it did not begin upstairs
     last: Position | None = None

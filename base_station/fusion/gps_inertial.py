@@ -70,6 +70,7 @@ class GpsInertialFuser:
         self._height = HeightFilter(kind)
         self._own = OwnPath(kind, memory.own)
         self._fixes = FixTaker(kind, memory, self._horizontal, self._height)
+        self._ended = kind.restore(memory.ended) if memory.ended else None  # the run before this
         if memory.horizontal is not None and memory.height is not None:
             self._horizontal.load(memory.horizontal)
             self._height.load(memory.height)
@@ -78,6 +79,7 @@ class GpsInertialFuser:
         self._memory.horizontal = self._horizontal.save()
         self._memory.height = self._height.save()
         self._memory.own = self._own.save()
+        self._memory.ended = b"" if self._ended is None else self._ended.save()
         return msgspec.msgpack.encode(self._memory)
 
     def start(self, start: Start) -> None:
@@ -161,6 +163,8 @@ class GpsInertialFuser:
         self._height.shift(down_m)
         self._memory.trust.lose_path()
         self._memory.recognition.forget()
+        if self._ended is not None:
+            self._ended.reframe(turn_rad, north_m, east_m, down_m)
 
     def estimate(self) -> Estimate | None:
         memory = self._memory
@@ -180,11 +184,11 @@ class GpsInertialFuser:
 
     def recall(self, position: Position) -> Estimate | None:
         """The path from then to now is taken back from the present place, with the heading and
-        scale that are believed now.
+        scale that are believed now; that of the run before this one, from where it had led.
         """
         last, kind = self._memory.last, self._kind
         if last is None or last.header.boot_id != position.header.boot_id:
-            return None
+            return None if self._ended is None else self._ended.recall(position)
         placed = self._horizontal.placed_before(
             last.north_m - position.north_m, last.east_m - position.east_m
         )
@@ -259,6 +263,7 @@ class GpsInertialFuser:
         Fixes are as old as they were, whatever its clock has done; where nobody knows how long it
         was away, it went on or went back.
         """
+        self._ended = self._as_it_ends()
         memory = self._memory
         known = 0.0 < away_s < math.inf
         back_ns = last_ns + round(away_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
@@ -273,3 +278,10 @@ class GpsInertialFuser:
         self._own = OwnPath(self._kind)
         memory.recognition = Recognition(shared_m2=memory.recognition.shared_m2)
         self._horizontal.hear_anew()
+
+    def _as_it_ends(self) -> GpsInertialFuser:
+        """Where this run has led, for what comes of it later."""
+        self._ended = None
+        memory = msgspec.msgpack.decode(self.save(), type=Memory)
+        memory.path, memory.recognition = PathMemory(), Recognition()
+        return GpsInertialFuser(self._kind, memory)

@@ -152,8 +152,9 @@ class Fuser(Protocol):
         ...
 
     def recall(self, position: Position) -> Estimate | None:
-        """Where the wearer was at an earlier position of the unit's own path, as it looks now;
-        None where that path does not reach the present.  Changes nothing.
+        """Where the wearer was at another position of the unit's own path, as it looks now; of the
+        run of its program before this one, as it looked when that was over.  None where it is of
+        neither.  Changes nothing.
         """
         ...
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from base_station.boot_state import BootState
 from base_station.fusion.port import Estimate
 from base_station.live_state import StationState, UnitState
 from base_station.site.storeys import floor_at, sureness
@@ -16,12 +17,15 @@ ASSUMED_STD_M = 6.0  # a unit may have been switched on upstairs
 def fused_message(
     state: StationState,
     unit: UnitState,
+    boot: BootState,
     estimate: Estimate,
     fuser: str,
     held: int | None,
     header: Header,
 ) -> FusedPosition:
-    """``held``: the floor it was on, where that is known."""
+    """``boot``: in whose clock the estimate's time is; ``held``: the floor it was on, where that is
+    known.
+    """
     storeys = state.storeys_at(estimate.north_m, estimate.east_m)
     floor = floor_at(storeys, estimate.down_m, held)
     std_down_m = estimate.std_down_m
@@ -36,7 +40,7 @@ def fused_message(
     return FusedPosition(  # by place: every position comes through here
         header,
         unit.unit_id,
-        min(unit.path_boot.station_ns(estimate.t_mono_ns), header.t_utc_ns),
+        min(boot.station_ns(estimate.t_mono_ns), header.t_utc_ns),
         estimate.north_m,
         estimate.east_m,
         estimate.down_m,

@@ -232,14 +232,15 @@ class Positioning:
         held = unit.fused.floor if unit.fused is not None else None
         history = state.paths.get(unit.unit_id)
         was = held if history is None else history.floor
-        plain = fused_message(state, unit, estimate, self._kind.name, was, header)
+        boot = unit.path_boot
+        plain = fused_message(state, unit, boot, estimate, self._kind.name, was, header)
         is_drawn = _is_drawn(state, plain)
         if is_drawn:
             unit.extend_plain_trail(plain)
         unit.fused, pinned = plain, self._pinned.get(unit.unit_id)
         if pinned is not None:
             known = pinned.estimate() or estimate
-            unit.fused = fused_message(state, unit, known, self._kind.name, held, header)
+            unit.fused = fused_message(state, unit, boot, known, self._kind.name, held, header)
         if is_drawn:
             unit.extend_trail(unit.fused)
         unit.reach = ()
@@ -258,27 +259,30 @@ class Positioning:
         """Where the wearer was at a position that came late; the trail is filled in there.  Said
         once for each second, as trails and the store keep it.
         """
-        boot, t_mono_ns = unit.path_boot, position.header.t_mono_ns
-        if boot.boot_id != position.header.boot_id or not boot.is_placed:
+        boot, running = unit.path_boot_of(position), unit.path_boot
+        if boot is None or not boot.is_placed:
             return None
+        t_ns = boot.station_ns(position.header.t_mono_ns)
+        if boot is not running and t_ns >= running.there_from_ns:
+            return None  # another machine under the same name
         fuser, pinned = self._fuser(unit), self._pinned.get(unit.unit_id)
         fuser.remember(position)
         if pinned is not None:
             pinned.remember(position)
-        second = boot.station_ns(t_mono_ns) // NS_PER_S
+        second = t_ns // NS_PER_S
         if second == unit.recalled_s:
             return None
         estimate = fuser.recall(position)
         if estimate is None:
             return None
         unit.recalled_s = second
-        fused = plain = fused_message(state, unit, estimate, self._kind.name, None, header)
+        fused = plain = fused_message(state, unit, boot, estimate, self._kind.name, None, header)
         is_drawn = _is_drawn(state, plain)
         if is_drawn:
             unit.fill_plain_trail(plain)
         known = None if pinned is None else pinned.recall(position)
         if known is not None:
-            fused = fused_message(state, unit, known, self._kind.name, None, header)
+            fused = fused_message(state, unit, boot, known, self._kind.name, None, header)
         if is_drawn:
             unit.fill_trail(fused)
         if unit.unit_id in state.paths:

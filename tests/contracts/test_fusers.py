@@ -16,6 +16,7 @@ from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
 from shared.clock import NS_PER_S
 from shared.geo import rotate
+from shared.messages import Position
 from shared.quality import Quality
 
 CHI2_2_95 = 5.991
@@ -244,6 +245,39 @@ def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> No
             total += 1
         assert fuser.save() == before
     assert inside / total > 0.85
+
+
+def restarted(position: Position) -> Position:
+    """Of the next run of the unit's program."""
+    header = msgspec.structs.replace(position.header, boot_id=position.header.boot_id + 1)
+    return msgspec.structs.replace(position, header=header)
+
+
+def test_what_is_recalled_of_the_run_before_is_as_it_was_when_that_was_over(
+    kind: FuserKind, walk: Walk
+) -> None:
+    fuser = kind.new()
+    go(fuser, walk, receiver(), 0, 100)
+    earlier, later = walk.position(90), walk.position(110)
+    before = fuser.recall(earlier)
+    assert before is not None
+    fuser.advance(restarted(walk.position(0)), 30.0)
+    fuser.correct(receiver().fix(float(walk.t_s[130]), walk.truth_m[130] + 50.0))
+    assert fuser.recall(earlier) == before
+    fuser = kind.restore(fuser.save())
+    assert fuser.recall(earlier) == before
+    behind = fuser.recall(later)
+    assert behind is not None, "it was not heard before the run was over"
+    assert math.dist((behind.north_m, behind.east_m), walk.truth_m[110]) < 10.0
+    assert behind.std_north_m > before.std_north_m
+    fuser.reframe(math.pi / 2, 100.0, 0.0, 3.0)
+    moved = fuser.recall(earlier)
+    assert moved is not None
+    place = moved.north_m - 100.0, moved.east_m, moved.down_m - 3.0
+    assert place == pytest.approx((-before.east_m, before.north_m, before.down_m))
+    fuser.advance(restarted(restarted(walk.position(0))), 30.0)
+    assert fuser.recall(earlier) is None, "of the one before that nothing is known any more"
+    assert fuser.recall(restarted(walk.position(1))) is not None
 
 
 def test_another_run_of_the_unit_cannot_be_recalled(kind: FuserKind, walk: Walk) -> None:

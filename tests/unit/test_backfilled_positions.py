@@ -29,13 +29,13 @@ class Walked:
         self.pipeline.step(Received(START_NS, STATION_ID, action))
         self._make_position = make_position
 
-    def position(self, second: int, part: float = 0.0):
+    def position(self, second: int, part: float = 0.0, boot_id: int = 7):
         t_s = second + part
-        header = Header("FF-01", 7, second + 1 + round(1000 * part), round(t_s * NS_PER_S))
+        header = Header("FF-01", boot_id, second + 1 + round(1000 * part), round(t_s * NS_PER_S))
         return self._make_position(header=header, north_m=t_s, east_m=0.0, distance_m=t_s)
 
-    def live(self, second: int):
-        key, payload = POSITION.key("FF-01"), encode(self.position(second))
+    def live(self, second: int, boot_id: int = 7):
+        key, payload = POSITION.key("FF-01"), encode(self.position(second, boot_id=boot_id))
         return self.pipeline.step(event_of(START_NS + second * NS_PER_S, key, payload))
 
     def late(self, second: int, at_second: int, part: float = 0.0):
@@ -102,6 +102,29 @@ def test_a_mayday_that_the_radio_lost_is_raised_when_it_comes(walked):
     key = backfilled_key("FF-01", EVENT.suffix)
     walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, encode(mayday)))
     assert any(alarm.rule == "mayday" for alarm in walked.pipeline.state.alarms.values())
+
+
+def test_where_the_run_before_led_is_filled_in(walked):
+    """The unit's program was started again where the radio did not reach."""
+    for second in range(50, 56):
+        walked.live(second, boot_id=8)
+    before = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position))
+    for second in (*range(11, 20), *range(31, 45)):
+        outputs = walked.late(second, at_second=56)
+        fused = next(output for output in outputs if isinstance(output, FusedPosition))
+        assert fused.t_meas_ns == START_NS + second * NS_PER_S
+        assert fused.north_m == pytest.approx(second)
+    assert msgspec.msgpack.encode((walked.unit.fused, walked.unit.position)) == before
+    trail = [(step.t_ns - START_NS) // NS_PER_S for step in walked.unit.trail]
+    assert trail == [*range(45), 50], "which way the new run walks nobody knows"
+
+
+def test_another_machine_under_the_same_name_is_not_drawn(walked):
+    for second in range(50, 56):
+        walked.live(second, boot_id=8)
+    for second in (52, 54):
+        outputs = walked.late(second, at_second=56)
+        assert not any(isinstance(output, FusedPosition) for output in outputs)
 
 
 def test_a_run_of_the_program_that_nobody_heard_is_not_taken_for_the_present_one(walked):

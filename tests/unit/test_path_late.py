@@ -45,6 +45,26 @@ def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
 
+def test_what_comes_late_of_the_run_before_lies_behind_what_was_heard_of_it() -> None:
+    """The radio was gone, and the unit's program was started again meanwhile."""
+    history = PathHistory()
+    for t_s in (0, 10, 20):
+        history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
+    for t_s in (60, 70, 80):
+        history.note(at(float(t_s), t_s - 60.0, boot_id=2), t_s * NS_PER_S, jumped=False)
+    for t_s in (45.0, 40.0, 30.0, 15.0, 65.0):  # the last one said while the next run was there
+        fill(history, at(t_s, t_s))
+    arrays = history.arrays()
+    assert (arrays.t_ns / NS_PER_S).tolist() == [0, 10, 15, 20, 30, 40, 45, 60, 70, 80]
+    assert arrays.own_m[:, 0].tolist() == [0, 10, 15, 20, 30, 40, 45, 0, 10, 20]
+    assert np.flatnonzero(arrays.flags).tolist() == [7], "where the own frame is another one"
+    assert arrays.flags[7] == RESTART
+    assert arrays.moving_s.tolist() == pytest.approx([0, 10, 5, 5, 10, 10, 5, 0, 10, 10])
+    history.note(at(90.0, 0.0, boot_id=3), 90 * NS_PER_S, jumped=False)
+    fill(history, at(50.0, 50.0))
+    assert len(history.arrays()) == 11, "of the one before that nobody knows where it led"
+
+
 def test_what_is_later_than_the_path_has_come_to_fills_nothing() -> None:
     """Its clock was judged otherwise meanwhile."""
     history = walked(60)

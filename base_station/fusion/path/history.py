@@ -8,6 +8,7 @@ that a unit that starts again, or whose clock is judged better later, goes on in
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Callable
 
 import msgspec
 import numpy as np
@@ -51,6 +52,7 @@ class PathHistory(msgspec.Struct):
 
     boot_id: int = 0
     boot_begin_ns: int = 0
+    ended_boot_id: int = 0  # of the run before it
     packed: Packed = msgspec.field(default_factory=Packed)
     points: list[Point] = msgspec.field(default_factory=list)  # behind the packed ones
     fixes: PathFixes = msgspec.field(default_factory=PathFixes)
@@ -130,18 +132,21 @@ class PathHistory(msgspec.Struct):
 
     def fill(self, position: Position, t_ns: int, estimate: Estimate, floor: int | None) -> None:
         """A position that came late, and where it was without any pin; it is wanted where none near
-        it is known, in a gap or before the first one of the running boot that was heard.
+        it is known: in a gap, before the first one of the running boot that was heard, or behind
+        the last one of the boot before.
         """
         points = self.points
         row = bisect_left(points, t_ns, key=lambda point: point.t_ns)
-        if row == len(points) or position.header.boot_id != self.boot_id:
+        if row == len(points):
+            return
+        joins = self._joining(position.header.boot_id, t_ns, row)
+        if joins is None:
             return
         near = points[max(row - 1, 0) : row + 1]
         if min(abs(point.t_ns - t_ns) for point in near) < FILL_NS:
             return
         late = _point_of(position, t_ns, 0 if position.quality is Quality.GOOD else DOUBTFUL)
         _show(late, estimate, floor)
-        joins = self._begin_earlier if t_ns < self.boot_begin_ns else self._fill_gap
         if joins(late, row):
             points.insert(row, late)
             self.straight, self.filled_ns = Straight(), points[-1].t_ns
@@ -232,6 +237,7 @@ class PathHistory(msgspec.Struct):
         elif self.points and self.points[-1].t_ns < self.opened_ns:
             self._cut(self.opened_ns)
         self.is_start_over |= bool(self.boot_id) and not self.points
+        self.ended_boot_id = self.boot_id if self.points else 0
         self.boot_id, self.boot_begin_ns = boot_id, t_ns
 
     def _cut(self, before_ns: int) -> None:
@@ -240,6 +246,16 @@ class PathHistory(msgspec.Struct):
         self.packed.cut(before_ms, POINT_ROW)
         self.points = [point for point in self.points if point.t_ns // NS_PER_MS >= before_ms]
         self.fixes.trim(before_ms)
+
+    def _joining(self, boot_id: int, t_ns: int, row: int) -> Callable[[Point, int], bool] | None:
+        """How a position of that time joins the path; None: nobody knows where it belongs."""
+        is_before = t_ns < self.boot_begin_ns
+        if boot_id == self.boot_id:
+            return self._begin_earlier if is_before else self._fill_gap
+        if boot_id == self.ended_boot_id and is_before:
+            is_last = self.points[row].t_ns >= self.boot_begin_ns
+            return self._end_later if is_last else self._fill_gap
+        return None
 
     def _fill_gap(self, late: Point, row: int) -> bool:
         after = self.points[row]
@@ -265,6 +281,15 @@ class PathHistory(msgspec.Struct):
         if self.start_ns == self.boot_begin_ns:
             self.start_ns = late.t_ns
         self.boot_begin_ns = late.t_ns
+        return True
+
+    def _end_later(self, late: Point, row: int) -> bool:
+        """The own frame of the boot before."""
+        if row == 0:
+            return False
+        last = self.points[row - 1]
+        if abs(last.north_m - late.north_m) + abs(last.east_m - late.east_m) > MOVING_M:
+            late.moving_ms = (late.t_ns - last.t_ns) // NS_PER_MS
         return True
 
     def _is_settled(self, tip: Point, flags: int) -> bool:
