@@ -78,8 +78,9 @@ def test_where_somebody_was_is_said_once_for_each_second(walked):
         if isinstance(output, FusedPosition)
     ]
     assert said == pytest.approx([11.1, 12.1])
-    saved = read_checkpoint(walked.pipeline.checkpoint()).fusers["FF-01"]
-    path = msgspec.msgpack.decode(saved, type=Memory).path
+    saved = read_checkpoint(walked.pipeline.checkpoint())
+    assert saved is not None
+    path = msgspec.msgpack.decode(saved.fusers["FF-01"], type=Memory).path
     known_s = {round(point.t_ns / NS_PER_S, 1) for point in path.points}
     assert known_s >= {11.1, 11.3, 11.5, 11.7, 11.9, 12.1, 12.3, 12.5, 12.7, 12.9}
 

@@ -52,8 +52,8 @@ def test_what_comes_late_of_the_run_before_lies_behind_what_was_heard_of_it() ->
         history.note(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
     for t_s in (60, 70, 80):
         history.note(at(float(t_s), t_s - 60.0, boot_id=2), t_s * NS_PER_S, jumped=False)
-    for t_s in (45.0, 40.0, 30.0, 15.0, 65.0):  # the last one said while the next run was there
-        fill(history, at(t_s, t_s))
+    for late_s in (45.0, 40.0, 30.0, 15.0, 65.0):  # of the last one the next run was there
+        fill(history, at(late_s, late_s))
     arrays = history.arrays()
     assert (arrays.t_ns / NS_PER_S).tolist() == [0, 10, 15, 20, 30, 40, 45, 60, 70, 80]
     assert arrays.own_m[:, 0].tolist() == [0, 10, 15, 20, 30, 40, 45, 0, 10, 20]
