@@ -23,7 +23,7 @@ _SAYS_RATE = re.compile(r"positions at (\d+(?:\.\d+)?) Hz")
 def position_rate_of(reply: CommandReply) -> float | None:
     """What a unit says in it to have set the rate to, in Hz."""
     said = _SAYS_RATE.fullmatch(reply.detail)
-    return float(said[1]) if said and reply.state is CommandState.RECEIVED else None
+    return float(said[1]) if said else None
 
 
 class CommandDesk:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +15,7 @@ import pytest
 from edge.black_box import BlackBox
 from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.raw_stream import RawStream, batch_of, sensor_of
+from edge.recording_time import ahead_of
 from edge.samples import ButtonPress, ImuBatch, SensorBatch
 from edge.sources import open_source
 from edge.sources.black_box import BlackBoxSource
@@ -20,7 +24,9 @@ from edge.tracker import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.errors import RecordingError
+from shared.mcap_log import SegmentWriter
 from shared.messages import Message, Position, Status, UnitEvent
+from tests.waiting import PATIENCE_S, until
 
 SCENARIO = "simulated:climbs-stairs?seed=3"
 BATCHES = 800
@@ -137,6 +143,93 @@ def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
     segment.write_bytes(segment.read_bytes()[: segment.stat().st_size // 2])
     torn = sum(len(batch.imu) for batch in BlackBoxSource(segment).batches())
     assert 0.2 * whole < torn < 0.8 * whole
+
+
+def boxed(folder: Path, clock: ManualClock, **more: Any) -> tuple[BlackBox, RawStream]:
+    raw = RawStream("u1", 7)
+    description = raw.description(0, open_source(SCENARIO).description, source="", tracker="")
+    return BlackBox(folder, description, 10**9, clock, **more), raw
+
+
+def written(box: BlackBox) -> None:
+    """All that was given has been taken from the queue, and the batch before it written."""
+    until(box._waiting.empty)
+
+
+def test_any_segment_can_be_played_by_itself(tmp_path):
+    """A station fetches those of its window."""
+    clock = ManualClock()
+    box, raw = boxed(tmp_path, clock)
+    for batch in itertools.islice(open_source(SCENARIO).batches(), 300):
+        box.write(raw.messages(batch))
+        written(box)
+        clock.advance(1.0)
+    box.close()
+    segments = list(tmp_path.glob("*/*.mcap"))
+    assert len(segments) >= 3
+    assert sum(1 for one in segments for _ in BlackBoxSource(one).batches()) == 300
+
+
+def test_what_came_last_is_on_the_disk_though_nothing_comes_after_it(tmp_path):
+    """The sensor has failed, and then the unit is switched off."""
+    clock = ManualClock()
+    box, raw = boxed(tmp_path, clock)
+    box.write(raw.messages(next(open_source(SCENARIO).batches())))
+
+    def is_there() -> bool:
+        clock.advance(1.0)
+        segments = tmp_path.glob("*/*.mcap")
+        return any(True for one in segments for _ in BlackBoxSource(one).batches())
+
+    until(is_there)
+    box.close()
+
+
+def is_noted(boot: Path, ahead_s: float) -> bool:
+    return ahead_of(boot) == round(ahead_s * NS_PER_S)
+
+
+def test_how_far_its_time_is_off_is_noted_again_where_the_station_s_was_set(tmp_path):
+    class Set(ManualClock):
+        def set_back(self, by_s: float) -> None:
+            self._utc_offset_ns -= round(by_s * NS_PER_S)
+
+    clock = Set()
+    box, raw = boxed(tmp_path, clock, utc_std_s=lambda: 0.1)
+    (boot,) = tmp_path.iterdir()
+    batches = open_source(SCENARIO).batches()
+    for set_back_s, ahead_s in ((0.0, 0), (0.5, 0), (3600.0, 3600.5)):
+        clock.set_back(set_back_s)
+        box.write(raw.messages(next(batches)))
+        until(partial(is_noted, boot, ahead_s))
+    box.close()
+
+
+def test_a_disk_that_hangs_costs_samples_and_not_the_unit_s_memory(tmp_path, monkeypatch, caplog):
+    asked, answers = Event(), Event()
+
+    class Hanging(SegmentWriter):
+        def write(self, *what: Any, **how: Any) -> bool:
+            asked.set()
+            answers.wait(PATIENCE_S)
+            return super().write(*what, **how)
+
+    monkeypatch.setattr("edge.black_box.SegmentWriter", Hanging)
+    monkeypatch.setattr("edge.black_box._WAITING_MAX", 3)
+    monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.0)
+    box, raw = boxed(tmp_path, ManualClock())
+    batches = [raw.messages(one) for one in itertools.islice(open_source(SCENARIO).batches(), 50)]
+    box.write(batches[0])
+    assert asked.wait(PATIENCE_S)
+    for batch in batches[1:]:
+        box.write(batch)
+    assert box._waiting.qsize() == 3
+    assert "has not answered" in str(box.fault)
+    monkeypatch.setattr("edge.disk_watch.HANGS_S", PATIENCE_S)
+    answers.set()
+    box.close()
+    assert "46 batches of samples are not kept" in caplog.text
+    assert sum(1 for _ in BlackBoxSource(next(tmp_path.iterdir())).batches()) == 4
 
 
 def fill(folder: Path, boot_id: int, clock: ManualClock) -> Path:

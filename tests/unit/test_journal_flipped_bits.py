@@ -75,6 +75,7 @@ def served(spool: Spool, what: str) -> list[int]:
         "payload = 77",
         "payload = CAST(x'ffff' AS TEXT)",
         "payload = 0.5",
+        "seq = seq + 0.5",
     ],
 )
 def test_what_is_behind_it_is_given_all_the_same(path: Path, seq: int, damage: str) -> None:

@@ -210,6 +210,14 @@ def test_the_rate_that_was_set_is_gone_when_the_unit_was_switched_off(tmp_path):
     assert RateBoot(tmp_path, 20_000.0).known_hz is None
 
 
+def test_of_a_boot_of_which_no_event_is_left_no_rate_is_known(tmp_path):
+    RateBoot(tmp_path, 30.0, 2.0)
+    path = tmp_path / "journal.sqlite"
+    with closing(sqlite3.connect(path)) as journal, journal:
+        journal.execute("DELETE FROM message WHERE suffix = ?", (EVENT.suffix,))
+    assert RateBoot(tmp_path, 500.0).known_hz is None
+
+
 def test_the_newest_answers_are_remembered_across_boots(tmp_path):
     first = DeskBoot(tmp_path)
     for number in range(2 * REMEMBERED + 5):

@@ -133,6 +133,32 @@ def test_what_the_station_has_goes_first(tmp_path):
     spool.close()
 
 
+def test_of_what_the_station_has_the_oldest_boot_goes_first(tmp_path):
+    """What the last one said, such as a mayday, is still to be known at the next start."""
+    for boot_id in (1, 2):
+        spool = spool_at(tmp_path, boot_ids=[boot_id])
+        spool.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
+        spool.acknowledge(boot_id, 600)
+        spool.close()
+    spool = spool_at(tmp_path, boot_ids=[3], limit_bytes=1 * MB)
+    spool.append([entry(1, EVENT)])
+    assert len(seqs(spool, 1)) < 600
+    assert len(seqs(spool, 2)) == 600
+    spool.close()
+
+
+def test_room_is_made_for_more_than_the_next_message(tmp_path, monkeypatch):
+    """It takes its time."""
+    monkeypatch.setattr(journal_room, "_ROWS_FREED_AT_ONCE", 5)
+    spool = spool_at(tmp_path, limit_bytes=1 * MB)
+    spool.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
+    spool.append([entry(1501)])
+    monkeypatch.setattr(spool, "_make_room", lambda: pytest.fail("there is room"))
+    for seq in range(1502, 1522):
+        spool.append([entry(seq, size=800)])
+    spool.close()
+
+
 def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_path):
     first = spool_at(tmp_path, boot_ids=[1])
     first.append([entry(seq) for seq in range(1, 101)])
