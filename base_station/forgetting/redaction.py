@@ -172,7 +172,10 @@ class Redactor:
                 gone = any(covers(one, at) for one in (unit_id, other) for at in (t_ns, at_ns))
                 return None if gone else message
             case StartTogether(unit_ids=unit_ids):
-                kept = tuple(one for one in unit_ids if not covers(one, action.t_ns or t_ns))
+                at_ns = action.t_ns or t_ns
+                kept = tuple(
+                    one for one in unit_ids if not any(covers(one, at) for at in (t_ns, at_ns))
+                )
                 if kept == unit_ids:
                     return message
                 fewer = msgspec.structs.replace(action, unit_ids=kept)

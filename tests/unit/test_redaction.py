@@ -28,7 +28,8 @@ from shared.messages import (
     OperatorAction,
     Temperature,
 )
-from shared.messages.station import Assign, SendCommand, SetThresholds
+from shared.messages.pins import SetMeeting, SetPin, StartTogether
+from shared.messages.station import Action, Assign, SendCommand, SetStart, SetThresholds
 
 HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
 
@@ -152,3 +153,53 @@ def test_of_another_unit_what_a_journal_brought_stays_whenever_it_was_said() -> 
     message = encode(Temperature(Header("bert", 8, 3, 50), 20.0))
     record = 150, backfilled_key("bert", TEMPERATURE.suffix), message
     assert redact(record) == [record]
+
+
+def pin(unit_id: str, t_ns: int) -> SetPin:
+    return SetPin("p", unit_id, t_ns, 3.0, 4.0, 1.0, 0, None, 0.3, "")
+
+
+def together(*unit_ids: str, t_ns: int) -> StartTogether:
+    return StartTogether("p", unit_ids, t_ns, 3.0, 4.0, 1.0, 0, None, 0.3, "")
+
+
+def met(unit_id: str, other_id: str, t_ns: int) -> SetMeeting:
+    return SetMeeting("p", unit_id, other_id, t_ns, 1.0, "")
+
+
+def start(unit_id: str) -> SetStart:
+    return SetStart(unit_id, 3.0, 4.0, 0.0, 0.1, 0.5, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("said_ns", "action", "left"),
+    [
+        (150, start("anna"), None),
+        (150, start("bert"), start("bert")),
+        (250, start("anna"), start("anna")),
+        (150, pin("anna", 0), None),
+        (250, pin("anna", 150), None),  # of when she wore it, said later
+        (150, pin("anna", 50), None),  # of before, said while she wore it
+        (250, pin("anna", 0), pin("anna", 0)),
+        (250, pin("anna", 220), pin("anna", 220)),
+        (150, met("bert", "anna", 0), None),
+        (150, met("anna", "bert", 0), None),
+        (250, met("bert", "anna", 150), None),
+        (150, met("bert", "carl", 0), met("bert", "carl", 0)),
+        (150, together("anna", "bert", t_ns=0), together("bert", t_ns=0)),
+        (250, together("anna", "bert", t_ns=150), together("bert", t_ns=150)),
+        (150, together("anna", "bert", t_ns=50), together("bert", t_ns=50)),
+        (150, together("anna", t_ns=0), None),
+        (250, together("anna", "bert", t_ns=220), together("anna", "bert", t_ns=220)),
+    ],
+)
+def test_where_somebody_was_said_to_be_goes_and_where_others_were_stays(
+    said_ns: int, action: Action, left: Action | None
+) -> None:
+    redact = Redactor(Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), Clocks())
+
+    def record(done: Action) -> tuple[int, str, bytes]:
+        message = OperatorAction(HEADER, "a-1", "chief", done)
+        return said_ns, OPERATOR.key(STATION_ID), encode(message)
+
+    assert redact(record(action)) == ([] if left is None else [record(left)])
