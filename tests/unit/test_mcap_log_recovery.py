@@ -8,10 +8,12 @@ from typing import NoReturn
 
 import pytest
 
+from shared.channels import TEMPERATURE
 from shared.errors import LogError
 from shared.mcap_log import (
     SegmentReader,
     SegmentWriter,
+    read_log,
     recover_log,
     rewrite_segment,
     segment_paths,
@@ -150,3 +152,19 @@ def test_a_log_that_is_somebody_elses_is_not_called_torn(
     monkeypatch.setattr(Path, "iterdir", refused)
     with pytest.raises(LogError, match="run this as the user to whom it belongs"):
         recover_log(tmp_path)
+
+
+@pytest.mark.parametrize("lost_bytes", [0, 1, 40])
+def test_a_chunk_whose_index_is_torn_off_is_found_under_every_key(
+    tmp_path: Path, lost_bytes: int
+) -> None:
+    keys = [TEMPERATURE.key(unit_id) for unit_id in ("anna", "bert", "carl")]
+    writer = SegmentWriter(tmp_path)
+    for key in keys:
+        writer.write(T0_NS, key, b"said")
+    writer.flush()
+    [path] = segment_paths(tmp_path)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size - lost_bytes])
+    assert recover_log(tmp_path)
+    for key in keys:
+        assert [record[1] for record in read_log(tmp_path, keys={key})] == [key]
