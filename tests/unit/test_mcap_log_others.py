@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
+from mcap.data_stream import ReadDataStream
+from mcap.reader import make_reader
+from mcap.records import Chunk
 
 from shared.channels import STATUS
 from shared.clock import ManualClock
@@ -70,3 +74,34 @@ def test_topics_made_for_foxglove_are_there_for_others_only(tmp_path: Path) -> N
     with SegmentReader(path) as reader:
         assert reader.info().messages == 1
         assert len(list(reader.records(derived=True))) == 2
+
+
+def test_the_index_of_a_file_says_of_its_chunks_what_they_say_themselves(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for number in range(3):
+        writer.write(T0_NS + number, KEY, bytes(100 * number))
+        writer.write(T0_NS + number, STATUS.key("bert"), b"said", urgent=True)
+    writer.close()
+    [path] = segment_paths(tmp_path)
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+        assert summary is not None
+        assert len(summary.chunk_indexes) == 3
+        for index in summary.chunk_indexes:
+            file.seek(index.chunk_start_offset + 9)
+            chunk = Chunk.read(ReadDataStream(BytesIO(file.read(index.chunk_length - 9))))
+            assert (index.message_start_time, index.message_end_time, index.compression) == (
+                chunk.message_start_time, chunk.message_end_time, chunk.compression,
+            )  # fmt: skip
+            assert (index.compressed_size, index.uncompressed_size) == (
+                len(chunk.data), chunk.uncompressed_size,
+            )  # fmt: skip
+            behind = index.chunk_start_offset + index.chunk_length
+            places = sorted(index.message_index_offsets.values())
+            assert places[0] == behind
+            assert behind < places[1] < behind + index.message_index_length
+        statistics = summary.statistics
+        assert statistics is not None
+        assert (statistics.message_start_time, statistics.message_end_time) == (T0_NS, T0_NS + 2)
+        assert sorted(statistics.channel_message_counts.values()) == [3, 3]
+        assert (statistics.attachment_count, statistics.metadata_count) == (0, 0)

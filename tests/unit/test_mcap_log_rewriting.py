@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from shared.mcap_log import (
+    LogRecord,
     SegmentPolicy,
     SegmentReader,
     SegmentState,
     SegmentWriter,
+    location_topic,
     recover_log,
     rewrite_segment,
     segment_paths,
@@ -45,3 +47,20 @@ def test_who_reads_a_segment_while_it_is_written_anew_has_it_as_it_was(tmp_path:
         rewrite_segment(path, lambda record: [(record[0], record[1], b"anew")])
         assert [one[2] for one in (first, *records)] == [b"\0", b"\1", b"\2"]
     assert on_disk(tmp_path) == [b"anew"] * 3
+
+
+def test_what_is_there_for_other_programs_stays_in_a_segment_that_is_written_anew(
+    tmp_path: Path,
+) -> None:
+    writer = SegmentWriter(tmp_path)
+    for key in (KEY, location_topic("anna")):
+        writer.write(T0_NS, key, b"said")
+    writer.close()
+    [path] = segment_paths(tmp_path)
+
+    def forget(record: LogRecord) -> list[LogRecord]:
+        return [(record[0], record[1], b"")] if record[1] == KEY else [record]
+
+    assert rewrite_segment(path, forget) == 1
+    left = [(channel.topic, message.data) for _, channel, message in as_others_read(path)]
+    assert left == [(KEY, b""), (location_topic("anna"), b"said")]
