@@ -109,6 +109,13 @@ def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_ar
     assert len(pipe._sighted_ns) <= 3
 
 
+def test_what_is_near_is_told_though_the_clock_went_back():
+    pipe = pipeline()
+    for t_s in (7200, 3600, 3601):
+        near = SightingSample(t_s * NS_PER_S, "beacon", "door-3", 2.5, math.nan)
+        assert len(of(pipe.step(others_only(near)), Sighting)) == 1
+
+
 def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
     pipe = pipeline()
     hour_ns = 3600 * NS_PER_S
