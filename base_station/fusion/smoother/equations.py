@@ -74,11 +74,11 @@ class NormalEquations:
             for name, block in self.blocks.items()
         }
         self.leans: dict[str, Floats] = {}  # of each chain's unknowns on the shared ones
-        self._beside: dict[str, Floats] = {}
+        self._beside: dict[str, csr_matrix] = {}  # each unknown leans on few of those itself
         whole = information[first:, first:].toarray()
         for name, own in chains.items():
-            beside = self._beside[name] = information[own, first:].toarray()
-            self.leans[name] = self._of_chain(name, beside)
+            beside = self._beside[name] = information[own, first:]
+            self.leans[name] = self._of_chain(name, beside.toarray())
             whole -= beside.T @ self.leans[name]
         self._whole = cho_factor(0.5 * (whole + whole.T))
 
