@@ -242,7 +242,8 @@ def open_spool(
     with in_words(path):
         is_followed = anew(path).exists()
         if is_followed:
-            rename(path, aside)
+            if path.exists():  # else the power went while they were renamed: what is there is new
+                rename(path, aside)
             rename(anew(path), path)
     try:
         spool = Spool(path, new_boot_id, started_utc_ns, limit_bytes)

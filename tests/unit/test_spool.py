@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import shutil
 import sqlite3
 from pathlib import Path
 from typing import Any
@@ -358,6 +359,20 @@ def test_a_journal_that_damage_keeps_from_being_written_is_begun_anew_at_once(tm
     last, aside = open_spool(path, itertools.count(4).__next__, 79, MB)
     assert aside is None
     last.close()
+
+
+def test_a_power_cut_while_the_new_journal_takes_its_place_costs_nothing(tmp_path):
+    """What is not in the file itself yet, and has been moved already, belongs to the new one."""
+    written, cut = tmp_path / "written", tmp_path / "cut" / "journal.sqlite"
+    cut.parent.mkdir()
+    running = spool_at(written, boot_ids=[1])
+    running.append([entry(seq, EVENT) for seq in range(1, 101)])
+    shutil.copy(written / "journal.sqlite", journal_file.anew(cut))
+    shutil.copy(written / "journal.sqlite-wal", cut.with_name("journal.sqlite-wal"))
+    running.close()
+    spool, _ = open_spool(cut, itertools.count(2).__next__, 77, MB)
+    assert seqs(spool, 1) == list(range(1, 101))
+    spool.close()
 
 
 def test_a_journal_of_which_nobody_can_be_told_what_is_in_it_is_begun_anew(tmp_path):
