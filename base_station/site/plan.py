@@ -101,6 +101,19 @@ def read_plan(geojson: bytes) -> Plan:
     return Plan(geojson, _storeys(document["muster"]), tuple(outlines), tuple(walls), tuple(stairs))
 
 
+def require_floors(plan: Plan) -> None:
+    """UserError where walls or stairs are drawn on a floor whose height nobody says: nobody can be
+    known to be there, so nobody would heed them.
+    """
+    listed = {storey.floor for storey in plan.storeys}
+    drawn = {wall.floor for wall in plan.walls} | {one.floor for one in plan.stairs}
+    if missing := sorted(drawn - listed):
+        raise UserError(
+            f"the plan has walls or stairs on floor {missing[0]} and says not how high that is: "
+            f'"floors" of its member "muster" must list {{"floor": {missing[0]}, "down_m": ...}}'
+        )
+
+
 _KINDS = ("outline", "wall", "stairs")
 
 

@@ -231,6 +231,22 @@ async def test_a_plan_without_scale_is_refused(commander: httpx.AsyncClient) -> 
     assert (await commander.get("/site/plan")).json() == plan
 
 
+async def test_a_plan_with_walls_on_a_floor_of_no_height_is_refused(
+    commander: httpx.AsyncClient,
+) -> None:
+    """Nobody would heed them, and nobody would see that."""
+    line = {"type": "LineString", "coordinates": [[0.0, 0.0], [9.0, 0.0]]}
+    wall = {"type": "Feature", "properties": {"kind": "wall", "floor": 1}, "geometry": line}
+    ground, upstairs = {"floor": 0, "down_m": 0.0}, {"floor": 1, "down_m": -3.0}
+    for floors, status in (([], 422), ([ground], 422), ([ground, upstairs], 204)):
+        site = {"frame": "site-m", "floors": floors}
+        plan = {"type": "FeatureCollection", "muster": site, "features": [wall]}
+        answer = await commander.put("/site/plan", json=plan)
+        assert answer.status_code == status
+        if status == 422:
+            assert 'must list {"floor": 1, "down_m": ...}' in answer.json()["detail"]
+
+
 async def test_errors_are_sentences(commander: httpx.AsyncClient) -> None:
     unknown = await commander.post("/units", json={"unit_id": "FF-01", "lable": "x"})
     assert unknown.status_code == 422

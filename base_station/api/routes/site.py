@@ -14,7 +14,7 @@ from base_station.api.problems import Problem
 from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Station
 from base_station.api.wire import AnchorView
-from base_station.site.plan import read_plan
+from base_station.site.plan import read_plan, require_floors
 from base_station.views import anchor_view
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
@@ -55,7 +55,7 @@ def set_plan(plan: dict[str, Any], station: Station, who: Commander) -> None:
     """GeoJSON in site metres; the documentation of messages shows one."""
     try:
         geojson = msgspec.json.encode(plan)
-        read_plan(geojson)
+        require_floors(read_plan(geojson))
     except (UserError, ValueError, OverflowError) as error:
         raise Problem(422, str(error)) from error
     station.act(who.username, SetPlan(geojson))
