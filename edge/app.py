@@ -41,7 +41,7 @@ from edge.sources.port import Beside, Source
 from edge.sources.sighting_reader import SightingReader
 from edge.spool import Spool, open_spool
 from edge.station_clock import StationClock
-from edge.timeline import Follower, Places
+from edge.timeline import Follower, Timekeeper
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
 from edge.unit_listener import UnitListener
@@ -191,7 +191,7 @@ def compose_agent(
         agent = Agent(
             Parts(
                 source=source,
-                reader=SourceReader(source, clock, speed, beside, _places(source)),
+                reader=SourceReader(source, clock, speed, beside, _timekeeper(source)),
                 raw=raw,
                 pipeline=pipeline,
                 desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
@@ -210,7 +210,7 @@ def compose_agent(
     return agent
 
 
-def _places(source: Source) -> Places | None:
+def _timekeeper(source: Source) -> Timekeeper | None:
     return Follower() if isinstance(source, BusSource) else None
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from edge.samples import ImuBatch, OtherSample, SensorBatch
 from edge.sources.port import Beside, Source, TellsFaults
-from edge.timeline import Pacer, Places, Timeline
+from edge.timeline import Pacer, Timekeeper, Timeline
 from shared.clock import NS_PER_S, Clock
 from shared.errors import MusterError
 
@@ -51,15 +51,13 @@ class SourceReader:
         clock: Clock,
         speed: float | None,
         beside: tuple[Beside, ...] = (),
-        places: Places | None = None,
+        timekeeper: Timekeeper | None = None,
     ) -> None:
-        """``places``: how the times of a source that is not live are laid on this machine's clock;
-        None: as of a recording.
-        """
+        """``timekeeper``: of a source that is not live; None: its times are a recording's."""
         self._source = source
         self._beside = beside
         self._clock = clock
-        self._places = None if source.is_live else places or Pacer(speed or 1.0)
+        self._timekeeper = None if source.is_live else timekeeper or Pacer(speed or 1.0)
         self._waits = speed is not None and not source.is_live
         self._ready: Queue[PlacedBatch] = Queue(_AHEAD)
         self._stop = Event()
@@ -143,8 +141,8 @@ class SourceReader:
             if self._first_t_ns is None:
                 self._first_t_ns = first_ns
             timeline = Timeline()
-            if self._places is not None:
-                timeline = self._places.place(first_ns, last_ns, self._clock.monotonic_ns())
+            if self._timekeeper is not None:
+                timeline = self._timekeeper.place(first_ns, last_ns, self._clock.monotonic_ns())
                 if self._waits and not self._wait_until(timeline.to_mono_ns(last_ns)):
                     return
             yield PlacedBatch(batch, timeline, (first_ns - self._first_t_ns) / NS_PER_S)

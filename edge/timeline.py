@@ -27,7 +27,7 @@ class Timeline:
         return self.mono_origin_ns + elapsed_ns
 
 
-class Places(Protocol):
+class Timekeeper(Protocol):
     """Lays a source's time on the machine's, batch by batch."""
 
     def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:

@@ -281,7 +281,6 @@ class GpsInertialFuser:
 
     def _as_it_ends(self) -> GpsInertialFuser:
         """Where this run has led, for what comes of it later."""
-        self._ended = None
         memory = msgspec.msgpack.decode(self.save(), type=Memory)
-        memory.path, memory.recognition = PathMemory(), Recognition()
+        memory.ended, memory.path, memory.recognition = b"", PathMemory(), Recognition()
         return GpsInertialFuser(self._kind, memory)

@@ -188,7 +188,8 @@ def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
     return worst_m
 
 
-def test_a_floor_said_of_one_is_that_of_who_is_silent_there() -> None:
+def both_gone_upstairs() -> Watched:
+    """Three floors up, one beside the other, in a minute."""
     script = Watched()
     script.register(A, B)
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -198,6 +199,11 @@ def test_a_floor_said_of_one_is_that_of_who_is_silent_there() -> None:
         for unit_id in (A, B):
             script.position(unit_id, float(second), 0.0, down_m=down_m, distance_m=float(second))
         script.tick()
+    return script
+
+
+def test_a_floor_said_of_one_is_that_of_who_is_silent_there() -> None:
+    script = both_gone_upstairs()
     walked_ns = script.t_ns
     script.wait(40)
     before = {unit_id: shown_floor(script, unit_id) for unit_id in (A, B)}
@@ -373,15 +379,7 @@ def test_a_plan_that_numbers_storeys_otherwise_numbers_trails_again() -> None:
 
 
 def test_a_floor_that_is_said_of_one_numbers_the_trail_of_the_other_again() -> None:
-    script = Watched()
-    script.register(A, B)
-    script.act(OpenIncident("i1", "Mill Lane"))
-    for second in range(60):
-        script.now_s += 1.0
-        down_m = -9.3 * min(max(second - 15, 0) / 20.0, 1.0)
-        for unit_id in (A, B):
-            script.position(unit_id, float(second), 0.0, down_m=down_m, distance_m=float(second))
-        script.tick()
+    script = both_gone_upstairs()
     upstairs_ns = script.t_ns - 15 * 10**9
     state = script.pipeline.state
     said = {step.floor for step in state.units[B].trail if step.t_ns > upstairs_ns}

@@ -65,9 +65,7 @@ class PathHistory(msgspec.Struct):
     since_ns: int = 0  # what was before is not wanted
     opened_ns: int = 0  # when the incident was opened
     is_refixed: bool = False  # fixes were moved: the unit is to be placed again
-    is_renumbered: bool = (
-        False  # storeys have other numbers: those along the trail are to be said anew
-    )
+    is_renumbered: bool = False  # storeys have other numbers: the trail's are to be said anew
     filled_ns: int = 0  # where the path had come to when a position came late last
     since_gps_s: float | None = None  # as last estimated without any pin
     floor: int | None = None
