@@ -175,6 +175,7 @@ class Actions:
         self._positioning.forget(state, unit)
         met = pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
+        unit.forget_wearers()
         told = command_book.forget(state, unit)
         return [unit, TrailFilled(unit.unit_id), *told, _pins_of(met)]
 
@@ -266,17 +267,17 @@ def _assign(state: StationState, by: str, action: Assign) -> Iterator[UnitState]
             yield _without_wearer(state, other)
     before = unit.person
     same = before is not None and before.person_id == action.person_id
+    if before is not None and not same:
+        unit.end_wearing(state.t_ns)
     unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
-        if before is not None:
-            unit.inside_since_ns = None  # that one went in, not who wears it now
         unit.worn_since_ns = state.t_ns
         accountability.begin(state, unit, by)
     yield unit
 
 
 def _without_wearer(state: StationState, unit: UnitState) -> UnitState:
-    unit.person, unit.worn_since_ns, unit.inside_since_ns = None, state.t_ns, None
+    unit.end_wearing(state.t_ns)
     accountability.end(state, unit)
     return unit
 

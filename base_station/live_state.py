@@ -38,6 +38,7 @@ from shared.messages import (
 from shared.messages.station import TakeOver
 
 FORGOTTEN = "(forgotten)"  # in place of what was said of a person
+WEARERS_KEPT = 20  # of a unit; the log has all of them
 
 
 class Person(msgspec.Struct, frozen=True):
@@ -45,6 +46,14 @@ class Person(msgspec.Struct, frozen=True):
     name: str
     crew: str
     role: str
+
+
+class Wearing(msgspec.Struct, frozen=True):
+    """Somebody wore a unit then; station times, until is left out."""
+
+    name: str
+    from_ns: int
+    until_ns: int
 
 
 class Incident(msgspec.Struct, frozen=True):
@@ -94,6 +103,7 @@ class UnitState(Sender):
     registered: bool = False
     person: Person | None = None
     worn_since_ns: int = 0  # by that person, or by nobody
+    worn_before: list[Wearing] = msgspec.field(default_factory=list)  # by whom, oldest first
     link: Link = "never"
     status: Status | None = None
     status_ns: int = 0
@@ -111,9 +121,12 @@ class UnitState(Sender):
     trail: list[TrailStep] = msgspec.field(default_factory=list)
     plain_trail: list[TrailStep] | None = None  # as it would be without any pin; None: as it is
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
-    mayday_ns: int | None = None  # when the button was last pressed
+    mayday_ns: int | None = None  # when it was last told that the button was pressed
+    mayday_said_ns: int = 0  # and when the unit said that: it may have waited in its journal
     mayday_cancelled_ns: int | None = None
+    mayday_cancelled_said_ns: int = 0
     fall_ns: int | None = None
+    fall_said_ns: int = 0
     fault: Fault | None = None
     inside_since_ns: int | None = None
     reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
@@ -127,6 +140,26 @@ class UnitState(Sender):
     def name(self) -> str:
         """What a person would call the unit."""
         return self.person.name if self.person else self.label or self.unit_id
+
+    def name_at(self, t_ns: int) -> str:
+        """What a person would have called it then, by who wore it."""
+        if t_ns >= self.worn_since_ns:
+            return self.name
+        worn = [one for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
+        return worn[-1].name if worn else self.label or self.unit_id
+
+    def end_wearing(self, t_ns: int) -> None:
+        """Whoever wears it does so no more."""
+        if self.person is not None:
+            wearing = Wearing(self.person.name, self.worn_since_ns, t_ns)
+            self.worn_before = [*self.worn_before[1 - WEARERS_KEPT :], wearing]
+        self.person, self.worn_since_ns, self.inside_since_ns = None, t_ns, None
+
+    def forget_wearers(self) -> None:
+        """That somebody wore it then is left of those before."""
+        self.worn_before = [
+            msgspec.structs.replace(one, name=FORGOTTEN) for one in self.worn_before
+        ]
 
     @property
     def is_tracked_remotely(self) -> bool:

@@ -50,20 +50,21 @@ def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
 
 
 def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
+    """A press and its taking back are alerts, which overtake what the unit said before them."""
     unit.status, unit.status_ns = status, t_ns
-    pressed_ns = _pressed_ns(unit)
-    if status.mayday and pressed_ns is None:  # the press itself may have been lost on the way
-        unit.mayday_ns = t_ns
-    elif pressed_ns is not None and not status.mayday:
-        unit.mayday_cancelled_ns = t_ns
+    if status.mayday == _is_pressed(unit):
+        return
+    said_ns = _said_ns(unit, status.header, t_ns)
+    if status.mayday and said_ns > unit.mayday_cancelled_said_ns:  # the press itself may be lost
+        unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
+    elif not status.mayday and said_ns > unit.mayday_said_ns:
+        unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns
 
 
-def _pressed_ns(unit: UnitState) -> int | None:
-    """Since when there is a mayday that was not taken back."""
+def _is_pressed(unit: UnitState) -> bool:
+    """Whether a mayday was told that was not taken back."""
     cancelled_ns = unit.mayday_cancelled_ns
-    if unit.mayday_ns is None or (cancelled_ns is not None and cancelled_ns >= unit.mayday_ns):
-        return None
-    return unit.mayday_ns
+    return unit.mayday_ns is not None and (cancelled_ns is None or cancelled_ns < unit.mayday_ns)
 
 
 def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
@@ -79,16 +80,17 @@ def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> N
 
 
 def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    said_ns = _said_ns(unit, event.header, t_ns)
     match event.kind:
         case EventKind.MAYDAY:
-            said_ns = captured_ns(unit.boots, event.header, t_ns) or t_ns
-            pressed_ns = _pressed_ns(unit)
-            if pressed_ns is None or said_ns > pressed_ns:  # else a status has told it before
-                unit.mayday_ns = t_ns
+            # Of one that stands a status may have told before, where the radio lost the press.
+            if not _is_pressed(unit) or said_ns > unit.mayday_said_ns:
+                unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
         case EventKind.MAYDAY_CANCELLED:
-            unit.mayday_cancelled_ns = t_ns
+            if said_ns >= unit.mayday_said_ns:  # else it was pressed again since
+                unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns
         case EventKind.FALL:
-            unit.fall_ns = t_ns
+            unit.fall_ns, unit.fall_said_ns = t_ns, said_ns
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
             said = event.detail or event.kind.name.lower().replace("_", " ")
             unit.fault = Fault(t_ns, said)
@@ -97,6 +99,13 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
                 unit.stopped_ns = t_ns
         case _:
             pass
+
+
+def _said_ns(unit: UnitState, header: Header, t_ns: int) -> int:
+    """When it or its tracking agent said a message; one that cannot be placed is of now."""
+    agent = unit.tracker
+    sender = agent if agent is not None and agent.unit_id == header.unit_id else unit
+    return captured_ns(sender.boots, header, t_ns) or t_ns
 
 
 def _is_last_word(unit: UnitState, header: Header) -> bool:

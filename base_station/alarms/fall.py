@@ -24,7 +24,7 @@ class Fall:
         return Finding(
             "fall",
             IMMEDIATE,
-            f"{unit.name} may have fallen",
+            f"{unit.name_at(unit.fall_said_ns)} may have fallen",
             seen_ns=unit.fall_ns,
             onset_ns=unit.fall_ns,
             latched=True,

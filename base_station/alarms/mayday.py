@@ -26,7 +26,7 @@ class Mayday:
         return Finding(
             "mayday",
             IMMEDIATE,
-            f"Mayday from {unit.name}",
+            f"Mayday from {unit.name_at(unit.mayday_said_ns)}",
             seen_ns=unit.mayday_ns,
             onset_ns=unit.mayday_ns,
             latched=True,

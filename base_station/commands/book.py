@@ -34,9 +34,7 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
         issued_by=by,
         issued_ns=state.t_ns,
         expires_ns=state.t_ns + round(action.lasts_s * NS_PER_S),
-        deliveries={
-            unit.unit_id: Delivery(unit.unit_id, unit.name) for unit in _addressed(state, action)
-        },
+        deliveries={unit.unit_id: Delivery(unit.unit_id) for unit in _addressed(state, action)},
     )
     _forget_oldest(state)
     state.commands[action.command_id] = command
@@ -96,8 +94,8 @@ def note_reply(
             delivery.received_ns = state.t_ns
         case CommandState.ACKNOWLEDGED if delivery.acknowledged_ns is None:
             delivery.received_ns = delivery.received_ns or state.t_ns
-            by = unit.name if said_ns >= unit.worn_since_ns else delivery.told
-            delivery.acknowledged_ns, delivery.acknowledged_by = state.t_ns, by
+            delivery.acknowledged_ns = state.t_ns
+            delivery.acknowledged_by = unit.name_at(said_ns)
         case CommandState.REFUSED if delivery.refused_ns is None:
             delivery.refused_ns, delivery.reason = state.t_ns, reply.detail
         case _:
@@ -126,7 +124,6 @@ def forget(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
         if delivery is None and (not_reached or not command.text):
             continue
         if delivery is not None:
-            delivery.told = FORGOTTEN
             delivery.acknowledged_by = FORGOTTEN if delivery.acknowledged_by else ""
         command.text = FORGOTTEN if command.text else ""
         if command.kind is CommandKind.TEXT:

@@ -18,7 +18,6 @@ class Delivery(msgspec.Struct):
     """
 
     unit_id: str
-    told: str = ""  # who wore the unit when it was given
     sent_ns: int | None = None  # first
     received_ns: int | None = None
     acknowledged_ns: int | None = None

@@ -9,21 +9,25 @@ import pytest
 
 from base_station.alarms import ALARMS
 from base_station.alarms.port import SOON, Verdict
+from base_station.bench.rig import said
 from base_station.events import Refused
 from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
-from shared.channels import EVENT, backfilled_key
+from shared.channels import EVENT, NO_TRACKER, backfilled_key, tracker_id
 from shared.codec import encode
 from shared.messages import AlarmState, EventKind, Message, Position, Status, UnitEvent
 from shared.messages.station import (
     AcknowledgeAlarm,
+    Assign,
     CloseIncident,
+    ForgetWearers,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
     ResolveAlarm,
     SetStart,
+    Unassign,
 )
 from shared.quality import Quality
 from tests.station_script import Script
@@ -107,6 +111,87 @@ def test_the_press_that_a_status_told_is_no_other_one_when_the_journal_brings_it
     assert len(changes(script, "mayday")) == 2
     script.event(U, EventKind.MAYDAY)
     assert changes(script, "mayday")[2:] == [("RAISED", "mayday")]
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("way", ["journal", "live"])
+def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
+    script: Script, kind: EventKind, way: str
+) -> None:
+    events = {}
+    for name in ("Ana", "Bo", ""):
+        script.act(Assign(U, name, name, "", "") if name else Unassign(U))
+        script.wait(3, lambda: script.status(U))
+        events[name] = UnitEvent(script.header(U), kind)
+        script.wait(3, lambda: script.status(U))
+    script.act(Assign(U, "cem", "Cem", "", ""))
+    script.wait(3)
+    key = EVENT.key(U) if way == "live" else backfilled_key(U, EVENT.suffix)
+    told = {}
+    for name, event in events.items():
+        script.record(key, encode(event))
+        told[name] = script.alarms[-1].text
+        script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+        script.wait(1)
+    script.event(U, kind)
+    told["Cem"] = script.alarms[-1].text
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    assert told == {name: text.format(name or f"unit {U}") for name in told}
+
+
+def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    fell = UnitEvent(script.header(U), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.act(ForgetWearers(U))
+    assert b"Ana" not in script.pipeline.checkpoint()
+    script.record(backfilled_key(U, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "(forgotten) may have fallen"
+
+
+def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
+    agent = tracker_id(U)
+    script.say(said.description(script.header(U), tracker=NO_TRACKER))
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(agent))
+    fell = UnitEvent(script.header(agent), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3)
+    script.record(backfilled_key(agent, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "Ana may have fallen"
+
+
+def test_a_mayday_taken_back_before_it_was_pressed_again_stands(script: Script) -> None:
+    """The radio lost the first press and that it was taken back."""
+    script.wait(1, lambda: script.status(U))
+    cancelled = UnitEvent(script.header(U), EventKind.MAYDAY_CANCELLED)
+    script.wait(3)
+    script.event(U, EventKind.MAYDAY)
+    script.wait(1)
+    script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.record(backfilled_key(U, EVENT.suffix), encode(cancelled))
+    script.wait(3, lambda: script.status(U, mayday=True))
+    assert changes(script, "mayday") == [("RAISED", "mayday"), ("ACKNOWLEDGED", "mayday")]
+
+
+@pytest.mark.parametrize("is_pressed", [True, False])
+def test_a_status_that_an_alert_overtook_presses_nothing_and_takes_nothing_back(
+    script: Script, is_pressed: bool
+) -> None:
+    words = [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
+    for kind in words if is_pressed else words[:2]:
+        before = said.status(script.header(U), mayday=not is_pressed)
+        script.now_s += 0.1
+        script.event(U, kind)
+    script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    count = len(changes(script, "mayday"))
+    script.wait(1)
+    script.say(before)
+    script.wait(3, lambda: script.status(U, mayday=is_pressed))
+    assert len(changes(script, "mayday")) == count
 
 
 def test_pressing_again_is_another_mayday(script: Script) -> None:
