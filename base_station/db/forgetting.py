@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import msgspec
 from sqlalchemy import ColumnElement, and_, delete, or_, select, update
 from sqlalchemy.orm import Session
 
@@ -19,12 +20,10 @@ from base_station.db.models import (
     TrackPoint,
     UnitStart,
 )
-from base_station.forgetting.erasure import FOREVER_NS, Erasure, Wearing
+from base_station.forgetting.erasure import FOREVER_NS, PLACES, Erasure, Wearing
 from base_station.forgetting.redaction import name_pattern
 from base_station.live_state import FORGOTTEN
-
-# What these say is where somebody was.
-_PLACES = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
+from shared.messages.station import DoneApart
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
@@ -98,10 +97,19 @@ def _audit(session: Session, erasure: Erasure) -> None:
     units = name_pattern(tuple(erasure.unit_ids))
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside)):
-        entry.detail = names.sub(FORGOTTEN, entry.detail)
-        about = units.search(entry.detail) if entry.action in _PLACES else None
-        if about is not None:
-            entry.detail = FORGOTTEN
+        about = units.search(entry.detail) if entry.action in PLACES else None
+        told = about is not None or _is_told(erasure, entry)
+        entry.detail = FORGOTTEN if told else names.sub(FORGOTTEN, entry.detail)
+
+
+def _is_told(erasure: Erasure, entry: AuditEntry) -> bool:
+    if entry.action != DoneApart.__name__ or entry.detail == FORGOTTEN:
+        return False
+    try:
+        apart = msgspec.json.decode(entry.detail, type=DoneApart)
+    except msgspec.DecodeError:  # somebody is called like a word of its, and was forgotten
+        return True
+    return erasure.is_told(entry.t_ns, apart)
 
 
 def _cut_out(session: Session, erasure: Erasure) -> None:

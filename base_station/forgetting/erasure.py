@@ -5,6 +5,7 @@ Found in the log alone, which knows it even where the database was lost.  Pure.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 import msgspec
@@ -12,10 +13,12 @@ import msgspec
 from base_station.events import Received, event_of
 from shared.errors import UserError
 from shared.messages import Header, OperatorAction
-from shared.messages.station import Assign, CloseIncident, OpenIncident, Unassign
+from shared.messages.station import Assign, CloseIncident, DoneApart, OpenIncident, Unassign
 
 FOREVER_NS = 2**63 - 1
 Record = tuple[int, str, bytes]  # station time, key, payload
+# What these say is where somebody was.
+PLACES = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
 
 
 class Wearing(msgspec.Struct, frozen=True):
@@ -72,6 +75,19 @@ class Erasure(msgspec.Struct, frozen=True):
         return any(
             one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
         )
+
+    def is_told(self, t_ns: int, apart: DoneApart) -> bool:
+        """Whether what was done apart, and written down at ``t_ns``, says where somebody was, or
+        wore something, who is to be forgotten.  Of which time a place is, is one of its numbers.
+        """
+        kind, *values = re.split(r"[\s,]+", apart.what)
+        if kind == "Assign":
+            if self.person_id:
+                return self.person_id in values
+            return self.from_ns <= apart.t_ns < self.until_ns
+        times_ns = [t_ns, apart.t_ns, *(int(value) for value in values if value.isdecimal())]
+        told = self.unit_ids & {*values} if kind in PLACES else ()
+        return any(self.covers(unit_id, one) for unit_id in told for one in times_ns)
 
 
 def id_put_in(action_id: str, unit_id: str) -> str:

@@ -39,7 +39,14 @@ from shared.messages import (
     OperatorAction,
 )
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
-from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
+from shared.messages.station import (
+    Assign,
+    CloseIncident,
+    DoneApart,
+    OpenIncident,
+    SetStart,
+    Unassign,
+)
 
 # The program's own, whoever is called Heat or Fall.
 _WORDS = frozenset({"rule", "level", "part", "thresholds"})
@@ -180,6 +187,9 @@ class Redactor:
                     return message
                 fewer = msgspec.structs.replace(action, unit_ids=kept)
                 return msgspec.structs.replace(message, action=fewer) if kept else None
+            case DoneApart() if self._erasure.is_told(t_ns, action):
+                untold = msgspec.structs.replace(action, what=FORGOTTEN)
+                return msgspec.structs.replace(message, action=untold)
             case _:
                 return message
 

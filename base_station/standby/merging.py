@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from enum import Enum
 from itertools import islice
 from pathlib import Path
 from threading import Event
@@ -163,7 +164,22 @@ def _persons_action(payload: bytes) -> OperatorAction | None:
 
 
 def _in_words(done: OperatorAction) -> str:
-    """As the audit writes it, and short."""
-    values = (getattr(done.action, name) for name in done.action.__struct_fields__)
-    said = ", ".join(str(value) for value in values if isinstance(value, str | int | float))
-    return f"{type(done.action).__name__} {said}"[:300]
+    """What was given with it, and short."""
+    action = done.action
+    words = (_in_word(name, getattr(action, name)) for name in action.__struct_fields__)
+    return f"{type(action).__name__} {', '.join(filter(None, words))}"[:300]
+
+
+def _in_word(name: str, value: object) -> str:
+    """Empty where there is nothing to say."""
+    match value:
+        case bool():
+            return name if value else f"not {name}"
+        case Enum():
+            return value.name.lower()
+        case tuple():
+            return ", ".join(map(str, value))
+        case str() | int() | float():
+            return str(value)
+        case _:
+            return ""

@@ -1,13 +1,17 @@
-"""What alarms said of somebody, in the tables, once that person is forgotten."""
+"""What the tables said of somebody who is forgotten: alarms, and what was done apart."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
+
 from base_station.db.forgetting import forget_in
-from base_station.db.models import Alarm, AlarmLife
+from base_station.db.models import Alarm, AlarmLife, AuditEntry
 from base_station.db.store import Store
 from base_station.forgetting.erasure import Erasure, Wearing
+from base_station.live_state import FORGOTTEN
+from shared.messages.station import DoneApart
 
 FALL = {"alarm_id": "fall:FF-01:1", "state": "raised", "level": "fall", "by": ""}
 
@@ -32,3 +36,34 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
         with store.read() as session:
             told = {one.t_ns: one.text for one in session.query(AlarmLife)}
     assert told == texts | {20: "(forgotten) may have fallen"}
+
+
+def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
+    tmp_path: Path,
+) -> None:
+    """Somebody called Station was forgotten before."""
+    details = {
+        "pin of ana": DoneApart("b", 20, "eve", "SetPin p, FF-01, 3.0, 4.0"),
+        "pin of bo": DoneApart("b", 20, "eve", "SetPin p, FF-02, 3.0, 4.0"),
+        "evacuation": DoneApart("b", 20, "eve", "SendCommand c1, evacuate, Ana"),
+    }
+    said = {name: msgspec.json.encode(one).decode() for name, one in details.items()}
+    said["broken"] = said["pin of ana"].replace("station", FORGOTTEN)
+    ana = Erasure((Wearing("FF-01", 15, 25),), ("Ana",), person_id="p-ana")
+    with Store(tmp_path / "station.sqlite") as store:
+        with store.write() as session:
+            session.add_all(
+                AuditEntry(entry_id=name, t_ns=30, by="station", action="DoneApart", detail=detail)
+                for name, detail in said.items()
+            )
+        for _ in range(2):
+            with store.write() as session:
+                forget_in(session, ana)
+        with store.read() as session:
+            left = {one.entry_id: one.detail for one in session.query(AuditEntry)}
+    assert left == {
+        "pin of ana": FORGOTTEN,
+        "pin of bo": said["pin of bo"],
+        "evacuation": said["evacuation"].replace("Ana", FORGOTTEN),
+        "broken": FORGOTTEN,
+    }

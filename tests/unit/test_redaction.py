@@ -29,7 +29,14 @@ from shared.messages import (
     Temperature,
 )
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
-from shared.messages.station import Action, Assign, SendCommand, SetStart, SetThresholds
+from shared.messages.station import (
+    Action,
+    Assign,
+    DoneApart,
+    SendCommand,
+    SetStart,
+    SetThresholds,
+)
 
 HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
 
@@ -203,3 +210,43 @@ def test_where_somebody_was_said_to_be_goes_and_where_others_were_stays(
         return said_ns, OPERATOR.key(STATION_ID), encode(message)
 
     assert redact(record(action)) == ([] if left is None else [record(left)])
+
+
+def apart(said_ns: int, what: str) -> DoneApart:
+    return DoneApart("b", said_ns, "eve", what)
+
+
+PERSON = Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1")
+INCIDENT = Erasure(
+    (Wearing("anna", 110, 200),), ("Ada",), incident_id="i1", from_ns=110, until_ns=200
+)
+
+
+@pytest.mark.parametrize(
+    ("erasure", "told_ns", "said_ns", "what", "left"),
+    [
+        (PERSON, 300, 150, "SetPin p, anna, 3.0, 4.0", FORGOTTEN),
+        (PERSON, 300, 250, "SetPin p, anna, 150, 3.0, 4.0", FORGOTTEN),
+        (PERSON, 150, 50, "SetStart anna, 3.0, 4.0", FORGOTTEN),
+        (PERSON, 300, 150, "SetMeeting p, bert, anna, 1.0", FORGOTTEN),
+        (PERSON, 300, 150, "StartTogether p, bert, anna, 3.0", FORGOTTEN),
+        (PERSON, 300, 150, "SetPin p, bert, 3.0, 4.0", "SetPin p, bert, 3.0, 4.0"),
+        (PERSON, 300, 250, "SetPin p, anna, 3.0, 4.0", "SetPin p, anna, 3.0, 4.0"),
+        (PERSON, 300, 150, "CheckIn anna, False", "CheckIn anna, False"),
+        (PERSON, 300, 250, "Assign carl, p1, Ada, red", FORGOTTEN),
+        (PERSON, 300, 150, "Assign carl, p2, Cem, red", "Assign carl, p2, Cem, red"),
+        (PERSON, 300, 150, "AcknowledgeAlarm fall:Ada", f"AcknowledgeAlarm fall:{FORGOTTEN}"),
+        (INCIDENT, 150, 150, "Assign carl, p2, Cem, ", FORGOTTEN),
+        (INCIDENT, 300, 250, "Assign carl, p2, Cem, ", "Assign carl, p2, Cem, "),
+        (INCIDENT, 150, 150, "SetPin p, anna, 3.0, 4.0", FORGOTTEN),
+    ],
+)
+def test_what_was_done_apart_says_nothing_of_who_is_forgotten(
+    erasure: Erasure, told_ns: int, said_ns: int, what: str, left: str
+) -> None:
+    action = OperatorAction(HEADER, "a-1", STATION_ID, apart(said_ns, what))
+    record = told_ns, OPERATOR.key(STATION_ID), encode(action)
+    ((_, _, payload),) = Redactor(erasure, Clocks())(record)
+    found = decode(OPERATOR, payload)
+    assert isinstance(found, OperatorAction)
+    assert found.action == apart(said_ns, left)

@@ -21,8 +21,9 @@ from shared.channels import EVENT, OPERATOR, TICK, backfilled_key, unread_key
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.errors import StoreError
-from shared.messages import STATION_ID, Header, OperatorAction, Tick
-from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem
+from shared.messages import STATION_ID, CommandKind, Header, OperatorAction, Tick
+from shared.messages.pins import StartTogether
+from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem, SendCommand
 from tests.waiting import until
 
 T0 = 1_700_000_000_000_000_000
@@ -120,6 +121,26 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
     assert apart == DoneApart("b", T0 + UNITS, "ada", "CloseIncident i1")
     assert isinstance(report, ReportProblem)
     assert "people acted at b (1 times)" in report.text
+
+
+@pytest.mark.parametrize(
+    ("action", "what"),
+    [
+        (
+            StartTogether("p1", ("FF-01", "FF-02"), 5, 3.0, 4.0, 1.0, None, None, 0.3, ""),
+            "StartTogether p1, FF-01, FF-02, 5, 3.0, 4.0, 1.0, 0.3",
+        ),
+        (
+            SendCommand("c1", CommandKind.TEXT, "", "red", False, "come out", 0.0, 60.0),
+            "SendCommand c1, text, red, not everyone, come out, 0.0, 60.0",
+        ),
+    ],
+)
+def test_what_a_person_did_is_told_in_words(tmp_path: Path, action: Action, what: str) -> None:
+    done = OperatorAction(Header(STATION_ID, 1, 1, 5), "a1", "ada", action)
+    leading = leading_with(tmp_path, [(T0, OPERATOR.key(STATION_ID), encode(done))])
+    leading.look()
+    assert leading.done[0] == DoneApart("b", T0, "ada", what)
 
 
 def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
