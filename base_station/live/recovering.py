@@ -92,7 +92,9 @@ class _EarlyServer:
 
     def __init__(self, app: ASGIApp, listening: socket.socket, http: HttpConfig) -> None:
         self._server = ConsoleServer(app, listening.dup(), http.certificate, http.private_key)
-        self._loop = asyncio.new_event_loop()
+        # Ends with the loop what is under way, as a greeting of TLS; it is no loop of this thread.
+        self._runner = asyncio.Runner(loop_factory=asyncio.new_event_loop)
+        self._loop = self._runner.get_loop()
         self._started = Event()
         self._thread = Thread(target=self._run, name="recovering", daemon=True)
         self._thread.start()
@@ -101,8 +103,8 @@ class _EarlyServer:
     def close(self) -> None:
         self._loop.call_soon_threadsafe(self._server.stop)
         self._thread.join()
-        self._loop.close()
+        self._runner.close()
 
     def _run(self) -> None:
         self._loop.call_soon(self._started.set)
-        self._loop.run_until_complete(self._server.serve())
+        self._runner.run(self._server.serve())

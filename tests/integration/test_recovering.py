@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import gc
 import json
 from collections.abc import Iterator
 from contextlib import ExitStack
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from socket import create_connection
+from ssl import PROTOCOL_TLS_CLIENT, MemoryBIO, SSLContext, SSLWantReadError
 from typing import NoReturn
 
 import httpx
 import pytest
+from starlette.types import Receive, Scope, Send
 from websockets.sync.client import connect
 
 from base_station.api.security import COOKIE
@@ -26,10 +31,12 @@ from base_station.live.drive_ports import Record
 from base_station.live.last_known import LastKnown
 from base_station.live.recovering import recovering
 from base_station.live.sinks import Projection, Trails
+from base_station.pki.certificates import issue, make_authority
 from base_station.recorder import Recorder
 from base_station.server import bind
 from base_station.site.roaming import roamed_m
 from shared.clock import NS_PER_S, ManualClock
+from shared.enrolment import Holder
 from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.mcap_log import SegmentInfo, SegmentState
@@ -242,3 +249,39 @@ def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
     ):
         assert list(watched(iter([(1000, "key", b"")]))) == [(1000, "key", b"")]
     assert said == []
+
+
+def test_a_greeting_of_tls_under_way_leaves_nothing_behind_when_the_log_is_read(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(module, "_SHOWN_AFTER_S", 0.0)
+    now, day = datetime.now(UTC), timedelta(days=1)
+    issued = issue(make_authority("Test", now, 2 * day), "station", Holder.STATION, now, day)
+    http = HttpConfig(certificate=tmp_path / "station.pem", private_key=tmp_path / "station.key")
+    (tmp_path / "station.pem").write_bytes(issued.certificate_pem())
+    (tmp_path / "station.key").write_bytes(issued.key_pem())
+    with bind("127.0.0.1", 0) as listening, create_connection(listening.getsockname()) as client:
+
+        def records() -> Iterator[Record]:
+            yield 1000, "key", b""
+            client.sendall(first_words())
+            assert client.recv(1), "the station answers, and waits for what never comes"
+
+        with recovering(
+            [SEGMENT], listening, http, lambda: (no_page, lambda _: None), lambda _: None
+        ) as watched:
+            assert len(list(watched(records()))) == 1
+    gc.collect()
+    assert caplog.messages == []
+
+
+async def no_page(_scope: Scope, _receive: Receive, _send: Send) -> None:
+    """Nobody gets as far as to ask."""
+
+
+def first_words() -> bytes:
+    """Of a client that greets over TLS."""
+    said, context = MemoryBIO(), SSLContext(PROTOCOL_TLS_CLIENT)
+    with pytest.raises(SSLWantReadError):
+        context.wrap_bio(MemoryBIO(), said, server_hostname="x").do_handshake()
+    return said.read()
