@@ -80,6 +80,7 @@ def _unit_view(
         _clock_view(unit.heartbeat),
         "cloned-unit" in levels,
         unit.gps.reason if unit.gps else None,
+        unit.stopped_ns is not None,
     )
 
 

@@ -155,6 +155,7 @@ class UnitView(Answer, frozen=True):
     clock: ClockView | None  # None: it has not heard the station's time yet
     cloned: bool  # two machines speak under its name; one of them is shown
     gps: str | None  # why its last fix is not used; empty: it is; None: none has come
+    switched_off: bool  # in order: its silence since is no loss
 
 
 class DeliveryView(Answer, frozen=True):

@@ -164,6 +164,7 @@ class LastKnown:
             clock=None,
             cloned=False,
             gps=None,
+            switched_off=False,
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:

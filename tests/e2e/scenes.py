@@ -93,6 +93,7 @@ def unit(index: int) -> wire.UnitView:
         clock=wire.ClockView(1.0, 0.5),
         cloned=False,
         gps="",
+        switched_off=False,
     )
 
 
@@ -310,6 +311,7 @@ PAST_ALARMS: list[dict[str, Any]] = [
         "priority": one.priority,
         "text": one.text,
         "raised_ms": one.raised_ms - minutes * MINUTE_MS,
+        "again_ms": [],
     }
     for minutes, one in enumerate(bad_minute().alarms)
 ]

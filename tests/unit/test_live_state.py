@@ -352,6 +352,21 @@ def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
     assert state.units["X-299"].status is not None
 
 
+def test_a_card_says_that_the_unit_was_switched_off_until_it_speaks_again(script: Script) -> None:
+    def is_off() -> bool:
+        (view,) = unit_views(script.pipeline.state, [unit(script)], lambda _: None)
+        return view.switched_off
+
+    script.status(U)
+    shown = [is_off()]
+    script.event(U, EventKind.STOPPED)
+    shown.append(is_off())
+    script.wait(60)
+    shown.append(is_off())
+    script.status(U)
+    assert [*shown, is_off()] == [False, True, True, False]
+
+
 def test_a_card_says_what_the_unit_knows_of_the_time(script: Script) -> None:
     def clock() -> ClockView | None:
         return unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].clock

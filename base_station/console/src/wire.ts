@@ -128,6 +128,7 @@ export interface UnitView {
   clock: ClockView | null; // null: it has not heard the station's time yet
   cloned: boolean; // two machines speak under its name; one of them is shown
   gps: string | null; // why its last fix is not used; empty: it is; null: none has come
+  switched_off: boolean; // in order: its silence since is no loss
 }
 
 /** What a unit knows of the station's time. */

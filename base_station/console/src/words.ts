@@ -133,8 +133,8 @@ const LINKS: Record<Link, string> = {
 /** Of a unit whose name two machines use. */
 export const TWO_MACHINES = "two machines speak under this name; only one is shown";
 
-export function linkWord(link: Link): string {
-  return LINKS[link];
+export function linkWord({ link, switched_off }: UnitView): string {
+  return switched_off ? "Switched off" : LINKS[link];
 }
 
 const HEAT: Record<string, string> = {

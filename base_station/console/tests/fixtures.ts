@@ -79,6 +79,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     clock: null,
     cloned: false,
     gps: null,
+    switched_off: false,
     ...change,
   };
 }

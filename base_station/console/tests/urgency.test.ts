@@ -44,6 +44,9 @@ describe("urgencyOf", () => {
     ["watch", { link: "stale" }],
     ["watch", { heat_level: "caution" }],
     ["normal", {}],
+    ["normal", { link: "stale", switched_off: true }],
+    ["normal", { link: "lost", switched_off: true }],
+    ["watch", { link: "lost", switched_off: true, alarms: ["three"] }],
   ])("is %s for %o", (urgency, change) => {
     expect(urgencyOf(unit("a", change), ALARMS)).toBe(urgency);
   });

@@ -103,6 +103,12 @@ describe("words", () => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
   });
 
+  it("tell a unit that was switched off from one that is not heard", () => {
+    expect(words.linkWord(unit("a", { link: "lost" }))).toBe("Link lost");
+    expect(words.linkWord(unit("a", { link: "lost", switched_off: true }))).toBe("Switched off");
+    expect(words.linkWord(unit("a", { link: "live", switched_off: true }))).toBe("Switched off");
+  });
+
   it("count a link that is not encrypted among the problems", () => {
     expect(words.problemsOf(HEALTH)).toEqual([]);
     const both = words.problemsOf({ ...HEALTH, problems: ["The disk is full"], insecure: true });

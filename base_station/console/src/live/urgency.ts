@@ -8,12 +8,14 @@ const MAYDAY = 0;
 const IN_NEED = 1; // by more than a roll call that nobody has answered yet
 const CALMING_MS = 10_000;
 
-/** From the unit's open alarms, its state, and whether it can be heard. */
+/** From the unit's open alarms, its state, and whether it can be heard; one that was switched off in
+ * order is not missed. */
 export function urgencyOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): Urgency {
   const priorities = unit.alarms.map((id) => alarms.get(id)?.priority ?? 1);
+  const link = unit.switched_off ? "live" : unit.link;
   if (unit.status?.mayday || priorities.includes(1)) return "immediate";
-  if (priorities.includes(2) || unit.link === "lost") return "soon";
-  const watched = priorities.length > 0 || unit.link === "stale" || unit.heat_level !== "";
+  if (priorities.includes(2) || link === "lost") return "soon";
+  const watched = priorities.length > 0 || link === "stale" || unit.heat_level !== "";
   return watched ? "watch" : "normal";
 }
 

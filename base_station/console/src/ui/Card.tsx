@@ -78,9 +78,9 @@ function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
 }
 
 /** Heard, placed and known: what there is to say of it is usual. */
-function isUsual({ position, person, status, link, cloned }: UnitView): boolean {
+function isUsual({ position, person, status, link, cloned, switched_off }: UnitView): boolean {
   const known = position !== null && person !== null && status !== null;
-  return known && link === "live" && !cloned;
+  return known && link === "live" && !cloned && !switched_off;
 }
 
 function flags(set: Record<string, boolean>): string {
@@ -124,10 +124,12 @@ function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<stri
   );
 }
 
-/** How far the position can be trusted: nothing to say while that is well. */
+/** How far the position can be trusted: nothing to say while that is well.  That nothing is heard of a
+ * unit that was switched off is no reason for a doubt; its place says how old it is. */
 function Trust({ unit }: { unit: UnitView }) {
   const { level, reason } = unit.trust;
-  if (unit.position === null || level === "green") return null;
+  const off = unit.switched_off && unit.link !== "live";
+  if (unit.position === null || level === "green" || off) return null;
   const word = level === "red" ? "Do not trust this place" : "Place uncertain";
   return (
     <p class={`trust ${level}`}>

@@ -90,13 +90,13 @@ interface HeardProps {
 }
 
 function Heard({ unit, now, silent }: HeardProps) {
-  const good = unit.link === "live" && !silent;
-  const level = silent ? "critical" : LINK_LEVEL[unit.link];
+  const good = unit.link === "live" && !unit.switched_off && !silent;
+  const level = unit.switched_off ? "" : LINK_LEVEL[unit.link];
   return (
     <Fact
       icon={good ? "linkGood" : "linkLost"}
-      label={silent ? "Not updated" : words.linkWord(unit.link)}
-      level={level}
+      label={silent ? "Not updated" : words.linkWord(unit)}
+      level={silent ? "critical" : level}
     >
       {unit.last_heard_ms === null ? "—" : `${words.age(now - unit.last_heard_ms)} ago`}
     </Fact>

@@ -68,7 +68,7 @@ function UnitRow({ unit, people, calibration }: RowProps) {
     <tr>
       <th scope="row">{labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}</th>
       <td>
-        {linkWord(unit.link)}
+        {linkWord(unit)}
         {unit.cloned && <small class="warned"> {TWO_MACHINES}</small>}
       </td>
       <td data-label="Clock">
