@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import msgspec
 from sqlalchemy import ColumnElement, delete, exists, func, select
@@ -143,10 +143,16 @@ class Records:
             return session.get(Alarm, alarm_id)
 
     def alarm_life(self, alarm_id: str) -> Sequence[AlarmLife]:
+        return self.alarm_lives([alarm_id])[alarm_id]
+
+    def alarm_lives(self, alarm_ids: Collection[str]) -> dict[str, list[AlarmLife]]:
+        """Of each, the changes in its life by time."""
+        lives: dict[str, list[AlarmLife]] = {alarm_id: [] for alarm_id in alarm_ids}
+        wanted = select(AlarmLife).where(AlarmLife.alarm_id.in_(lives)).order_by(AlarmLife.t_ns)
         with self._store.read() as session:
-            return session.scalars(
-                select(AlarmLife).where(AlarmLife.alarm_id == alarm_id).order_by(AlarmLife.t_ns)
-            ).all()
+            for change in session.scalars(wanted):
+                lives[change.alarm_id].append(change)
+        return lives
 
     # ---- site
 

@@ -14,8 +14,9 @@ from PIL import Image
 
 from base_station.db.principals import Role
 from base_station.exporters import EXPORTERS
-from shared.clock import ManualClock
-from shared.messages import EventKind, Position, UnitEvent
+from shared.clock import NS_PER_MS, ManualClock
+from shared.envelope import Stamper
+from shared.messages import EventKind, Position, Temperature, UnitEvent
 from shared.messages.station import ReportProblem
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
@@ -131,6 +132,48 @@ async def test_an_alarm_is_acknowledged_and_resolved(
     told = (await commander.get(path)).json()
     assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged", "resolved"]
     assert told["changes"][1]["by"] == "commander"
+
+
+async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
+    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    """Worse, or again after somebody had acknowledged it; not where it eased, nor afterwards."""
+    await commander.post("/units", json={"unit_id": "FF-01"})
+    incident = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
+    stamper = Stamper("FF-01", 1, clock)
+
+    def hot(degc: float, *times_s: float) -> None:
+        for passed_s in times_s:
+            clock.advance(passed_s)
+            station.drive.hear(Temperature(stamper.header(), degc))
+
+    def mayday() -> None:
+        clock.advance(1.0)
+        station.drive.hear(UnitEvent(stamper.header(), EventKind.MAYDAY))
+
+    hot(120.0, 1.0)
+    hot(170.0, 1.0)
+    worse_ms = clock.utc_ns() // NS_PER_MS
+    hot(120.0, 1.0, 11.0)
+    mayday()
+    station.projection.flush()
+    heat, pressed = (await commander.get("/alarms")).json()[::-1]
+    assert heat["changed_ms"] > worse_ms, "it has eased"
+    clock.advance(1.0)
+    assert (await commander.post(f"/alarms/{pressed['alarm_id']}/acknowledge")).status_code == 204
+    mayday()
+    again_ms = clock.utc_ns() // NS_PER_MS
+    path = f"/incidents/{incident['incident_id']}"
+    clock.advance(1.0)
+    await commander.post(f"{path}/close")
+    await commander.post(f"/alarms/{pressed['alarm_id']}/acknowledge")
+    mayday()
+    station.projection.flush()
+    told = (await commander.get(f"{path}/alarms")).json()
+    assert {one["rule"]: one["again_ms"] for one in told} == {
+        "mayday": [again_ms],
+        "heat": [worse_ms],
+    }
 
 
 @pytest.mark.parametrize("part", ["log", "apart engine-2", "flood FF-01@tracker"])

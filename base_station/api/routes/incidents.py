@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Sequence
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import Annotated
 
+import msgspec
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
+from base_station.alarms import ALARMS
 from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.forms import Form, Id, Limit, Name, window
 from base_station.api.problems import Problem
@@ -24,6 +28,8 @@ from shared.messages.station import CloseIncident, OpenIncident
 
 router = APIRouter(tags=["incidents"])
 
+_LEVELS = {rule.name: rule.levels for rule in ALARMS}
+
 
 class Incident(BaseModel):
     incident_id: str
@@ -32,6 +38,10 @@ class Incident(BaseModel):
     opened_by: str
     closed_ms: int | None
     closed_by: str
+
+
+class PastAlarm(AlarmView, frozen=True):
+    again_ms: tuple[int, ...]  # when it was raised anew in the incident, oldest first
 
 
 class NewIncident(Form):
@@ -92,10 +102,30 @@ def incident_alarms(
     _: Viewer,
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,
-) -> list[AlarmView]:
+) -> list[PastAlarm]:
     """What was raised in the window while the incident was open, newest first."""
-    open_then = when.within(window_of(incident_or_404(station, incident_id)))
-    return [alarm_view(alarm) for alarm in station.records.alarms(open_then, limit)]
+    was_open = window_of(incident_or_404(station, incident_id))
+    alarms = station.records.alarms(when.within(was_open), limit)
+    lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
+    return [_past_alarm(alarm, lives[alarm.alarm_id], was_open) for alarm in alarms]
+
+
+def _past_alarm(
+    alarm: models.Alarm, life: Sequence[models.AlarmLife], was_open: Window
+) -> PastAlarm:
+    levels = _LEVELS.get(alarm.rule, ())
+    anew_ns = (now.t_ns for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
+    return PastAlarm(
+        **msgspec.structs.asdict(alarm_view(alarm)),
+        again_ms=tuple(to_ms(t_ns) for t_ns in anew_ns if t_ns < was_open.until_ns),
+    )
+
+
+def _is_raised_anew(before: models.AlarmLife, now: models.AlarmLife, levels: Sequence[str]) -> bool:
+    """It happened again, or got worse; one that nobody had acknowledged may also have eased."""
+    known = before.level in levels and now.level in levels
+    eased = known and levels.index(now.level) < levels.index(before.level)
+    return now.state == "raised" and not eased
 
 
 def _incident(incident: models.Incident) -> Incident:

@@ -9,6 +9,17 @@ interface Raised {
   raised_ms: number;
 }
 
+interface RaisedAgain extends Raised {
+  again_ms: readonly number[];
+}
+
+/** An entry for each time that an alarm was raised, at first and anew, by time. */
+export function eachRaising<A extends RaisedAgain>(alarms: readonly A[]): A[] {
+  return alarms
+    .flatMap((alarm) => [alarm.raised_ms, ...alarm.again_ms].map((raised_ms) => ({ ...alarm, raised_ms })))
+    .sort((a, b) => a.raised_ms - b.raised_ms);
+}
+
 /** The time before the next alarm; null: there is none. */
 export function nextAlarmMs(alarms: readonly Raised[], atMs: number): number | null {
   const later = starts(alarms).filter((startMs) => startMs > atMs);

@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, type Replay } from "../sessions";
 import * as api from "../api";
-import { LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
+import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
 import type { ReplayView } from "../wire";
 import { clockTime, countdown } from "../words";
 import { Icon, type IconName } from "./Icon";
@@ -18,7 +18,7 @@ interface Props {
 /** Play, seek and speed; the alarms are marks on the way and places to go to. */
 export function Transport({ replay, state }: Props) {
   const [loaded] = useLoaded(() => api.incidentAlarms(replay.incident.incident_id));
-  const alarms = (loaded.value ?? []).toReversed(); // as they were raised
+  const alarms = eachRaising(loaded.value ?? []);
   const { start_ms: start, end_ms: end, at_ms: at, playing } = state;
   const change = (what: api.ReplayChange) => void attempt(api.changeReplay(replay.id, what));
   const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });
@@ -68,6 +68,11 @@ interface SeekProps {
   seek: (ms: number) => void;
 }
 
+/** An alarm may have been raised more than once. */
+function keyOf({ alarm_id, raised_ms }: api.PastAlarm): string {
+  return `${alarm_id} ${raised_ms}`;
+}
+
 /** The alarms in words, to go to. */
 function GoTo({ alarms, seek }: SeekProps) {
   return (
@@ -77,14 +82,13 @@ function GoTo({ alarms, seek }: SeekProps) {
       value=""
       disabled={alarms.length === 0}
       onChange={(event) => {
-        const chosen = alarms.find((alarm) => alarm.alarm_id === event.currentTarget.value);
-        if (chosen !== undefined) seek(chosen.raised_ms - LEAD_MS);
+        seek(Number(event.currentTarget.value) - LEAD_MS);
         event.currentTarget.value = "";
       }}
     >
       <option value="">{alarms.length === 0 ? "No alarms" : `${alarms.length} alarms …`}</option>
       {alarms.map((alarm) => (
-        <option key={alarm.alarm_id} value={alarm.alarm_id}>
+        <option key={keyOf(alarm)} value={alarm.raised_ms}>
           {clockTime(alarm.raised_ms)} {alarm.text}
         </option>
       ))}
@@ -121,7 +125,7 @@ function SeekBar({ state, alarms, seek }: SeekProps & { state: ReplayView }) {
       <svg class="seek-marks" viewBox="0 0 1000 10" preserveAspectRatio="none" aria-hidden="true">
         {alarms.map((alarm) => (
           <rect
-            key={alarm.alarm_id}
+            key={keyOf(alarm)}
             class={`p${alarm.priority}`}
             x={(1000 * (alarm.raised_ms - start)) / Math.max(1, end - start) - 2}
             width="4"
