@@ -10,7 +10,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,6 +51,21 @@ class MadeChunk:
     index: bytes  # the message index records that go behind it
     index_offsets: Mapping[int, int]  # in ``index``, by topic
     counts: Mapping[int, int]  # messages, by topic
+
+
+def made_chunk(
+    record: bytes, start_ns: int, end_ns: int, size: int, entries: Mapping[int, Sequence[int]]
+) -> MadeChunk:
+    """``entries``: by topic, time and place of each message in the chunk's data."""
+    offsets: dict[int, int] = {}
+    index = bytearray()
+    for topic, of_topic in entries.items():
+        offsets[topic] = len(index)
+        entries_bytes = 8 * len(of_topic)
+        index += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + entries_bytes, topic, entries_bytes)
+        index += struct.pack(f"<{len(of_topic)}Q", *of_topic)
+    counts = {topic: len(of_topic) // 2 for topic, of_topic in entries.items()}
+    return MadeChunk(record, start_ns, end_ns, size, bytes(index), offsets, counts)
 
 
 class ChunkMaker:
@@ -97,21 +112,12 @@ class ChunkMaker:
             self._start_ns, self._end_ns, len(data), zlib.crc32(data), len(COMPRESSION)
         )
         body = b"".join((head, COMPRESSION, _SIZE.pack(len(packed)), packed))
-        offsets: dict[int, int] = {}
-        index = bytearray()
-        for topic, entries in self._entries.items():
-            offsets[topic] = len(index)
-            entries_bytes = 8 * len(entries)
-            index += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + entries_bytes, topic, entries_bytes)
-            index += struct.pack(f"<{len(entries)}Q", *entries)
-        made = MadeChunk(
+        made = made_chunk(
             RECORD.pack(Opcode.CHUNK, len(body)) + body,
             self._start_ns,
             self._end_ns,
             len(data),
-            bytes(index),
-            offsets,
-            {topic: len(entries) // 2 for topic, entries in self._entries.items()},
+            self._entries,
         )
         self._parts.clear()
         self._entries.clear()

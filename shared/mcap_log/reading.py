@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from mcap.opcode import Opcode
-
 from shared.mcap_log.container import (
     INDEX_ENTRY,
     INDEX_HEAD,
@@ -33,7 +31,6 @@ class IntactChunk:
     """A chunk as it stands in the file, and what is in it."""
 
     record: bytes  # with opcode and length
-    index: bytes  # the message index records behind it; empty where they are not whole
     data: bytes  # schema, channel and message records
 
 
@@ -145,21 +142,7 @@ class SegmentReader:
             data = self._chunk_data(chunk)
             if data:
                 _, length = self._file.record_at(chunk.offset)
-                record = self._file.read(chunk.offset, 9 + length)
-                index = self._index_behind(chunk.offset + len(record))
-                yield IntactChunk(record, index, data)
-
-    def _index_behind(self, offset: int) -> bytes:
-        end = offset
-        try:
-            while end + 9 <= self._file.size:
-                opcode, length = self._file.record_at(end)
-                if opcode != Opcode.MESSAGE_INDEX:
-                    break
-                end += 9 + length
-            return self._file.read(offset, end - offset)
-        except ValueError:
-            return b""  # what is in the chunk can be read without
+                yield IntactChunk(self._file.read(chunk.offset, 9 + length), data)
 
     def _records_at(self, data: bytes, offsets: list[int], wanted: _Wanted) -> Iterator[LogRecord]:
         topics = {

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
+from mcap.reader import make_reader
 
 from shared.channels import TEMPERATURE
 from shared.errors import LogError
@@ -19,7 +20,7 @@ from shared.mcap_log import (
     segment_paths,
 )
 from shared.mcap_log.container import RECORD
-from tests.small_log import KEY, T0_NS, on_disk
+from tests.small_log import KEY, T0_NS, as_others_read, on_disk
 
 
 def test_a_recovery_that_was_cut_off_goes_on(tmp_path: Path) -> None:
@@ -168,3 +169,23 @@ def test_a_chunk_whose_index_is_torn_off_is_found_under_every_key(
     assert recover_log(tmp_path)
     for key in keys:
         assert [record[1] for record in read_log(tmp_path, keys={key})] == [key]
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    (chunk,) = summary.chunk_indexes
+    named = [summary.channels[number].topic for number in chunk.message_index_offsets]
+    assert named == keys, "other readers go by it"
+
+
+def test_an_index_in_which_a_bit_flipped_before_the_tear_is_made_again(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    writer.write(T0_NS, KEY, b"said")
+    writer.flush()
+    [path] = segment_paths(tmp_path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    assert recover_log(tmp_path)
+    assert [message.data for _, _, message in as_others_read(path)] == [b"said"]
+    with SegmentReader(path) as reader:
+        assert [payload for _, _, payload in reader.records(keys={KEY})] == [b"said"]
+        assert reader.damage == []
