@@ -5,7 +5,7 @@ import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import type { TrailPoint } from "../wire";
 import { followBaseMap } from "./baseMap";
-import { firstFloor, floorsOf } from "./floors";
+import { beginOnAFloor } from "./floorShown";
 import type { PlanMap } from "./map";
 import { followTrails, pastTrails, shownKinds } from "./pastTrails";
 import { clicked, tool } from "./tools";
@@ -72,20 +72,6 @@ function chosenOnPlan(): string | null {
   const now = tool.value;
   if (now?.kind === "edit-pin") return now.pinId;
   return now?.kind === "edit-beacon" ? now.beaconId : null;
-}
-
-/** Choose the first floor as soon as there are floors; after that the person chooses. */
-function beginOnAFloor(picture: Picture): () => void {
-  let chosen = false;
-  return effect(() => {
-    void picture.unitsChanged.value;
-    if (chosen) return;
-    const floors = floorsOf(picture.plan.value, picture.allUnits(), new Map());
-    const first = firstFloor(floors);
-    if (first === null || !floors.some((one) => one.people > 0)) return;
-    chosen = true;
-    floor.value = first;
-  });
 }
 
 function atMostEvery(periodMs: number, work: () => void): { ask(): void; cancel(): void } {
