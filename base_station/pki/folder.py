@@ -142,8 +142,7 @@ class PkiFolder:
                 registry = msgspec.structs.replace(registry, hosts=_with_loopback(hosts))
             if connect:
                 others = registry.connect[1:]  # this station's own stands first
-                ends = tuple(dict.fromkeys((*connect, *others)))
-                registry = msgspec.structs.replace(registry, connect=ends)
+                registry = registry.with_connect((*connect, *others), self._now())
             issued = _issue_station(self._authority(), registry, self._now(), valid)
             self._put_station(issued, registry)
 
@@ -172,8 +171,7 @@ class PkiFolder:
             registry = registry.with_entry(
                 Entry.of(Holder.STATION, name, common_name, issued.certificate)
             )
-            connect = tuple(dict.fromkeys((*registry.connect, endpoint)))
-            registry = msgspec.structs.replace(registry, connect=connect)
+            registry = registry.with_connect((*registry.connect, endpoint), self._now())
             save_registry(self.registry_path, registry)
         identity = TlsIdentity(
             authority.certificate_pem(), issued.certificate_pem(), issued.key_pem()

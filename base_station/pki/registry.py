@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import msgspec
@@ -39,12 +40,15 @@ class Entry(msgspec.Struct, frozen=True):
 
 
 class Registry(msgspec.Struct, frozen=True):
-    """``connect``: where units find this station.  ``hosts``: what its certificate stands for."""
+    """``connect``: where units find the stations.  ``hosts``: what this one's certificate stands
+    for.
+    """
 
     organisation: str
     hosts: tuple[str, ...]
     connect: tuple[str, ...]
     entries: tuple[Entry, ...] = ()
+    connect_since: datetime = datetime(1970, 1, 1, tzinfo=UTC)  # of two stations' the later holds
 
     def current(self, holder: Holder, name: str) -> Entry | None:
         """The holder's certificate that is not revoked."""
@@ -70,8 +74,18 @@ class Registry(msgspec.Struct, frozen=True):
             revoked = newer.revoked or theirs.revoked or (mine.revoked if mine else None)
             newer = newer if mine is None else _behind(newer, mine, theirs)
             entries[theirs.common_name] = msgspec.structs.replace(newer, revoked=revoked)
-        connect = tuple(dict.fromkeys((*self.connect, *other.connect)))
-        return msgspec.structs.replace(self, entries=tuple(entries.values()), connect=connect)
+        merged = msgspec.structs.replace(self, entries=tuple(entries.values()))
+        if other.connect_since <= self.connect_since:
+            return merged
+        return msgspec.structs.replace(
+            merged, connect=other.connect, connect_since=other.connect_since
+        )
+
+    def with_connect(self, connect: Sequence[str], now: datetime) -> Registry:
+        """Units find the stations there from now on."""
+        since = max(now, self.connect_since + timedelta.resolution)  # the clock may be set back
+        ends = tuple(dict.fromkeys(connect))
+        return msgspec.structs.replace(self, connect=ends, connect_since=since)
 
     def next_common_name(self, holder: Holder, name: str) -> str:
         """One that no certificate of this authority has had.

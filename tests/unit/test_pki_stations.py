@@ -85,6 +85,27 @@ def test_units_know_the_second_station_though_the_first_has_moved(
     assert first.registry().connect == (SECOND,)
 
 
+@pytest.mark.parametrize("asks_first", [True, False])
+def test_an_address_that_the_first_has_left_does_not_come_back_from_the_second(
+    first: PkiFolder, second: PkiFolder, asks_first: bool
+) -> None:
+    moved = "tls/10.0.0.9:7447"
+    first.renew_station(hosts=["10.0.0.9"], connect=[moved])
+    for taking in (asks_first, not asks_first):
+        one, other = (first, second) if taking else (second, first)
+        one.take_registry(other.registry())
+    assert first.registry().connect == second.registry().connect == (moved, SECOND)
+
+
+def test_addresses_that_are_said_by_a_clock_that_was_set_back_are_the_later_ones(
+    first: PkiFolder, second: PkiFolder, tmp_path: Path
+) -> None:
+    earlier = PkiFolder(tmp_path / "first", lambda: datetime.now(UTC) - timedelta(hours=12))
+    earlier.renew_station(hosts=["10.0.0.9"], connect=["tls/10.0.0.9:7447"])
+    second.take_registry(first.registry())
+    assert second.registry().connect == ("tls/10.0.0.9:7447", SECOND)
+
+
 def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: PkiFolder) -> None:
     first.enroll("FF-01")
     second.take_registry(first.registry())
