@@ -14,7 +14,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, confirm, menu, press
 from tests.e2e.looks import flaws
-from tests.e2e.stage import Stage
+from tests.e2e.stage import ANSWERS, PAST, Stage
 
 
 def strip(page: Page) -> Locator:
@@ -101,6 +101,29 @@ def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     notice.get_by_role("button", name="OK").click()
     expect(notice).to_have_count(0)
     assert flaws(page) == []
+
+
+def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage: Stage) -> None:
+    saved = {f"{PAST}/export/csv": "unit_id,person"}
+    formats = [
+        {"name": name, "suffix": name, "needs_anchor": name == "gpx"} for name in ("csv", "gpx")
+    ]
+    answers = {**ANSWERS, **saved, "/export-formats": formats}
+    page, _ = stage.open(scenes.quiet(), answers=answers)
+    dialog = menu(page, "Incidents")
+    save_as = dialog.get_by_label(f"Save {scenes.INCIDENT.name} as a file")
+    with page.expect_download() as download:
+        save_as.select_option("csv")
+    assert download.value.suggested_filename == f"{scenes.INCIDENT.incident_id}.csv"
+    assert "unit_id,person" in download.value.path().read_text()
+    save_as.select_option("gpx")
+    expect(dialog.get_by_text("The station answered 404")).to_be_visible()
+    expect(save_as).to_be_enabled()
+    save_as.press("ArrowDown")
+    save_as.press("ArrowDown")
+    with page.expect_request(re.compile("/export/")) as asked:
+        save_as.press("Enter")
+    assert asked.value.url.endswith("/export/gpx"), "what the keys passed is not asked for"
 
 
 def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 /** The station's REST API, as far as the console uses it. */
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
-import { BASE, call, id, page, wholeList } from "./call";
+import { BASE, call, file, id, page, wholeList } from "./call";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 /** Each may do what those before it may. */
@@ -197,8 +197,8 @@ export interface ExportFormat {
 }
 
 export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
-export const exportUrl = (incidentId: string, format: string) =>
-  `${BASE}/incidents/${id(incidentId)}/export/${id(format)}`;
+export const exported = (incidentId: string, format: string) =>
+  file(`/incidents/${id(incidentId)}/export/${id(format)}`);
 
 export const acknowledge = (alarmId: string) =>
   call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);

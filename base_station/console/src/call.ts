@@ -13,17 +13,27 @@ export class ApiError extends Error {
 export const BASE = "/api/v1";
 
 export async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
-  const init: RequestInit = { method, credentials: "same-origin" };
+  const init: RequestInit = { method };
   if (body instanceof Blob) init.body = body;
   else if (body !== undefined) {
     init.body = JSON.stringify(body);
     init.headers = { "content-type": "application/json" };
   }
-  const response = await fetch(BASE + path, init).catch(() => {
+  const response = await answer(path, init);
+  return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
+}
+
+/** What is no JSON. */
+export async function file(path: string): Promise<Blob> {
+  return (await answer(path, {})).blob();
+}
+
+async function answer(path: string, init: RequestInit): Promise<Response> {
+  const response = await fetch(BASE + path, { ...init, credentials: "same-origin" }).catch(() => {
     throw new ApiError("The station cannot be reached.", 0);
   });
   if (!response.ok) throw new ApiError(await reason(response), response.status);
-  return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
+  return response;
 }
 
 /** The sentence of a problem document (RFC 9457). */

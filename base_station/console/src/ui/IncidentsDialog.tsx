@@ -1,3 +1,4 @@
+import { useSignal } from "@preact/signals";
 import { attempt, live, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
 import { assess } from "../view";
@@ -7,6 +8,7 @@ import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
+import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
 
@@ -155,6 +157,17 @@ function MinutesField({ name, label, value }: { name: string; label: string; val
   );
 }
 
+const TAKEN_MS = 60_000; // by then the browser has the file
+
+/** The console stays: the browser would leave it for an answer that is a refusal. */
+async function save(incident: api.Incident, format: api.ExportFormat): Promise<void> {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await api.exported(incident.incident_id, format.name));
+  link.download = `${incident.incident_id}.${format.suffix}`;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), TAKEN_MS);
+}
+
 interface DownloadsProps {
   incident: api.Incident;
   formats: readonly api.ExportFormat[];
@@ -162,16 +175,21 @@ interface DownloadsProps {
 
 /** The tracks of an incident for other programs. */
 function Downloads({ incident, formats }: DownloadsProps) {
+  const writing = useSignal(false);
+  const chosen = useChosen("", async (name) => {
+    const format = formats.find((one) => one.name === name);
+    if (format === undefined) return;
+    writing.value = true;
+    await attempt(save(incident, format));
+    writing.value = false;
+  });
   return (
     <select
       aria-label={`Save ${incident.name} as a file`}
-      value=""
-      onChange={(event) => {
-        location.assign(api.exportUrl(incident.incident_id, event.currentTarget.value));
-        event.currentTarget.value = "";
-      }}
+      disabled={writing.value}
+      {...chosen}
     >
-      <option value="">Save as …</option>
+      <option value="">{writing.value ? "Is written …" : "Save as …"}</option>
       {formats.map((format) => (
         <option key={format.name} value={format.name}>
           {format.name}

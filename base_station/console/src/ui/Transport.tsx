@@ -5,6 +5,7 @@ import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../l
 import type { ReplayView } from "../wire";
 import { clockTime, countdown } from "../words";
 import { Icon, type IconName } from "./Icon";
+import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
 
 const SPEEDS = [0.5, 1, 2, 4, 8, 16, 32, 64];
@@ -75,16 +76,13 @@ function keyOf({ alarm_id, raised_ms }: api.PastAlarm): string {
 
 /** The alarms in words, to go to. */
 function GoTo({ alarms, seek }: SeekProps) {
+  const chosen = useChosen("", (raisedMs) => seek(Number(raisedMs) - LEAD_MS));
   return (
     <select
       class="go-to"
       aria-label="Go to an alarm"
-      value=""
       disabled={alarms.length === 0}
-      onChange={(event) => {
-        seek(Number(event.currentTarget.value) - LEAD_MS);
-        event.currentTarget.value = "";
-      }}
+      {...chosen}
     >
       <option value="">{alarms.length === 0 ? "No alarms" : `${alarms.length} alarms …`}</option>
       {alarms.map((alarm) => (

@@ -25,8 +25,13 @@ export function useChosen(current: string, act: (chosen: string) => void) {
     },
     onBlur: settle,
     onChange: ({ currentTarget }: OfList) => {
-      if (byKeys.current) passed.value = currentTarget.value;
-      else act(currentTarget.value);
+      const chosen = currentTarget.value;
+      if (byKeys.current) {
+        passed.value = chosen;
+        return;
+      }
+      currentTarget.value = current; // until the station says that it is so
+      act(chosen);
     },
   };
 }
