@@ -233,8 +233,9 @@ class StationDrive:
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
         self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
         self._report_problems()
-        if not self._ports.log.is_behind:  # what is reported may be acknowledged to its unit
-            self._ports.report(self._held())
+        is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only
+        if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost
+            self._ports.report(self._held(), is_behind)
         self._ports.say(command_book.unanswered(self._pipeline.state))
 
     def _look_around(self) -> None:

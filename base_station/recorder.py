@@ -108,8 +108,7 @@ class Recorder:
         waited for longer than two seconds, and hardly at all once it is known to.
         """
         with self._taking:  # the condition's own lock, without what a condition costs
-            waiting_bytes = self._queued_bytes + self._unwritten_bytes
-            if self._failure or waiting_bytes > self._waiting_max:
+            if self.refuses:
                 self._refused += 1
                 return False
             self._queue.append((t_ns, key, payload))
@@ -178,6 +177,12 @@ class Recorder:
     def hangs(self) -> bool:
         """Whether the disk does not answer at all: records wait in memory for it."""
         return self._turn_ns > _HANGS_NS and not self._failure
+
+    @property
+    def refuses(self) -> bool:
+        """Whether memory is full of what the disk does not take."""
+        waiting_bytes = self._queued_bytes + self._unwritten_bytes
+        return bool(self._failure) or waiting_bytes > self._waiting_max
 
     @property
     def lost(self) -> int:

@@ -75,7 +75,7 @@ def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -
         checkpoints=Checkpoints(folder),
         photo_urls=lambda _: None,
         facts=StationFacts,
-        report=lambda _: None,
+        report=lambda *_: None,
         say=lambda _: None,
         clock=clock,
         boot_id=1,
@@ -90,7 +90,8 @@ class LiveStation:
         self.screen, self.store = Screen(), Store()
         self.checkpoints = Checkpoints(folder / "checkpoints")
         self.recorder = Recorder(folder, clock, policy)
-        self.reported: Report = {}
+        self.reported: Report = {}  # what may be acknowledged
+        self.reported_unsafe: Report = {}  # what may be in memory only
         self.feed = LiveFeed(clock)
         self.log = LogFeed(self.recorder.folder, self.recorder.flush)
         self.router = MemoryRouter()
@@ -119,8 +120,11 @@ class LiveStation:
         after = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
         self.rebuilt = self.drive.rebuild(self.log.records(after[0]), after)
 
-    def _note_report(self, report: Report) -> None:
-        self.reported = report
+    def _note_report(self, report: Report, in_memory: bool) -> None:
+        if in_memory:
+            self.reported_unsafe = report
+        else:
+            self.reported = report
 
     def __enter__(self) -> Self:
         self.drive.start()

@@ -36,7 +36,7 @@ class FullDisk:
     """A ``Log`` that takes as much as it has room for."""
 
     problem, little_room = "the log cannot be written", "only 1 MB is free"
-    is_behind = False
+    is_behind = refuses = False
 
     def __init__(self) -> None:
         self.room = 0

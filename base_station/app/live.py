@@ -312,9 +312,9 @@ class _LiveStation:
     def _save_soon(self) -> None:
         self._drive.save_soon()
 
-    def _report(self, held: Report) -> None:
+    def _report(self, held: Report, in_memory: bool) -> None:
         self._side.note_report()
-        self._backfill.report(held, self._resources.recorder.lost)
+        self._backfill.report(held, self._resources.recorder.lost, alerts_only=in_memory)
 
     def _forget(self, what: str) -> None:
         """The other station has forgotten this, and of who it is this one's log tells, too."""

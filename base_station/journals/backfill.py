@@ -46,6 +46,7 @@ class _News(NamedTuple):
     """What has happened since the thread last looked."""
 
     report: Report | None
+    alerts_only: bool  # is to be fetched
     replies: list[tuple[_Asked, bytes | None]]  # None: no more come
     start_over: bool
 
@@ -76,6 +77,7 @@ class Backfill:
         self._urgent: list[tuple[_Asked, bytes | None]] = []
         self._replies: deque[tuple[_Asked, bytes | None]] = deque()
         self._closed = False
+        self._alerts_only = False
         self._starts_over = False
         self._refused = 0
         self._thread = Thread(target=self._run, name="backfill", daemon=True)
@@ -89,14 +91,15 @@ class Backfill:
     def start(self) -> None:
         self._thread.start()
 
-    def report(self, report: Report, refused: int = 0) -> None:
+    def report(self, report: Report, refused: int = 0, *, alerts_only: bool = False) -> None:
         """Say what the station has now; an older report that was not looked at is forgotten.
 
         ``refused``: how many records its log has not taken so far.  Where there are more of them,
-        what was fetched may not have come into the log.
+        what was fetched may not have come into the log.  ``alerts_only``: its disk takes nothing,
+        and what it has may be in memory only.
         """
         with self._news:
-            self._report = report
+            self._report, self._alerts_only = report, alerts_only
             self._starts_over |= refused > self._refused
             self._refused = refused
             self._news.notify()
@@ -113,7 +116,7 @@ class Backfill:
                 for journal in self._journals.values():
                     journal.start_over()
             if news.report is not None:
-                self._take_report(news.report)
+                self._take_report(news.report, alerts_only=news.alerts_only)
             for asked, reply in news.replies:
                 if self._closed:
                     return
@@ -131,20 +134,20 @@ class Backfill:
             self._news.wait_for(
                 lambda: self._report is not None or self._urgent or self._replies or self._closed
             )
-            news = _News(self._report, self._urgent, self._starts_over)
+            news = _News(self._report, self._alerts_only, self._urgent, self._starts_over)
             self._report, self._urgent, self._starts_over = None, [], False
             if self._replies:
                 news.replies.append(self._replies.popleft())
             return None if self._closed else news
 
-    def _take_report(self, report: Report) -> None:
+    def _take_report(self, report: Report, *, alerts_only: bool) -> None:
         before, self._reported = self._reported, report
         now_ns = self._clock.monotonic_ns()
         for unit_id, held in report.items():
             journal = self._journals.setdefault(unit_id, UnitJournal())
             if unit_id not in before:
                 journal.note_new_link()
-            journal.report(held, now_ns)
+            journal.report(held, now_ns, alerts_only=alerts_only)
         waiting = [one for one in self._turns if one in report]
         idle = [one for one in report if one not in waiting and one not in self._asking]
         self._turns = deque([*waiting, *idle])

@@ -70,13 +70,14 @@ class _Boot:
         self.acknowledged = 0
         self.acknowledge_due_ns = 0
 
-    def report(self, runs: tuple[Run, ...]) -> None:
+    def report(self, runs: tuple[Run, ...], *, safe: bool) -> None:
         self.held = SequenceSet([run.first for run in runs], [run.last for run in runs])
         self._have = _union(self.held, self._fetched)
         self._known = _union(self._have, self._without_alert)
         self._settled_to = self.newest
         self.newest = max(self.newest, runs[-1].last if runs else 0)
-        self.complete.append(self._have.complete_to(self.first))
+        if safe:
+            self.complete.append(self._have.complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
         """What the journal has of it came."""
@@ -145,19 +146,23 @@ class UnitJournal:
         self._told = 0  # replies that make sense, to that question
         self._silent = False  # it did not answer, or nonsense: not before the next report again
         self._acknowledging: tuple[_Boot, int] | None = None
+        self._alerts_only = False
         self.gone = 0  # numbers that no journal has any more
 
-    def report(self, held: tuple[Held, ...], now_ns: int) -> None:
+    def report(self, held: tuple[Held, ...], now_ns: int, *, alerts_only: bool = False) -> None:
         """``held``: of the run that goes on last; ``now_ns`` monotonic.  The index is asked for now
         and then, and until it has the run that goes on.  Of older ones nothing may be left.
+
+        ``alerts_only``: what is held may not be on the disk, and a backlog has no room there.
         """
         self._silent = False
+        self._alerts_only = alerts_only
         self._reported_ns = now_ns
         runs_of = {one.boot_id: one.runs for one in held}
         known = dict.fromkeys((*self._indexed, *runs_of))
         self._boots = {boot_id: self._boots.get(boot_id) or _Boot() for boot_id in known}
         for boot_id, boot in self._boots.items():
-            boot.report(runs_of.get(boot_id, ()))
+            boot.report(runs_of.get(boot_id, ()), safe=not alerts_only)
         is_new = bool(held) and held[-1].boot_id not in self._indexed
         if now_ns >= self._index_due_ns or is_new:
             self._index_due_ns = 0
@@ -177,7 +182,8 @@ class UnitJournal:
             return None
         if self._index_due_ns == 0:
             return Question("index", urgent=True)
-        return self._ask_missing() or self._ask_unanswered() or self._acknowledge()
+        asked = self._ask_missing() or self._ask_unanswered()
+        return asked if asked or self._alerts_only else self._acknowledge()
 
     def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
         """Learn from one reply; what it brings is to be kept.
@@ -254,7 +260,8 @@ class UnitJournal:
             boot.unanswered = None if told or question.what != "urgent" else asked["from"]
 
     def _ask_missing(self) -> Question | None:
-        return self._ask_alerts() or self._ask_piece()
+        asked = self._ask_alerts()
+        return asked if asked or self._alerts_only else self._ask_piece()
 
     def _ask_unanswered(self) -> Question | None:
         """There is nothing else to ask for."""

@@ -53,6 +53,11 @@ class Log(Protocol):
         """Whether records of a second ago may not be on the disk yet."""
         ...
 
+    @property
+    def refuses(self) -> bool:
+        """Whether it would not keep a record now."""
+        ...
+
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         """Keep a record, soon on the disk; False: it is lost."""
         ...
@@ -73,7 +78,8 @@ class DrivePorts:
     checkpoints: Checkpoints
     photo_urls: PhotoUrls
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
-    report: Callable[[Report], None]  # hears once a second what is there of each linked unit
+    # Hears once a second what is there of each linked unit, and whether it may not be on the disk.
+    report: Callable[[Report, bool], None]
     say: Callable[[Sequence[Order]], None]  # hears what no unit has answered
     clock: Clock
     boot_id: int

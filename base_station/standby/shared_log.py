@@ -61,6 +61,10 @@ class SharedLog:
     def is_behind(self) -> bool:
         return self._log.is_behind
 
+    @property
+    def refuses(self) -> bool:
+        return self._log.refuses
+
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         with self._news:  # in one order here and there
             kept = not self.is_cut_short and self._log.write(t_ns, key, payload)

@@ -111,7 +111,7 @@ class Written:
     """A ``Log`` that counts, and keeps the first records."""
 
     problem = little_room = ""
-    is_behind = False
+    is_behind = refuses = False
 
     def __init__(self) -> None:
         self.from_bus = 0

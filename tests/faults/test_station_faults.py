@@ -99,17 +99,20 @@ def wait_for_ticks(station: LiveStation) -> None:
     until(lambda: len([one for one in station.screen.deltas[count:] if one.health]) > 2)
 
 
+@pytest.mark.parametrize("refuses", [False, True])
 def test_no_journal_hears_of_what_may_not_be_on_the_disk(
-    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch, refuses: bool
 ) -> None:
-    """Its unit would forget it."""
+    """Its unit would forget it; what there is room for in memory only is asked for alerts."""
     behind = {"now": True}
     monkeypatch.setattr(Recorder, "is_behind", property(lambda _: behind["now"]))
+    monkeypatch.setattr(Recorder, "refuses", property(lambda _: behind["now"] and refuses))
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.say(make_position())
         wait_for_ticks(station)
         assert not station.reported
+        assert (U in station.reported_unsafe) != refuses
         behind["now"] = False
         until(lambda: U in station.reported)
 
@@ -133,7 +136,7 @@ class Nowhere:
     """A ``Log`` that keeps nothing."""
 
     problem = little_room = ""
-    is_behind = False
+    is_behind = refuses = False
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         del t_ns, key, payload

@@ -32,9 +32,9 @@ from tests.waiting import until
 BOOT = 77
 
 
-def tell(backfill: Backfill, report: Report) -> None:
+def tell(backfill: Backfill, report: Report, *, alerts_only: bool = False) -> None:
     """Reports that come too quickly are taken together; each is to be looked at."""
-    backfill.report(report)
+    backfill.report(report, alerts_only=alerts_only)
     until(lambda: backfill._report is None, "the report is looked at")
 
 
@@ -73,8 +73,8 @@ class Bench:
         )
         self.backfill.start()
 
-    def report(self, *runs: Run) -> None:
-        tell(self.backfill, {"FF-01": (Held(BOOT, runs),)})
+    def report(self, *runs: Run, alerts_only: bool = False) -> None:
+        tell(self.backfill, {"FF-01": (Held(BOOT, runs),)}, alerts_only=alerts_only)
 
     @property
     def totals(self) -> list[int]:
@@ -115,6 +115,19 @@ def test_what_is_only_under_way_is_not_asked_for(bench):
     for _ in range(3):
         bench.report(Run(1, 10))
     assert bench.delivered == []
+
+
+def test_an_alert_is_fetched_though_the_stations_disk_takes_nothing(tmp_path):
+    bench = Bench(tmp_path, [1, 2, 3, 5, 6])
+    bench.spool.append([Journaled(4, EVENT, 4, said(4))])
+    for _ in range(4):
+        bench.report(Run(1, 2), Run(6, 6), alerts_only=True)
+    until(lambda: bench.delivered, "the alert")
+    bench.report(Run(1, 2), Run(4, 4), Run(6, 6), alerts_only=True)
+    bench.backfill.close()
+    bench.spool.close()
+    assert bench.delivered == [(backfilled_key("FF-01", EVENT.suffix), said(4))]
+    assert (bench.questions, bench.acknowledged) == ([], [])
 
 
 def test_a_station_that_has_everything_says_so_to_the_unit(bench):

@@ -21,7 +21,7 @@ class Log:
     """Its disk takes what it is told to."""
 
     problem = little_room = ""
-    is_behind = False
+    is_behind = refuses = False
 
     def __init__(self) -> None:
         self.takes = True

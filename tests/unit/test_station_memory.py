@@ -38,7 +38,7 @@ NO_DATA = (type, ModuleType, FunctionType, BuiltinFunctionType)
 class Room:
     """A log that takes everything and keeps nothing."""
 
-    problem, little_room, is_behind = "", "", False
+    problem, little_room, is_behind, refuses = "", "", False, False
 
     def write(self, _t_ns: int, _key: str, _payload: bytes) -> bool:
         return True

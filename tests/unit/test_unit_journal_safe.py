@@ -127,3 +127,37 @@ def test_nothing_is_told_to_be_safe_before_it_is_reported_anew() -> None:
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
     asked_of(journal)
     assert journal.next_question() is None  # the log may have refused these, too
+
+
+def test_while_the_disk_takes_nothing_only_alerts_are_asked_for_and_nothing_is_safe() -> None:
+    journal = journal_of(Run(1, 10), Run(21, 30), last=30)
+    held = (Held(BOOT, (Run(1, 10), Run(21, 30))),)
+    for number in range(5):
+        journal.report(held, number, alerts_only=True)
+    what, asked = next_of(journal)
+    assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
+    journal.end(journal.next_question() or Question("none"), 1)
+    assert journal.next_question() is None, "the unit said nothing: not before the next report"
+    journal.report(held, 6, alerts_only=True)
+    question = journal.next_question()
+    assert question is not None
+    answer(journal, question, JournalChunk(BOOT, 11, 20, (), urgent_only=True))
+    for number in range(7, 12):
+        assert journal.next_question() is None
+        journal.report(held, number, alerts_only=True)
+    journal.report(held, 12)
+    assert next_of(journal)[0] == "range"
+
+
+def test_what_was_complete_in_memory_only_is_no_report_that_counts() -> None:
+    journal = journal_of(Run(1, 100))
+    held = (Held(BOOT, (Run(1, 100),)),)
+    for number in range(1, 5):
+        journal.report(held, number, alerts_only=True)
+        assert journal.next_question() is None
+    journal.report(held, 6)
+    assert journal.next_question() is None
+    journal.report(held, 7)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100})
+    journal.report(held, 8, alerts_only=True)
+    assert journal.next_question() is None

@@ -56,7 +56,7 @@ class Disk:
     """A ``Log`` that counts how often it was waited for."""
 
     problem = little_room = ""
-    is_behind = False
+    is_behind = refuses = False
 
     def __init__(self) -> None:
         self.flushed = 0

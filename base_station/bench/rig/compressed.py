@@ -74,7 +74,7 @@ class CompressedStation:
                 checkpoints=Checkpoints(data.checkpoints),
                 photo_urls=lambda _: None,
                 facts=StationFacts,
-                report=lambda _: None,
+                report=lambda *_: None,
                 say=lambda _: None,
                 clock=clock,
                 boot_id=clock.utc_ns(),
