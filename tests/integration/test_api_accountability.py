@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 from httpx import AsyncClient
 
+from base_station.config import AccountabilityConfig
 from base_station.db.principals import Role
 from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Tick
@@ -59,6 +62,20 @@ async def test_green_warning_overdue_and_ticked_off(
         assert await states(commander) == {}
         assert (await commander.put(path, json=times)).status_code == 404
         assert (await commander.post("/check-ins", json=everyone)).status_code == 409
+
+
+async def test_an_incident_begins_with_the_times_of_the_station(station: DeskStation) -> None:
+    usual = {"par_interval_s": 900.0, "work_limit_s": 1500.0}
+    station.app.state.services = dataclasses.replace(
+        station.services, accountability=AccountabilityConfig(**usual)
+    )
+    async with station.client(Role.COMMANDER) as commander:
+        assert (await commander.get("/accountability/usual")).json() == usual
+        opened = await commander.post("/incidents", json={"name": "Kitchen", "work_limit_s": 60.0})
+    assert opened.status_code == 201
+    incident = station.drive.picture().incident
+    assert incident is not None
+    assert (incident.par_interval_s, incident.work_limit_s) == (900.0, 60.0)
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,13 @@ def list_on_duty(station: Station, _: Viewer) -> list[OnDuty]:
     return sorted(found, key=lambda one: one.left_s)
 
 
+@router.get("/accountability/usual")
+def usual_times(station: Station, _: Viewer) -> Times:
+    """With which an incident is opened where nobody says others."""
+    usual = station.accountability
+    return Times(par_interval_s=usual.par_interval_s, work_limit_s=usual.work_limit_s)
+
+
 @router.post("/check-ins", status_code=204)
 def check_in(new: NewCheckIn, station: Station, who: Commander) -> None:
     """Somebody has heard from them: that, and nothing that a unit measures, completes a PAR."""

@@ -162,12 +162,11 @@ export const forgetPerson = (personId: string, name: string) =>
 export const forgetIncident = (incidentId: string, name: string) =>
   call<Forgetting>("POST", `/incidents/${id(incidentId)}/forget`, { name });
 
-/** Have a unit's raw recording pulled: of an incident, or of the last hour. */
-export const fetchRecording = (unitId: string, incidentId: string | null) =>
-  call<object>("POST", "/recordings", {
-    unit_id: unitId,
-    ...(incidentId === null ? { from_ms: Date.now() - 3_600_000 } : { incident_id: incidentId }),
-  });
+/** Have a unit's raw recording pulled: of an incident, or from a station time until now. */
+export const fetchRecording = (
+  unitId: string,
+  wanted: { incident_id: string } | { from_ms: number },
+) => call<object>("POST", "/recordings", { unit_id: unitId, ...wanted });
 /** What has come of it is kept. */
 export const stopRecording = (fetchId: string) =>
   call<void>("DELETE", `/recordings/${id(fetchId)}`);
@@ -183,6 +182,8 @@ export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
 export const openIncident = (name: string, times: Partial<Times>) =>
   call<Incident>("POST", "/incidents", { name, ...times });
+/** As this station is configured. */
+export const usualTimes = () => call<Times>("GET", "/accountability/usual");
 export const setTimes = (incidentId: string, times: Times) =>
   call<void>("PUT", `/incidents/${id(incidentId)}/accountability`, times);
 export const closeIncident = (incidentId: string) =>

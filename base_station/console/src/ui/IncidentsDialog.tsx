@@ -100,20 +100,21 @@ export function IncidentsDialog() {
 }
 
 function OpenForm({ done }: { done: () => void }) {
+  const [usual] = useLoaded(api.usualTimes);
   return (
     <form
       class="row"
       onSubmit={(event) => {
-        const { name = "", par = "", work = "" } = fields(event);
-        void attempt(api.openIncident(name, timesOf(par, work))).then(done);
+        const given = fields(event);
+        const times = usual.value === null ? {} : timesOf(given);
+        void attempt(api.openIncident(given["name"] ?? "", times)).then(done);
       }}
     >
       <label>
         Name of the new incident
         <input name="name" required maxLength={80} />
       </label>
-      <MinutesField name="par" label="Roll call every, min" value={20} />
-      <MinutesField name="work" label="Rest after, min" value={40} />
+      {usual.value && <TimesFields times={usual.value} />}
       <button class="primary">Open incident</button>
     </form>
   );
@@ -125,34 +126,42 @@ function TimesForm({ incident }: { incident: IncidentView }) {
     <form
       class="row"
       onSubmit={(event) => {
-        const { par = "", work = "" } = fields(event);
-        void attempt(api.setTimes(incident.incident_id, timesOf(par, work)));
+        void attempt(api.setTimes(incident.incident_id, timesOf(fields(event))));
       }}
     >
-      <MinutesField
-        name="par"
-        label="Roll call every, min"
-        value={Math.round(incident.par_interval_s / 60)}
-      />
-      <MinutesField
-        name="work"
-        label="Rest after, min"
-        value={Math.round(incident.work_limit_s / 60)}
-      />
+      <TimesFields times={incident} />
       <button>Change times</button>
     </form>
   );
 }
 
-function timesOf(par: string, work: string): api.Times {
-  return { par_interval_s: 60 * Number(par), work_limit_s: 60 * Number(work) };
+function TimesFields({ times }: { times: api.Times }) {
+  return (
+    <>
+      <MinutesField name="par" label="Roll call every, min" valueS={times.par_interval_s} />
+      <MinutesField name="work" label="Rest after, min" valueS={times.work_limit_s} />
+    </>
+  );
 }
 
-function MinutesField({ name, label, value }: { name: string; label: string; value: number }) {
+function timesOf(given: Record<string, string>): api.Times {
+  return { par_interval_s: 60 * Number(given["par"]), work_limit_s: 60 * Number(given["work"]) };
+}
+
+/** A time that nobody changes is sent as it was, seconds and all. */
+function MinutesField({ name, label, valueS }: { name: string; label: string; valueS: number }) {
   return (
     <label class="short">
       {label}
-      <input name={name} type="number" min={1} max={720} required defaultValue={value} />
+      <input
+        name={name}
+        type="number"
+        min={0.5}
+        max={720}
+        step="any"
+        required
+        defaultValue={valueS / 60}
+      />
     </label>
   );
 }

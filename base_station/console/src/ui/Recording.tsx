@@ -3,10 +3,13 @@ import * as api from "../api";
 import type { RecordingView } from "../wire";
 import { bytes } from "../words";
 
+const HOUR_MS = 3_600_000;
+
 /** A unit's black box, pulled over the bus behind everything that is live. */
 export function Recording({ unitId }: { unitId: string }) {
   const picture = live.value?.picture;
-  const pulls = picture?.health.value?.recordings ?? [];
+  if (picture === undefined) return null;
+  const pulls = picture.health.value?.recordings ?? [];
   const pull = pulls.filter((one) => one.unit_id === unitId).at(-1);
   if (pull !== undefined && !isOver(pull)) return <UnderWay pull={pull} />;
   return (
@@ -15,8 +18,12 @@ export function Recording({ unitId }: { unitId: string }) {
         type="button"
         aria-label={`Fetch the recording of ${unitId}`}
         onClick={() => {
-          const incident = picture?.incident.peek()?.incident_id ?? null;
-          void attempt(api.fetchRecording(unitId, incident));
+          const incident = picture.incident.peek();
+          const wanted =
+            incident === null
+              ? { from_ms: Math.round(picture.nowMs.peek() - HOUR_MS) }
+              : { incident_id: incident.incident_id };
+          void attempt(api.fetchRecording(unitId, wanted));
         }}
       >
         Fetch
