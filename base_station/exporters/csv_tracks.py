@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 
+from base_station.answer import to_ms
 from base_station.exporters.port import Exporter, IncidentTracks
-from shared.clock import NS_PER_MS
 
 COLUMNS = (
     "unit_id", "person", "crew", "t_utc_s", "north_m", "east_m", "down_m",
@@ -34,7 +34,7 @@ def export_csv(incident: IncidentTracks) -> bytes:
             writer.writerow(
                 (
                     *who,
-                    f"{point.t_ns // NS_PER_MS / 1000:.3f}",  # as in the other formats
+                    f"{to_ms(point.t_ns) / 1000:.3f}",
                     *(f"{value:.3f}" for value in metres),
                     "" if point.floor is None else point.floor,
                     point.quality,

@@ -6,8 +6,8 @@ from typing import Any
 
 import msgspec
 
+from base_station.answer import to_ms
 from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
-from shared.clock import NS_PER_MS
 from shared.geo import Anchor
 
 
@@ -36,7 +36,7 @@ def _feature(track: WornTrack, anchor: Anchor) -> dict[str, Any]:
             "unit_id": track.unit_id,
             "name": track.title,
             "crew": track.crew,
-            "times_ms": [point.t_ns // NS_PER_MS for point in track.points],
+            "times_ms": [to_ms(point.t_ns) for point in track.points],
             "floors": [point.floor for point in track.points],
         },
     }

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
-from shared.clock import NS_PER_S
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, time_of
 from shared.geo import Anchor
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -33,10 +31,7 @@ def _add_track(gpx: ET.Element, track: WornTrack, anchor: Anchor) -> None:
         trkpt = ET.SubElement(segment, "trkpt", lat=f"{lat_deg:.8f}", lon=f"{lon_deg:.8f}")
         # The schema wants this order.
         ET.SubElement(trkpt, "ele").text = f"{height_m:.2f}"
-        at = datetime.fromtimestamp(point.t_ns / NS_PER_S, UTC)
-        ET.SubElement(trkpt, "time").text = at.isoformat(timespec="milliseconds").replace(
-            "+00:00", "Z"
-        )
+        ET.SubElement(trkpt, "time").text = time_of(point)
 
 
 GPX = Exporter("gpx", "gpx", "application/gpx+xml", True, export_gpx)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
-from shared.clock import NS_PER_S
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, time_of
 from shared.geo import Anchor
 
 _GX = "http://www.google.com/kml/ext/2.2"
@@ -32,8 +30,7 @@ def _add_track(document: ET.Element, worn: WornTrack, anchor: Anchor) -> None:
     # Heights are those of the floors, not of the ground below them.
     ET.SubElement(track, "altitudeMode").text = "absolute"
     for point in worn.points:
-        at = datetime.fromtimestamp(point.t_ns / NS_PER_S, UTC)
-        ET.SubElement(track, "when").text = f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
+        ET.SubElement(track, "when").text = time_of(point)
     for point in worn.points:
         lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)
         coord = f"{lon_deg:.8f} {lat_deg:.8f} {height_m:.2f}"

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 import msgspec
 
+from base_station.answer import to_ms
 from base_station.db.records import TrackSample
 from shared.errors import UserError
 from shared.geo import Anchor
@@ -39,6 +41,12 @@ class IncidentTracks(msgspec.Struct, frozen=True):
                 "anchor, or export as csv"
             )
         return self.anchor
+
+
+def time_of(point: TrackSample) -> str:
+    """ISO 8601 to the millisecond, which is that of the API."""
+    at = datetime.fromtimestamp(to_ms(point.t_ns) / 1000, UTC)
+    return f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,6 +102,21 @@ def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
     assert read(text) is not None
 
 
+def test_every_format_says_the_same_millisecond() -> None:
+    """That of the API and the console: the one that had begun."""
+    late_ns = 455_999_600
+    sample = msgspec.structs.replace(incident().tracks[0].points[0], t_ns=T0_NS + late_ns)
+    track = msgspec.structs.replace(incident().tracks[0], points=(sample,))
+    of = {
+        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(track,))).decode()
+        for one in EXPORTERS
+    }
+    assert "1700000000.455," in of["csv"]
+    assert '"times_ms":[1700000000455]' in of["geojson"]
+    assert "<time>2023-11-14T22:13:20.455Z</time>" in of["gpx"]
+    assert "<when>2023-11-14T22:13:20.455Z</when>" in of["kml"]
+
+
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1+1", "@SUM(1)", "\t=1+1", "\r=1+1"])
 def test_a_name_does_not_become_a_formula(name: str) -> None:
     track = msgspec.structs.replace(incident().tracks[0], person_name=name, crew=name)
