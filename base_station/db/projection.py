@@ -11,6 +11,8 @@ import threading
 from collections import deque
 from collections.abc import Sequence
 
+from sqlalchemy.exc import DataError, IntegrityError
+
 from base_station.db.projecting import project_into
 from base_station.db.store import Store
 from base_station.live.sinks import Projection
@@ -101,20 +103,28 @@ class SqlProjection:
     def _batch_size(self) -> int:
         return min(len(self._pending), BATCH)
 
-    def _write(self, batch: Sequence[Projection]) -> None:
+    def _write(self, batch: Sequence[Projection]) -> bool:
+        """False where the store does not take it now, and may later."""
+        given_up = ""
         try:
             with self._store.write() as session:
                 project_into(session, batch)
-        except StoreError as error:  # it may take it later
-            with self._changed:
-                self._failure = str(error)
-                self._failed_tries += 1
-                self._changed.notify_all()
         except Exception as error:
-            logger.exception("%d projections cannot be written", len(batch))
-            self._settle(batch, f"a mistake of this program, please report it: {error!r}")
-        else:
-            self._settle(batch)
+            if isinstance(error, StoreError) and not _is_impossible(error):
+                self._note_failure(error)
+                return False
+            if len(batch) > 1:  # the others are to get in
+                return all(self._write([one]) for one in batch)
+            logger.exception("a projection cannot be written")
+            given_up = f"a mistake of this program, please report it: {error!r}"
+        self._settle(batch, given_up)
+        return True
+
+    def _note_failure(self, error: StoreError) -> None:
+        with self._changed:
+            self._failure = str(error)
+            self._failed_tries += 1
+            self._changed.notify_all()
 
     def _settle(self, batch: Sequence[Projection], given_up: str = "") -> None:
         """Done with the batch: written, or given up for a reason."""
@@ -128,3 +138,8 @@ class SqlProjection:
                 self._settled += 1
                 self._dropped += bool(given_up)
             self._changed.notify_all()
+
+
+def _is_impossible(error: StoreError) -> bool:
+    """No table can ever hold it, as no number."""
+    return isinstance(error.__cause__, IntegrityError | DataError)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
@@ -321,6 +322,22 @@ def test_a_projection_that_cannot_be_written_is_said_and_holds_up_no_other(
     assert projection.flush()
     assert "muster base rebuild" in projection.problem()
     assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
+    projection.close()
+
+
+def test_a_change_that_no_table_can_hold_costs_itself_and_nothing_that_waits_beside_it(
+    store: Store, clock: ManualClock
+) -> None:
+    impossible = Projection(6 * NS_PER_S, tracks=(fused(5.2, math.nan),))
+    projection = SqlProjection(store)
+    with store.write():  # until all of it waits
+        for part in (STORY[0], impossible, *STORY[1:]):
+            projection.project(part)
+    assert projection.flush()
+    assert "1 changes did not get into the database" in projection.problem()
+    assert "muster base rebuild" in projection.problem()
+    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
+    assert [point.north_m for point in Records(store, clock).track("FF-01", ALL)] == [1.0, 2.0]
     projection.close()
 
 
