@@ -63,7 +63,10 @@ class Services:
         try:
             done = self.gate.submit(by, action).result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            raise StoreError("the station is too busy to take this now; try again") from None
+            raise StoreError(
+                "the station is busy and has not done this yet; it may still do it, so look before "
+                "you do it again"
+            ) from None
         if done.refused is not None:
             raise UserError(done.refused.reason)
         self.settle()

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import time
+from concurrent.futures import Future
 
 import pytest
 
+from base_station.api import services
 from base_station.db.principals import Role
 from base_station.db.records import Records
 from base_station.exporters import EXPORTERS
 from base_station.exporters.port import Exporter
+from base_station.live.sinks import ActionDone
 from shared.errors import LogError, MusterError, StoreError
 from tests.station import DeskStation
 
@@ -49,6 +52,31 @@ async def test_a_mistake_of_the_station_is_answered_like_every_problem(
     assert answer.headers["x-content-type-options"] == "nosniff"
     assert "GET /api/v1/incidents failed" in caplog.text
     assert caplog.text.count("ValueError: of the program") == 1
+
+
+async def test_what_the_station_has_not_done_in_time_it_may_still_do(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who is told to try again opens two."""
+    waiting: Future[ActionDone] = Future()
+    monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
+    monkeypatch.setattr(station.drive, "submit", lambda *_: waiting)
+    async with station.client(Role.COMMANDER) as commander:
+        answer = await commander.post("/incidents", json={"name": "Kitchen"})
+    assert answer.status_code == 503
+    assert "it may still do it" in answer.json()["detail"]
+    assert not waiting.cancelled()
+
+
+async def test_an_incident_that_the_tables_lag_behind_is_said_to_be_open(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Records, "incident", lambda *_: None)
+    async with station.client(Role.COMMANDER) as commander:
+        answer = await commander.post("/incidents", json={"name": "Kitchen"})
+    assert answer.status_code == 503
+    assert "is open" in answer.json()["detail"]
+    assert station.drive.picture().incident is not None
 
 
 async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskStation) -> None:

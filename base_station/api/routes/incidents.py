@@ -81,7 +81,10 @@ def open_incident(new: NewIncident, station: Station, who: Commander) -> Inciden
         new.work_limit_s or usual.work_limit_s,
     )
     station.act(who.username, opening)
-    return _incident(incident_or_404(station, incident_id))
+    incident = station.records.incident(incident_id)
+    if incident is None:
+        raise Problem(503, "The incident is open, but the database has not taken it yet.")
+    return _incident(incident)
 
 
 @router.get("/incidents/{incident_id}")
