@@ -11,6 +11,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+import msgspec
+
 from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
 from base_station.alarms.thresholds import Thresholds, with_thresholds
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
@@ -238,7 +240,8 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
     alarm.state, alarm.by, alarm.changed_ns = AlarmState.RESOLVED, by, state.t_ns
-    state.history = [*state.history[1 - HISTORY :], alarm]
+    as_it_ended = msgspec.structs.replace(alarm)  # what is found later changes the newest alone
+    state.history = [*state.history[1 - HISTORY :], as_it_ended]
     return alarm
 
 

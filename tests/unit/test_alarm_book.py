@@ -10,6 +10,7 @@ import pytest
 from base_station.alarms import ALARMS
 from base_station.alarms.port import SOON, Verdict
 from base_station.bench.rig import said
+from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
 from base_station.fusion import FUSERS
 from base_station.live_state import UnitState
@@ -298,6 +299,17 @@ def test_the_last_fifty_resolved_alarms_are_at_hand(script: Script) -> None:
         script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
     resolved = [one.alarm_id for one in script.alarms if one.state is AlarmState.RESOLVED]
     assert [one.alarm_id for one in script.pipeline.state.history] == resolved[1:]
+
+
+def test_a_resolved_alarm_stays_as_it_ended_from_a_checkpoint_as_in_memory(
+    script: Script,
+) -> None:
+    script.wait(1, lambda: script.temperature(U, 120.0))
+    script.act(ResolveAlarm(script.alarms[0].alarm_id, "is on his way out"))
+    saved = read_checkpoint(script.pipeline.checkpoint())
+    script.wait(30, lambda: script.temperature(U, 20.0))
+    assert saved is not None
+    assert script.pipeline.state.history == saved.state.history
 
 
 def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
