@@ -10,6 +10,7 @@ import logging
 import shutil
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Condition, Lock, RLock, Thread
@@ -247,7 +248,8 @@ class Recorder:
             self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
             if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
                 looked_ns = now_ns
-                self._disk_free_bytes = shutil.disk_usage(self.folder).free
+                with suppress(OSError):  # of a disk that fails, what is written tells
+                    self._disk_free_bytes = shutil.disk_usage(self.folder).free
         self._writer.close()
 
     def _take(self) -> tuple[list[LogRecord], int, bool, bool]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 from collections.abc import Iterator
@@ -9,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
+from typing import NoReturn
 
 import pytest
 
@@ -26,7 +28,7 @@ from shared.mcap_log import (
     SegmentWriter,
     read_log,
 )
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 KEY = POSITION.key("anna")
 T0_NS = 1_700_000_000 * NS_PER_S
@@ -210,3 +212,21 @@ def test_little_room_on_the_disk_is_said_and_is_no_failure(
     with recording(tmp_path) as recorder:
         assert "MB are free for the log" in recorder.little_room
         assert recorder.problem == ""
+
+
+def test_a_disk_that_does_not_say_how_much_room_it_has_is_written_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = Event()
+
+    def fail(_: Path) -> NoReturn:
+        asked.set()
+        raise OSError(errno.ESTALE, "Stale file handle")
+
+    monkeypatch.setattr("base_station.recorder._LOOK_AT_DISK_EVERY_NS", 0)
+    with recording(tmp_path) as recorder:
+        monkeypatch.setattr(shutil, "disk_usage", fail)
+        assert asked.wait(PATIENCE_S)
+        assert recorder.write(T0_NS, KEY, b"1", urgent=True)
+        assert recorder.problem == ""
+    assert payloads(tmp_path) == [b"1"]
