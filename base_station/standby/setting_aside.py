@@ -6,6 +6,8 @@ DATA/apart/TIME-EVENTS-NUMBER.told/     the same, when the active station has ta
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from collections.abc import Iterator
 from itertools import dropwhile
@@ -15,7 +17,8 @@ from base_station.data_folder import DataFolder
 from base_station.standby.places import BEGINNING, Place, Record, events_behind, is_event
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
-from shared.own_files import make_folder
+from shared.mcap_log.durable_file import sync_folder
+from shared.own_files import make_folder, open_own
 
 APART = "apart"
 TOLD = ".told"  # of a part's name
@@ -40,15 +43,38 @@ def set_aside(folder: DataFolder, place: Place) -> None:
         if writer.problem:
             raise LogError(writer.problem)
         for path in reversed(moved):
-            path.rename(apart / path.name)
+            _move(path, apart / path.name)
         for path in segment_paths(scratch):
-            path.rename(folder.log / moved[0].name)
+            _move(path, folder.log / moved[0].name)
         scratch.rmdir()
     except OSError as error:
         raise LogError(f"the log cannot be cut ({error}): free or mend the disk") from error
     for path in folder.checkpoints.glob("*.checkpoint"):
         if int(path.stem) >= place.t_ns:
             path.unlink()
+
+
+def _move(path: Path, target: Path) -> None:
+    """Whole at the one place or the other; the log may be on a disk of its own."""
+    try:
+        path.rename(target)
+        return
+    except OSError as error:
+        if error.errno != errno.EXDEV:
+            raise
+    copy = target.with_name(target.name + ".part")
+    try:
+        making = open_own(copy, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o640)
+        with path.open("rb") as there, os.fdopen(making, "wb") as here:
+            shutil.copyfileobj(there, here)
+            here.flush()
+            os.fsync(here.fileno())
+        copy.rename(target)
+    except OSError:
+        copy.unlink(missing_ok=True)
+        raise
+    sync_folder(target.parent)
+    path.unlink()
 
 
 def parts(data: Path) -> list[str]:

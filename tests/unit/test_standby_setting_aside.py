@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,13 @@ from base_station.data_folder import DataFolder
 from base_station.feed import LogFeed
 from base_station.recorder import Recorder
 from base_station.standby.places import BEGINNING, Place
-from base_station.standby.setting_aside import mark_told, parts, read_part, set_aside
+from base_station.standby.setting_aside import (
+    APART,
+    mark_told,
+    parts,
+    read_part,
+    set_aside,
+)
 from base_station.standby.shared_log import SharedLog
 from shared.clock import SystemClock
 from shared.mcap_log import segment_paths
@@ -87,3 +94,28 @@ def test_what_was_set_aside_does_not_come_back_with_the_next_start(tmp_path: Pat
         assert kept == records[:9]
     (name,) = parts(tmp_path)
     assert list(read_part(tmp_path, name)) == records[9:]
+
+
+def test_a_log_on_a_disk_of_its_own_is_cut_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where DATA/log is a mount, or a link to one."""
+    folder, rename = DataFolder(tmp_path), Path.rename
+
+    def rename_on_a_disk(path: Path, target: Path) -> Path:
+        if path.is_relative_to(folder.log) != target.is_relative_to(folder.log):
+            raise OSError(errno.EXDEV, "Invalid cross-device link")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", rename_on_a_disk)
+    records = events(20)
+    recorder = Recorder(tmp_path, SystemClock())
+    written(recorder, SharedLog(recorder, SystemClock()), records)
+    recorder.close()
+    set_aside(folder, Place(records[6][0], 1))
+    kept = [record for record in LogFeed(folder.log).records() if record[1] == TICKED]
+    (name,) = parts(tmp_path)
+    assert [*kept, *read_part(tmp_path, name)] == records
+    assert len(kept) == 7
+    assert [path.suffix for path in (tmp_path / APART / name).iterdir()] == [".mcap"]
+    assert all(path.suffix == ".mcap" for path in folder.log.iterdir())
