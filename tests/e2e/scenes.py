@@ -311,7 +311,7 @@ PAST_ALARMS: list[dict[str, Any]] = [
         "priority": one.priority,
         "text": one.text,
         "raised_ms": one.raised_ms - minutes * MINUTE_MS,
-        "again_ms": [],
+        "raisings": [{"t_ms": one.raised_ms - minutes * MINUTE_MS, "text": one.text}],
     }
     for minutes, one in enumerate(bad_minute().alarms)
 ]

@@ -13,7 +13,7 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.alarms import ALARMS
-from base_station.answer import to_ms, to_ms_or_none
+from base_station.answer import Answer, to_ms, to_ms_or_none
 from base_station.api.forms import Form, Id, Limit, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
@@ -40,8 +40,15 @@ class Incident(BaseModel):
     closed_by: str
 
 
+class Raising(Answer, frozen=True):
+    """What was said when an alarm was raised."""
+
+    t_ms: int
+    text: str
+
+
 class PastAlarm(AlarmView, frozen=True):
-    again_ms: tuple[int, ...]  # when it was raised anew in the incident, oldest first
+    raisings: tuple[Raising, ...]  # in the incident, at first and anew, oldest first
 
 
 class NewIncident(Form):
@@ -117,11 +124,13 @@ def _past_alarm(
     alarm: models.Alarm, life: Sequence[models.AlarmLife], was_open: Window
 ) -> PastAlarm:
     levels = _LEVELS.get(alarm.rule, ())
-    anew_ns = (now.t_ns for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
-    return PastAlarm(
-        **msgspec.structs.asdict(alarm_view(alarm)),
-        again_ms=tuple(to_ms(t_ns) for t_ns in anew_ns if t_ns < was_open.until_ns),
+    anew = (now for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
+    raisings = tuple(
+        Raising(to_ms(one.t_ns), one.text)
+        for one in (*life[:1], *anew)
+        if one.t_ns < was_open.until_ns
     )
+    return PastAlarm(**msgspec.structs.asdict(alarm_view(alarm)), raisings=raisings)
 
 
 def _is_raised_anew(before: models.AlarmLife, now: models.AlarmLife, levels: Sequence[str]) -> bool:

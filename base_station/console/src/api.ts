@@ -97,7 +97,7 @@ export interface PastAlarm {
   priority: number;
   text: string;
   raised_ms: number;
-  again_ms: number[]; // when it was raised anew
+  raisings: { t_ms: number; text: string }[]; // at first and anew
 }
 
 export type CommandKind = "evacuate" | "par_request" | "text" | "locate";

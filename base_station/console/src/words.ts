@@ -168,6 +168,7 @@ export function gpsWord(reason: string | null): string {
 
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
 export function alarmWord(alarm: AlarmView): string {
+  if (alarm.level === "switched off") return "Switched off"; // its link is not lost
   const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;

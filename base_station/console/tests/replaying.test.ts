@@ -3,6 +3,11 @@ import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../s
 
 const ALARMS = [{ raised_ms: 60_000 }, { raised_ms: 100_000 }];
 
+function raised(texts: Record<number, string>) {
+  const raisings = Object.entries(texts).map(([ms, text]) => ({ t_ms: Number(ms), text }));
+  return { raised_ms: raisings[0]?.t_ms ?? 0, text: raisings.at(-1)?.text ?? "", raisings };
+}
+
 describe("from alarm to alarm", () => {
   it("goes on to a little before the next", () => {
     expect(nextAlarmMs(ALARMS, 0)).toBe(60_000 - LEAD_MS);
@@ -18,11 +23,16 @@ describe("from alarm to alarm", () => {
 
   it("stops wherever one was raised anew, between the others", () => {
     const alarms = eachRaising([
-      { alarm_id: "late", raised_ms: 100_000, again_ms: [] },
-      { alarm_id: "early", raised_ms: 60_000, again_ms: [80_000, 140_000] },
+      raised({ 100_000: "late" }),
+      raised({ 60_000: "hot", 80_000: "hotter", 140_000: "hottest" }),
     ]);
-    const shown = alarms.map(({ alarm_id, raised_ms }) => [alarm_id, raised_ms]);
-    expect(shown).toEqual([["early", 60_000], ["early", 80_000], ["late", 100_000], ["early", 140_000]]);
+    const shown = alarms.map(({ raised_ms, text }) => [raised_ms, text]);
+    expect(shown).toEqual([
+      [60_000, "hot"],
+      [80_000, "hotter"],
+      [100_000, "late"],
+      [140_000, "hottest"],
+    ]);
     expect(nextAlarmMs(alarms, 60_000)).toBe(80_000 - LEAD_MS);
     expect(previousAlarmMs(alarms, 200_000)).toBe(140_000 - LEAD_MS);
   });

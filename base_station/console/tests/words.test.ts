@@ -98,6 +98,7 @@ describe("words", () => {
     ["no-motion", "alarm", "No motion"],
     ["gps-unused", "unused", "GPS unused"],
     ["link-lost", "lost", "Link lost"],
+    ["link-lost", "switched off", "Switched off"],
     ["mayday", "mayday", "Mayday"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);

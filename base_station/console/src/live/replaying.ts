@@ -9,14 +9,17 @@ interface Raised {
   raised_ms: number;
 }
 
-interface RaisedAgain extends Raised {
-  again_ms: readonly number[];
+interface RaisedOften extends Raised {
+  text: string;
+  raisings: readonly { t_ms: number; text: string }[];
 }
 
-/** An entry for each time that an alarm was raised, at first and anew, by time. */
-export function eachRaising<A extends RaisedAgain>(alarms: readonly A[]): A[] {
+/** An entry for each time that an alarm was raised, at first and anew, by time and as it was said then. */
+export function eachRaising<A extends RaisedOften>(alarms: readonly A[]): A[] {
   return alarms
-    .flatMap((alarm) => [alarm.raised_ms, ...alarm.again_ms].map((raised_ms) => ({ ...alarm, raised_ms })))
+    .flatMap((alarm) =>
+      alarm.raisings.map(({ t_ms, text }) => ({ ...alarm, raised_ms: t_ms, text })),
+    )
     .sort((a, b) => a.raised_ms - b.raised_ms);
 }
 
