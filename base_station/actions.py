@@ -262,17 +262,21 @@ def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
 
 def _assign(state: StationState, by: str, action: Assign) -> Iterator[UnitState]:
     unit = _registered(state, action.unit_id)
+    before, duty = unit.person, None
     for other in state.units.values():
         if other is not unit and other.person and other.person.person_id == action.person_id:
+            duty = other.duty
             yield _without_wearer(state, other)
-    before = unit.person
     same = before is not None and before.person_id == action.person_id
     if before is not None and not same:
         unit.end_wearing(state.t_ns)
     unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
         unit.worn_since_ns = state.t_ns
-        accountability.begin(state, unit, by)
+        if duty is None:
+            accountability.begin(state, unit, by)
+        else:  # with another unit, which is no word of theirs, and no rest
+            unit.duty = duty
     yield unit
 
 

@@ -206,6 +206,17 @@ def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:
     assert left_s(script) == 30.0
 
 
+def test_whom_nobody_hears_from_is_missed_under_whichever_unit(script: Script) -> None:
+    """Somebody at the console puts right who wears what: that is no word of the wearer."""
+    script.wait(61)
+    script.register("FF-04")
+    script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
+    told = [(one.unit_id, one.state.name) for one in overdue(script)[3:]]
+    assert told == [("FF-01", "RESOLVED"), ("FF-04", "RAISED")]
+    script.act(CheckIn("FF-04", "", False))
+    assert overdue(script)[-1].state is AlarmState.RESOLVED
+
+
 def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
     script = Script()
     script.register("FF-01")

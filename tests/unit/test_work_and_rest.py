@@ -99,3 +99,24 @@ def test_nobody_rests_twice(script: Script) -> None:
     script.act(SetRest("FF-01", True))
     script.act(SetRest("FF-01", True))
     assert refusals(script) == ["Person 1 is resting already"]
+
+
+def test_who_is_given_another_unit_has_worked_before(script: Script) -> None:
+    """The battery was empty."""
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(100)
+    script.register("FF-04")
+    script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
+    script.wait(21)
+    assert [(one.unit_id, one.text) for one in rest_alarms(script)] == [
+        ("FF-04", "Person 1 has worked for 2 min: send to rest")
+    ]
+    assert unit(script).duty is None
+
+
+def test_who_rests_does_so_with_another_unit(script: Script) -> None:
+    script.act(SetRest("FF-01", True))
+    script.register("FF-04")
+    script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
+    script.act(SetRest("FF-04", True))
+    assert refusals(script) == ["Person 1 is resting already"]
