@@ -81,6 +81,12 @@ def publish_until_heard(site: Site, unit: ZenohBus, unit_id: str) -> None:
     until(arrived, f"a message of {unit_id}")
 
 
+def say_forged(bus: ZenohBus, key: str) -> None:
+    """As a unit says it, under a declared number, and as somebody's own program may, by the key."""
+    bus.publish(key, b"forged", Qos.ALERT)
+    bus._session.put(key, b"forged")
+
+
 def assert_powerless(site: Site, enrolment: Enrolment) -> None:
     """Linked, and yet nothing goes either way."""
     unit = site.unit(enrolment)
@@ -96,7 +102,7 @@ def assert_speechless(site: Site, unit: ZenohBus, name: str) -> None:
     unit.serve(f"muster/v1/{name}/journal/**", lambda *_: [b"forged"])
     deadline = time.monotonic() + QUIET_S
     while time.monotonic() < deadline:
-        unit.publish(POSITION.key(name), b"forged", Qos.LIVE)
+        say_forged(unit, POSITION.key(name))
         site.station.publish(COMMAND.key(name), b"secret", Qos.ALERT)
         time.sleep(0.02)
     assert not unit.is_heard(POSITION.key(name))

@@ -32,6 +32,7 @@ from tests.secured_bus import (
     assert_powerless,
     assert_speechless,
     publish_until_heard,
+    say_forged,
 )
 from tests.waiting import until
 
@@ -90,7 +91,7 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
         "muster/v1/station/tick",
     )
     for key in forged:
-        unit.publish(key, b"forged", Qos.ALERT)
+        say_forged(unit, key)
     site.station.publish(COMMAND.key("bert"), b"true", Qos.ALERT)
     until(lambda: commanded == [b"true"], "the true command")
     publish_until_heard(site, other, "bert")
@@ -184,9 +185,9 @@ def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(s
     token = mouth.declare_alive(alive_key("anna"))
     mouth.serve("muster/v1/anna/journal/**", lambda *_: [b"forged"])
     for key in (POSITION.key("anna"), POSITION.key(tracker_id("bert")), COMMAND.key("anna")):
-        mouth.publish(key, b"forged", Qos.ALERT)
-    units["bert"].publish(POSITION.key(tracker_id("anna")), b"forged", Qos.ALERT)
-    units["anna"].publish(POSITION.key(tracker_id("anna")), b"forged", Qos.ALERT)
+        say_forged(mouth, key)
+    say_forged(units["bert"], POSITION.key(tracker_id("anna")))
+    say_forged(units["anna"], POSITION.key(tracker_id("anna")))
     publish_until_heard(site, mouth, tracker_id("anna"))
     publish_until_heard(site, units["bert"], "bert")
     time.sleep(QUIET_S)
@@ -274,8 +275,8 @@ def test_an_operator_hears_and_says_nothing(site: Site) -> None:
     onlooker.watch_alive("muster/v1/*/alive", lambda key, _: tokens.append(key))
     publish_until_heard(site, unit, "anna")
     until(lambda: POSITION.key("anna") in seen and tokens == [alive_key("anna")], "what happens")
-    onlooker.publish(COMMAND.key("anna"), b"forged", Qos.ALERT)
-    onlooker.publish(POSITION.key("anna"), b"forged", Qos.ALERT)
+    say_forged(onlooker, COMMAND.key("anna"))
+    say_forged(onlooker, POSITION.key("anna"))
     assert list(onlooker.query("muster/v1/anna/journal/range", b"", QUIET_S)) == []
     time.sleep(QUIET_S)
     assert commands == []

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager, suppress
 
 import pytest
 import zenoh
@@ -40,6 +41,48 @@ def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(addr
         for start in ("first start", "restart"):
             with closing(ZenohBus(StationEndpoint((address,)))) as station:
                 publish_until_heard(unit, station, f"a message after the {start}")
+
+
+def test_what_is_said_again_and_again_travels_without_its_key(address: str) -> None:
+    """A thin link carries it, and a router would look up way and rights for each message."""
+    with (
+        closing(ZenohBus(StationEndpoint((address,)))) as station,
+        relayed(address) as (through, sent),
+        closing(ZenohBus(UnitEndpoint((through,)))) as unit,
+    ):
+        publish_until_heard(unit, station, "a message")
+        before = len(sent)
+        publish_until_heard(unit, station, "another one")
+        assert len(sent) > before
+        assert b"status" in sent[:before]
+        assert b"status" not in sent[before:]
+
+
+@contextmanager
+def relayed(address: str) -> Iterator[tuple[str, bytearray]]:
+    """Another address for one link to ``address``, and all that comes to it from the far end."""
+    host, _, port = address.removeprefix("tcp/").partition(":")
+    sent = bytearray()
+
+    def pass_on(source: socket.socket, sink: socket.socket, seen: bytearray) -> None:
+        with suppress(OSError):
+            while piece := source.recv(65_536):
+                seen += piece
+                sink.sendall(piece)
+
+    def relay() -> None:
+        with listening.accept()[0] as unit, socket.create_connection((host, int(port))) as station:
+            back = threading.Thread(target=pass_on, args=(station, unit, bytearray()))
+            back.start()
+            pass_on(unit, station, sent)
+            station.shutdown(socket.SHUT_RDWR)
+            back.join()
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        thread = threading.Thread(target=relay)
+        thread.start()
+        yield f"tcp/127.0.0.1:{listening.getsockname()[1]}", sent
+        thread.join()
 
 
 def test_a_closed_bus_leaves_no_thread_that_could_abort_the_program_as_it_ends(
