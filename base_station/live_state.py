@@ -123,7 +123,7 @@ class UnitState(Sender):
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
     mayday_ns: int | None = None  # when it was last told that the button was pressed
     mayday_said_ns: int = 0  # and when the unit said that: it may have waited in its journal
-    mayday_cancelled_ns: int | None = None
+    mayday_cancelled_ns: int | None = None  # since then
     mayday_cancelled_said_ns: int = 0
     fall_ns: int | None = None
     fall_said_ns: int = 0

@@ -56,15 +56,19 @@ def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
         return
     said_ns = _said_ns(unit, status.header, t_ns)
     if status.mayday and said_ns > unit.mayday_cancelled_said_ns:  # the press itself may be lost
-        unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
+        _press(unit, t_ns, said_ns)
     elif not status.mayday and said_ns > unit.mayday_said_ns:
         unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns
 
 
+def _press(unit: UnitState, t_ns: int, said_ns: int) -> None:
+    unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
+    unit.mayday_cancelled_ns = None
+
+
 def _is_pressed(unit: UnitState) -> bool:
     """Whether a mayday was told that was not taken back."""
-    cancelled_ns = unit.mayday_cancelled_ns
-    return unit.mayday_ns is not None and (cancelled_ns is None or cancelled_ns < unit.mayday_ns)
+    return unit.mayday_ns is not None and unit.mayday_cancelled_ns is None
 
 
 def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
@@ -85,7 +89,7 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
             if not _is_pressed(unit) or said_ns > unit.mayday_said_ns:
-                unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
+                _press(unit, t_ns, said_ns)
         case EventKind.MAYDAY_CANCELLED:
             if said_ns >= unit.mayday_said_ns:  # else it was pressed again since
                 unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns

@@ -21,7 +21,7 @@ class Mayday:
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.mayday_ns is None:
             return None
-        if unit.mayday_cancelled_ns is not None and unit.mayday_cancelled_ns >= unit.mayday_ns:
+        if unit.mayday_cancelled_ns is not None:
             return Clear(unit.mayday_cancelled_ns, "cancelled by the wearer")
         return Finding(
             "mayday",

@@ -154,6 +154,7 @@ def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
 
 def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
     agent = tracker_id(U)
+    script.boot_ids[agent] = 8
     script.say(said.description(script.header(U), tracker=NO_TRACKER))
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(agent))
@@ -179,20 +180,31 @@ def test_a_mayday_taken_back_before_it_was_pressed_again_stands(script: Script) 
 
 
 @pytest.mark.parametrize("is_pressed", [True, False])
+@pytest.mark.parametrize("before_s", [0.0, 0.1])
 def test_a_status_that_an_alert_overtook_presses_nothing_and_takes_nothing_back(
-    script: Script, is_pressed: bool
+    script: Script, is_pressed: bool, before_s: float
 ) -> None:
     words = [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
     for kind in words if is_pressed else words[:2]:
         before = said.status(script.header(U), mayday=not is_pressed)
-        script.now_s += 0.1
+        script.now_s += before_s
         script.event(U, kind)
+        script.now_s += 0.1
     script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
     count = len(changes(script, "mayday"))
     script.wait(1)
     script.say(before)
     script.wait(3, lambda: script.status(U, mayday=is_pressed))
     assert len(changes(script, "mayday")) == count
+
+
+def test_a_press_that_comes_at_once_with_an_earlier_cancellation_is_a_mayday(
+    script: Script,
+) -> None:
+    """What comes out of a journal in one go may have one time."""
+    script.event(U, EventKind.MAYDAY_CANCELLED)
+    script.event(U, EventKind.MAYDAY)
+    assert changes(script, "mayday") == [("RAISED", "mayday")]
 
 
 def test_pressing_again_is_another_mayday(script: Script) -> None:
