@@ -70,6 +70,13 @@ _FIND = """
       found.push(`sticks out of its card: ${said(one)}`);
   }
 
+  for (const one of root.querySelectorAll(".alarms ul, .people"))
+    if (getComputedStyle(one).overflowX === "auto" && one.scrollWidth > one.clientWidth + 1)
+      found.push(`is to be scrolled sideways: ${said(one)}`);
+  for (const one of root.querySelectorAll(".command-bar li"))
+    if (isShown(one) && one.scrollWidth > one.clientWidth + 1)
+      found.push(`nobody sees how far it has got: ${said(one)}`);
+
   for (const one of root.querySelectorAll(".incident h1, .light .sentence"))
     if (isShown(one) && one.clientWidth < Math.min(smallestSentence, one.scrollWidth))
       found.push(`nearly nothing is left of ${said(one)}`);

@@ -267,6 +267,31 @@ def long_names() -> wire.Snapshot:
     )
 
 
+def one_word() -> wire.Snapshot:
+    """As long as names may be, and nowhere to break them; a message to everybody is under way."""
+    word = "W" * 80
+    shown = bad_minute()
+    units = tuple(
+        one
+        if one.person is None
+        else msgspec.structs.replace(
+            one, person=msgspec.structs.replace(one.person, name=word, crew=word, role=word)
+        )
+        for one in shown.units
+    )
+    message = msgspec.structs.replace(shown.commands[0], command_id="c2", kind="text", text=word)
+    fall, *others = (
+        msgspec.structs.replace(one, text=f"{word}: {one.text}") for one in shown.alarms
+    )
+    return msgspec.structs.replace(
+        shown,
+        units=units,
+        alarms=(msgspec.structs.replace(fall, state="acknowledged", by=word), *others),
+        commands=(*shown.commands, message),
+        incident=msgspec.structs.replace(INCIDENT, name=word),
+    )
+
+
 def nobody() -> wire.Snapshot:
     empty = picture([])
     return msgspec.structs.replace(empty, incident=None, plan=None)

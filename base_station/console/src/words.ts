@@ -177,7 +177,7 @@ export function alarmWord(alarm: AlarmView): string {
 export function initials(name: string): string {
   const words = name.trim().split(/\s+/);
   const letters = [words[0], words.length > 1 ? words.at(-1) : undefined];
-  return letters.map((word) => word?.[0]?.toUpperCase() ?? "").join("");
+  return letters.map((word) => [...(word ?? "")][0]?.toUpperCase() ?? "").join("");
 }
 
 export function bytes(count: number): string {

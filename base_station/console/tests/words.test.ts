@@ -126,12 +126,8 @@ describe("words", () => {
   });
 
   it("make initials of any name", () => {
-    expect(["Ana Kovač", "Ödön", " ", "Ana María de la Cruz"].map(words.initials)).toEqual([
-      "AK",
-      "Ö",
-      "",
-      "AC",
-    ]);
+    const names = ["Ana Kovač", "Ödön", " ", "Ana María de la Cruz", "🚒 Bo", "𐐨da"];
+    expect(names.map(words.initials)).toEqual(["AK", "Ö", "", "AC", "🚒B", "𐐀"]);
   });
 
   it("count bytes", () => {
