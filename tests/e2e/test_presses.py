@@ -7,11 +7,12 @@ from datetime import UTC, datetime, timedelta
 from urllib.parse import quote
 
 import msgspec
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from base_station.api.wire import UnitView
 from tests.e2e import scenes
-from tests.e2e.console_page import menu
+from tests.e2e.console_page import close, menu
 from tests.e2e.stage import Stage
 
 
@@ -58,6 +59,45 @@ def test_two_presses_tick_off_one_person(stage: Stage) -> None:
     page.clock.run_for(600)
     page.get_by_role("button", name=f"Heard {second}").click()
     assert station.changes() == ["/check-ins"] * 2
+
+
+@pytest.mark.parametrize(
+    ("order", "sends"), [("Evacuate", "Evacuate now"), ("PAR", "Send"), ("Message", "Send")]
+)
+def test_two_presses_order_once(stage: Stage, order: str, sends: str) -> None:
+    """Everybody would have to answer twice."""
+    page, station = stage.open(scenes.quiet())
+    commands = page.get_by_role("group", name="Commands")
+    commands.get_by_role("button", name=order, exact=True).click()
+    dialog = page.get_by_role("dialog")
+    if order == "Message":
+        dialog.get_by_label("Message", exact=True).fill("Come out")
+    stop_time(page)
+    button = dialog.get_by_role("button", name=sends)
+    press_twice(page, button, lambda: None)
+    assert station.changes() == ["/commands"]
+    page.clock.run_for(600)
+    button.click()
+    assert station.changes() == ["/commands"] * 2
+
+
+def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    people = menu(page, "People")
+    people.get_by_label("Name", exact=True).fill("Bo Stein")
+    stop_time(page)
+    press_twice(page, people.get_by_role("button", name="Add person"), lambda: None)
+    assert station.changes() == ["/people"]
+    page.clock.resume()
+    close(people)
+    page.locator(".card").first.get_by_role("button").first.click()
+    page.get_by_role("button", name="Pin on the plan").click()
+    panel = page.get_by_role("form", name="Pin: ")
+    panel.get_by_label("North, m").fill("1")
+    panel.get_by_label("East, m").fill("2")
+    stop_time(page)
+    press_twice(page, panel.get_by_role("button", name="Set pin"), lambda: None)
+    assert station.changes() == ["/people", "/pins"]
 
 
 def test_two_presses_acknowledge_one_alarm(stage: Stage) -> None:

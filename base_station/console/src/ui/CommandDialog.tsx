@@ -8,6 +8,7 @@ import type { CommandView, DeliveryView } from "../wire";
 import { clockTime } from "../words";
 import { CommandState } from "./CommandState";
 import { Dialog } from "./Dialog";
+import { useOnce } from "./haste";
 import { fields } from "./useLoaded";
 
 const SAYS: Record<api.CommandKind, string> = {
@@ -33,6 +34,7 @@ export function CommandDialog({ kind }: { kind: api.CommandKind }) {
 
 function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Picture }) {
   const about = dialogUnit.value;
+  const once = useOnce();
   const units = picture.unitIds.value
     .map((unitId) => picture.unit(unitId)?.value)
     .filter((unit) => unit !== undefined)
@@ -43,8 +45,11 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       onSubmit={(event) => {
         const form = event.currentTarget;
         const { target = "everyone", text = "" } = fields(event);
-        const sent = api.sendCommand(kind, targetOf(target), text);
-        void attempt(sent).then((command) => command && form.reset());
+        once(() =>
+          attempt(api.sendCommand(kind, targetOf(target), text)).then(
+            (command) => command && form.reset(),
+          ),
+        );
       }}
     >
       <p>{SAYS[kind]}</p>

@@ -8,6 +8,7 @@ import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
+import { useOnce } from "./haste";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
@@ -101,13 +102,14 @@ export function IncidentsDialog() {
 
 function OpenForm({ done }: { done: () => void }) {
   const [usual] = useLoaded(api.usualTimes);
+  const once = useOnce();
   return (
     <form
       class="row"
       onSubmit={(event) => {
         const given = fields(event);
         const times = usual.value === null ? {} : timesOf(given);
-        void attempt(api.openIncident(given["name"] ?? "", times)).then(done);
+        once(() => attempt(api.openIncident(given["name"] ?? "", times)).then(done));
       }}
     >
       <label>

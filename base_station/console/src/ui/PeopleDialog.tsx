@@ -4,6 +4,7 @@ import * as api from "../api";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
+import { useOnce } from "./haste";
 import { Photo } from "./Photo";
 import { fields, useLoaded } from "./useLoaded";
 
@@ -142,12 +143,14 @@ async function add(form: HTMLFormElement): Promise<void> {
 }
 
 function PersonForm({ done }: { done: () => void }) {
+  const once = useOnce();
   return (
     <form
       class="row"
       onSubmit={(event) => {
         event.preventDefault();
-        void attempt(add(event.currentTarget)).then(done);
+        const form = event.currentTarget;
+        once(() => attempt(add(form)).then(done));
       }}
     >
       <PersonFields />

@@ -7,6 +7,7 @@ import type { PinView, UnitView } from "../wire";
 import { clockTime } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
 import { Ends } from "./Ends";
+import { useOnce } from "./haste";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
 import { fields } from "./useLoaded";
 
@@ -19,6 +20,7 @@ interface Props {
 /** "This person was here then": it corrects the whole trail, not only the place now. */
 export function PinPanel({ picture, unitId, pin }: Props) {
   const name = nameOf(picture, unitId);
+  const once = useOnce();
   const fixed = pin !== null && pin.kind !== "place"; // it can only be removed
   const at =
     pin === null || pin.north_m === null || pin.east_m === null
@@ -34,8 +36,11 @@ export function PinPanel({ picture, unitId, pin }: Props) {
       heading_rad: pin?.heading_rad ?? null,
       note: given["note"] ?? "",
     };
-    const sent = pin === null ? api.setPin(wanted) : api.movePin(pin.pin_id, wanted);
-    void attempt(sent).then((done) => done && putDown());
+    once(() =>
+      attempt(pin === null ? api.setPin(wanted) : api.movePin(pin.pin_id, wanted)).then(
+        (done) => done && putDown(),
+      ),
+    );
   };
   return (
     <form class="tool-panel" aria-label={`Pin: ${name}`} onSubmit={send}>
@@ -94,6 +99,7 @@ function Verdict({ pin }: { pin: PinView }) {
  */
 export function StartPanel({ picture }: { picture: Picture }) {
   const units = onDuty(picture);
+  const once = useOnce();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
     const facing = given["facing"] ?? "";
@@ -104,7 +110,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
       heading_rad: facing === "" ? null : (Number(facing) * Math.PI) / 180,
       note: "",
     };
-    void attempt(api.startTogether(start)).then((done) => done && putDown());
+    once(() => attempt(api.startTogether(start)).then((done) => done && putDown()));
   };
   return (
     <form class="tool-panel" aria-label="All start here" onSubmit={send}>
@@ -144,6 +150,7 @@ const COMPASS: readonly [string, number][] = [
 /** Two people were at the same place; nobody has to say where. */
 export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: string }) {
   const others = onDuty(picture).filter((unit) => unit.unit_id !== unitId);
+  const once = useOnce();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
     const t_ms = timeOf(given, picture);
@@ -154,7 +161,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
       ...(t_ms === undefined ? {} : { t_ms }),
       note: "",
     };
-    void attempt(api.setMeeting(meeting)).then((done) => done && putDown());
+    once(() => attempt(api.setMeeting(meeting)).then((done) => done && putDown()));
   };
   return (
     <form class="tool-panel" aria-label="They met" onSubmit={send}>

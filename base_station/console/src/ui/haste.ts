@@ -2,6 +2,8 @@ import { useRef } from "preact/hooks";
 
 /** Two presses in haste are one. */
 export const HASTE_MS = 500;
+/** A station that has not answered for so long may be asked again. */
+const PATIENCE_MS = 5_000;
 
 /** For a row of a list that others move in: a press in haste on what has only just come to this place
  * was meant for what stood here before.  Keys press what has the focus, which moves along. */
@@ -11,5 +13,15 @@ export function useSteady(place: number): (act: () => void) => (press: MouseEven
   return (act) => (press) => {
     const byKey = press.detail === 0;
     if (byKey || performance.now() - here.current.sinceMs > HASTE_MS) act();
+  };
+}
+
+/** For what would be done twice: pressed again in haste, or before the station has answered, it is not. */
+export function useOnce(): (act: () => Promise<unknown>) => void {
+  const untilMs = useRef(-Infinity);
+  return (act) => {
+    if (performance.now() < untilMs.current) return;
+    untilMs.current = performance.now() + PATIENCE_MS;
+    void act().then(() => (untilMs.current = performance.now() + HASTE_MS));
   };
 }
