@@ -84,6 +84,8 @@ class StationDrive:
         self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
+        # What waited while somebody acted is news to that person, and so it is later by the log.
+        self._not_before_ns = 0
         self._health_due = False  # consoles hear of the station's health with the next delta
 
     # ---- from any thread
@@ -191,7 +193,7 @@ class StationDrive:
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
-        event = self._write_ahead.event_of(t_ns, key, payload)
+        event = self._write_ahead.event_of(max(t_ns, self._not_before_ns), key, payload)
         heard = judge(key, event, self._pipeline.state)
         if heard is Heard.FORGED:
             text = f"Somebody on the bus speaks as the station ({key}): not believed"
@@ -222,15 +224,17 @@ class StationDrive:
         header = self._stamper.header()
         action_id = f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, by, action)
+        t_ns = max(header.t_utc_ns, self._not_before_ns)
         outputs = self._write_ahead.keep_and_step(
-            header.t_utc_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
+            t_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
         )
+        self._not_before_ns = self._pipeline.state.t_ns + 1
         refused = next((output for output in outputs if isinstance(output, Refused)), None)
         return ActionDone(action_id, self._pipeline.state.t_ns, refused)
 
     def _tick(self) -> None:
         header = self._stamper.header()
-        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns)
+        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._not_before_ns)
         self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
         self._report_problems()
         is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only

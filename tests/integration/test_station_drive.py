@@ -4,26 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from threading import Event
 
 import pytest
 
-from base_station.drive import MANY_STEPPED, REBUILT_NS
+from base_station.drive import MANY_STEPPED, REBUILT_NS, StationDrive
 from base_station.past.playback import compare
+from base_station.recorder import Recorder
 from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.errors import StoreError
-from shared.messages import STATION_ID, EventKind, Header, OperatorAction, Position, UnitEvent
+from shared.mcap_log import LogRecord, read_log
+from shared.messages import (
+    STATION_ID,
+    AlarmState,
+    EventKind,
+    Header,
+    OperatorAction,
+    Position,
+    UnitEvent,
+)
 from shared.messages.station import (
+    AcknowledgeAlarm,
+    Action,
     Assign,
     CloseIncident,
     OpenIncident,
     RegisterUnit,
+    ResolveAlarm,
     SetPlan,
 )
-from tests.live_station import LiveStation, make_pipeline
+from tests.live_station import LiveStation, Screen, make_pipeline, ports_of
 from tests.station_script import Script
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"
@@ -299,3 +313,59 @@ def test_what_many_events_cost_at_a_start_they_do_not_cost_at_the_next(
     with LiveStation(tmp_path) as second:
         assert second.rebuilt >= 2 * MANY_STEPPED
         until(lambda: second.checkpoints.latest() is not None, "the state is saved")
+
+
+class Pressing:
+    """A ``Feed`` of two maydays.  Somebody deals with the first one while the other has come and
+    waits to be taken.
+    """
+
+    follows = False
+
+    def __init__(self, clock: ManualClock, dealt_with: Callable[[str], Action]) -> None:
+        self._clock = clock
+        self._dealt_with = dealt_with
+        self._turn = 0
+        self.drive: StationDrive
+        self.done = Event()
+
+    def take(self, timeout_s: float) -> list[LogRecord]:
+        self._turn += 1
+        self._clock.advance(0.010)
+        if self._turn == 1:
+            self.drive.submit("chief", RegisterUnit(U, "one"))
+        elif self._turn == 2:
+            pressed = self._pressed(1)
+            self.drive.submit("chief", self._dealt_with(f"mayday:{U}:{pressed[0]}"))
+            return [pressed]
+        elif self._turn == 3:
+            t_ns, key, payload = self._pressed(2)
+            return [(t_ns - 15_000_000, key, payload)]
+        else:
+            self.done.set()
+            self._clock.advance(timeout_s)
+        return []
+
+    def _pressed(self, seq: int) -> LogRecord:
+        t_ns = self._clock.utc_ns()
+        pressed = UnitEvent(Header(U, 0xB007, seq, self._clock.monotonic_ns()), EventKind.MAYDAY)
+        return t_ns, EVENT.key(U), encode(pressed)
+
+    def wake(self) -> None:
+        """It does not wait."""
+
+
+@pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
+def test_a_mayday_that_came_while_somebody_dealt_with_another_is_raised(
+    tmp_path: Path, dealt_with: Callable[[str], Action]
+) -> None:
+    clock = ManualClock(utc_ns=1_700_000_000 * NS_PER_S)
+    feed, pipeline = Pressing(clock, dealt_with), make_pipeline()
+    recorder = Recorder(tmp_path, clock)
+    feed.drive = StationDrive(pipeline, ports_of(feed, recorder, Screen(), tmp_path, clock))
+    feed.drive.start()
+    feed.done.wait(PATIENCE_S)
+    feed.drive.stop()
+    recorder.close()
+    assert pipeline.state.alarms[f"mayday|{U}"].state is AlarmState.RAISED
+    assert list(compare(read_log(recorder.folder), make_pipeline())) == []
