@@ -47,13 +47,18 @@ def _split(
     wearer: Assignment | None = None
     for point in points:
         now = _wearer_at(point.t_ns, assignments)
-        if run and now is not wearer:
+        if run and _who(now) != _who(wearer):
             yield _worn(unit_id, wearer, run)
             run = []
         wearer = now
         run.append(point)
     if run:
         yield _worn(unit_id, wearer, run)
+
+
+def _who(wearer: Assignment | None) -> tuple[str, str, str] | None:
+    """A person who is assigned anew, as with a new photo, is the same one."""
+    return None if wearer is None else (wearer.person_id, wearer.person_name, wearer.crew)
 
 
 def _wearer_at(t_ns: int, assignments: Sequence[Assignment]) -> Assignment | None:

@@ -129,7 +129,7 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
     def worn(name: str, from_s: int, until_s: int | None) -> Assignment:
         until_ns = None if until_s is None else T0_NS + until_s * NS_PER_S
         return Assignment(
-            unit_id="FF-01", person_name=name, crew="A", from_ns=T0_NS + from_s * NS_PER_S,
+            unit_id="FF-01", person_id=name[:3], person_name=name, crew="A", from_ns=T0_NS + from_s * NS_PER_S,
             until_ns=until_ns,
         )  # fmt: skip
 
@@ -140,6 +140,9 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
     # Assigned anew, as with another name: from the same instant on the later one counts.
     again = [worn("Ada", 0, None), worn("Ada B.", 0, None)]
     assert [one.person_name for one in _split("FF-01", points, again)] == ["Ada B."]
+    # With a new photo it is the same person who goes on.
+    photo = [worn("Ada", 0, 3), worn("Ada", 3, None)]
+    assert [len(one.points) for one in _split("FF-01", points, photo)] == [8]
 
 
 def test_gpx_goes_north_with_the_wearer() -> None:
