@@ -19,6 +19,7 @@ AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 _PAIRS = ("x and y", "x and z", "y and z")
 
 _STILL_FOR_S = 10.0
+_REPEATED_RADPS = 1e-9  # less than any mean of noise differs by, more than rounding does
 _TURNING_RADPS = 0.1  # a unit "at rest" that turns so fast is on something that turns
 _POSE_S = 1.5
 _SAME_POSE_COS = 0.985  # 10 degrees
@@ -27,6 +28,7 @@ _SPAN_DEGC = 10.0
 _WARM_UP_BLOCKS = 8 * 20  # windows
 _AROUND = 3  # windows on either side of one, by which its temperature is judged
 _MISREAD_DEGC = 2.0  # off those around it: no sensor warms so fast
+_MISREAD_MOST = 0.25  # of the windows: what is left of more spans ten degrees by chance
 _DIRECTIONS = 3.0  # steps from -1 to 1 on each axis in which directions of the field are told
 _FLAT = 0.06  # spread off the best plane against that in it: turned about one axis only
 _FIELDS_UT = (15.0, 90.0)  # of the earth, with what a unit's own iron may add or take
@@ -78,13 +80,24 @@ class StillStep:
             return f"moved during the still step (last at {moved_s:.1f} s): it lay still for {lay}"
         if float(np.linalg.norm(mean_of(windows).gyro_radps)) > _TURNING_RADPS:
             return "turned evenly during the whole still step: lay it on something that stands"
-        return None
+        return self._hangs()
 
     def wanted(self) -> str | None:
         return self.missing()
 
     def progress(self) -> str:
         return f"{min(seconds(self.windows()), _STILL_FOR_S):.0f} of {_STILL_FOR_S:.0f} s"
+
+    def _hangs(self) -> str | None:
+        """A gyroscope that works trembles at rest; one value repeated tells nothing of its bias."""
+        spread = np.ptp([window.gyro_radps for window in self.windows()], axis=0)
+        axes = [axis for axis, by in zip("xyz", spread, strict=True) if by < _REPEATED_RADPS]
+        if not axes:
+            return None
+        return (
+            f"the gyroscope repeated one value about {_listed(axes)} all the time: it hangs, or "
+            "tells too little of slow rates to be calibrated; switch it off and on and try again"
+        )
 
 
 class PosesStep:
@@ -244,14 +257,23 @@ class WarmUpStep:
         self._finder.push(imu)
 
     def windows(self) -> list[Window]:
+        return _without_misread(self._told())
+
+    def _told(self) -> list[Window]:
+        """The longest rest, as far as the temperature is known."""
         longest = max(self._finder.rests, key=len, default=[])
-        known = [window for window in longest if np.isfinite(window.temperature_degc)]
-        return _without_misread(known)
+        return [window for window in longest if np.isfinite(window.temperature_degc)]
 
     def missing(self) -> str | None:
         windows = self.windows()
         if not windows and self._finder.rests:
             return "this unit does not tell its sensor's temperature: leave the warm-up out"
+        told = self._told()
+        if len(windows) < (1.0 - _MISREAD_MOST) * len(told):
+            return (
+                f"the temperature jumps about by more than {_MISREAD_DEGC:.0f} degC between half "
+                "seconds, which tells nothing of how warm the sensor is: is its thermometer whole?"
+            )
         span_degc = self._span_degc()
         if span_degc < _SPAN_DEGC:
             moved = "it was moved; while it lay still " if len(self._finder.rests) > 1 else ""

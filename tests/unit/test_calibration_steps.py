@@ -10,16 +10,18 @@ import pytest
 
 from edge.calibration.steps import PosesStep, Step, StillStep, TurningStep, WarmUpStep
 from edge.samples import Floats, ImuBatch
+from edge.simulation.handling import HandledUnit
 from shared.clock import NS_PER_S
 
 RATE_HZ = 20
+TREMBLE_RADPS = 1e-6
 X, Y, Z = np.eye(3)
 FACES = (X, -X, Y, -Y, Z, -Z)
 EDGES = (X + Y, X + Z, Y + Z)
 
 
 class Bench:
-    """A unit without noise, in the hands of somebody."""
+    """A unit with hardly any noise, in the hands of somebody."""
 
     def __init__(self, step: Step) -> None:
         self.step = step
@@ -41,7 +43,7 @@ class Bench:
             ImuBatch(
                 np.rint(t_s * NS_PER_S).astype(np.int64),
                 np.tile(force, (count, 1)),
-                np.tile([0.0, 0.0, rate_radps], (count, 1)),
+                np.array([0.0, 0.0, rate_radps]) + TREMBLE_RADPS * np.sin(7.3 * t_s)[:, None],
                 imu_temperature_degc=None if degc is None else np.linspace(*degc, count),
             )
         )
@@ -93,6 +95,17 @@ def test_who_lies_on_something_that_turns_is_told(rate_radps: float, turns: bool
     bench = Bench(StillStep())
     bench.lies(Z, 20.0, rate_radps)
     assert ("turned evenly" in (bench.step.missing() or "")) is turns
+
+
+@pytest.mark.parametrize("value_radps", [0.0, 0.013])
+@pytest.mark.parametrize("axes", ["x", "z", "x, y and z"])
+def test_a_gyroscope_that_repeats_one_value_is_refused(value_radps: float, axes: str) -> None:
+    batch = HandledUnit(0).rest(15.0)
+    gyro_radps = batch.gyro_radps.copy()
+    gyro_radps[:, ["xyz".index(axis) for axis in axes if axis in "xyz"]] = value_radps
+    step = StillStep()
+    step.push(replace(batch, gyro_radps=gyro_radps))
+    assert f"the gyroscope repeated one value about {axes} all" in (step.missing() or "")
 
 
 @pytest.mark.parametrize(("lay_s", "poses"), [(2.0, 0), (2.5, 1)])
@@ -363,3 +376,18 @@ def test_a_coarse_thermometer_is_not_misread() -> None:
         bench.lies(Z, 10.0, degc=(10.0 + number, 10.0 + number))
     assert len(step.windows()) == 238
     assert step.missing() is None
+
+
+@pytest.mark.parametrize(("noise_degc", "refused"), [(0.5, False), (3.0, True), (6.0, True)])
+def test_a_thermometer_s_noise_warms_nothing_up(noise_degc: float, refused: bool) -> None:
+    step = WarmUpStep()
+    bench = Bench(step)
+    bench.lies(Z, 300.0, degc=(12.0, 24.0 if not refused else 12.0))
+    (windows,) = step._finder.rests
+    noise = np.random.default_rng(1).normal(0.0, noise_degc, len(windows))
+    windows[:] = [
+        replace(window, temperature_degc=window.temperature_degc + off)
+        for window, off in zip(windows, noise.tolist(), strict=True)
+    ]
+    assert ("jumps about" in (step.missing() or "")) is refused
+    assert (step.missing() is not None) is refused
