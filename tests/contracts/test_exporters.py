@@ -129,8 +129,8 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
     def worn(name: str, from_s: int, until_s: int | None) -> Assignment:
         until_ns = None if until_s is None else T0_NS + until_s * NS_PER_S
         return Assignment(
-            unit_id="FF-01", person_id=name[:3], person_name=name, crew="A", from_ns=T0_NS + from_s * NS_PER_S,
-            until_ns=until_ns,
+            unit_id="FF-01", person_id=name[:3], person_name=name, crew="A",
+            from_ns=T0_NS + from_s * NS_PER_S, until_ns=until_ns,
         )  # fmt: skip
 
     points = incident(points=8).tracks[0].points
