@@ -2,6 +2,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import {
   Connection,
   NOT_LOGGED_IN,
+  PICTURE_MS,
   retryDelayMs,
   SILENCE_MS,
   type Surroundings,
@@ -108,10 +109,25 @@ describe("Connection", () => {
 
   it("takes silence for a lost link, though the socket has not noticed", () => {
     sockets[0]?.onopen?.();
+    sockets[0]?.onmessage?.({ data: "{}" });
     fire(SILENCE_MS);
     fire(SILENCE_MS);
-    expect(heard).toEqual(["up", "down 300"]);
+    expect(heard).toEqual(["up", "{}", "down 300"]);
     expect(sockets[0]?.readyState).toBe(3);
+  });
+
+  it("waits longer for the first picture, and then no more", () => {
+    sockets[0]?.onopen?.();
+    fire(SILENCE_MS);
+    expect([sockets[0]?.sent, heard]).toEqual([[], ["up"]]);
+    fire(PICTURE_MS);
+    expect(heard).toEqual(["up", "down 300"]);
+  });
+
+  it("does not wait so long where nobody answers at all", () => {
+    fire(SILENCE_MS);
+    fire(SILENCE_MS);
+    expect(heard).toEqual(["down 300"]);
   });
 
   it("does not come back after it was closed", () => {

@@ -27,6 +27,10 @@ const LONGEST_RETRY_MS = 5000;
 /** After this much silence the station is asked for a snapshot; after as much again the link is
  * dead, even where the socket has not noticed. */
 export const SILENCE_MS = 2500;
+/** The first picture, which nobody sees coming, may be this long on its way: the station gives it as
+ * long (base_station/api/routes/live.py).  Tried again any sooner, it would never be there over a slow
+ * link. */
+export const PICTURE_MS = 20_000;
 /** Codes with which the station ends a connection for good (base_station/api/routes/live.py). */
 export const NOT_LOGGED_IN = 4401;
 export const NOT_FOUND = 4404;
@@ -68,7 +72,10 @@ export class Connection {
     const socket = this.around.open(this.url);
     this.socket = socket;
     this.listenForSilence();
-    socket.onopen = () => this.events.up();
+    socket.onopen = () => {
+      this.watch(PICTURE_MS, () => this.lost());
+      this.events.up();
+    };
     socket.onmessage = (event: MessageEvent<string>) => {
       this.attempt = 0;
       this.listenForSilence();
@@ -78,11 +85,15 @@ export class Connection {
   }
 
   private listenForSilence(): void {
-    this.around.cancel(this.watchdog);
-    this.watchdog = this.around.later(() => {
+    this.watch(SILENCE_MS, () => {
       this.askForSnapshot();
-      this.watchdog = this.around.later(() => this.lost(), SILENCE_MS);
-    }, SILENCE_MS);
+      this.watch(SILENCE_MS, () => this.lost());
+    });
+  }
+
+  private watch(silenceMs: number, then: () => void): void {
+    this.around.cancel(this.watchdog);
+    this.watchdog = this.around.later(then, silenceMs);
   }
 
   private ended(code: number): void {
