@@ -64,11 +64,11 @@ class PlayedStation:
 
     def fall_silent(self) -> None:
         """The link to the station is cut."""
-        for socket in self._sockets:
-            socket.close()
-        self._sockets.clear()
         self._page.unroute_all()
         self._page.route_web_socket("**/*", lambda socket: socket.close())
+        for socket in self._sockets:  # last: the page comes back at once
+            socket.close()
+        self._sockets.clear()
 
     def _speak(self, socket: WebSocketRoute) -> None:
         self._sockets.append(socket)
