@@ -44,9 +44,9 @@ class OtherCopy:
         self._reported = (BEGINNING, BEGINNING)  # places at the last two reports
 
     def note(self, place: Place) -> None:
-        """The standby says what it has."""
+        """The standby says what it has; less than before where another machine took its place."""
         with self._lock:
-            self._has = max(self._has, place)
+            self._has = place
             self._heard_ns = self._clock.monotonic_ns()
             ready = self._take_ready()
         _tell(ready)

@@ -78,6 +78,21 @@ class TestConfirming:
             assert first.done()
         assert second.done()
 
+    def test_a_standby_that_was_replaced_has_what_it_says_and_no_more(
+        self, copy: OtherCopy
+    ) -> None:
+        for _ in range(2):
+            copy.report_comes()
+        copy.note(Place(5, 1))
+        assert copy.has_report_before()
+        copy.note(Place(1, 1))  # the new machine has only begun to fetch the log
+        assert not copy.has_report_before()
+        told = self.act(copy)
+        assert not told.done()
+        copy.note(Place(5, 1))
+        assert told.done()
+        assert copy.has_report_before()
+
     def test_when_the_station_ends_nobody_is_left_waiting(self, copy: OtherCopy) -> None:
         copy.note(Place(4, 1))
         told = [self.act(copy) for _ in range(3)]
