@@ -131,6 +131,24 @@ def test_a_second_machine_is_shown_when_the_first_has_been_silent(sender: Sender
     assert sender.boots[-1].boot_id == 7
 
 
+def test_a_word_that_was_held_up_does_not_bring_back_the_run_before(sender: Sender) -> None:
+    assert sender.accept(STATUS, said(1, 1.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
+    late_ns = NOW_NS + 60 * NS_PER_S
+    assert sender.accept(STATUS, said(6, 101.0), late_ns) == "old"
+    assert [boot.boot_id for boot in sender.boots] == [7, 8]
+
+
+def test_of_several_machines_that_was_there_last_is_told(sender: Sender) -> None:
+    for second in range(60):
+        there = [7, *([8] if second < 30 else []), *([9] if second >= 20 else [])]
+        for boot_id in there:
+            header = said(10 + second, 100.0 + second, boot_id)
+            sender.accept(STATUS, header, NOW_NS + second * NS_PER_S)
+    assert sender.boots[-1].boot_id == 9
+    assert sender.twin is not None
+    assert sender.twin.boot_id == 7
+
+
 def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
     sender: Sender,
 ) -> None:
