@@ -271,7 +271,7 @@ def _pipeline(
     tracks = config.tracker != NO_TRACKER
     return TrackerPipeline(
         UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
-        make_tracker(config.tracker, sensor) if tracks else NoTracker(),
+        make_tracker(config.tracker, sensor, (NO_TRACKER,)) if tracks else NoTracker(),
         stamper,
         position_rate_before(spool, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=mayday_before(spool),

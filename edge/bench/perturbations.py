@@ -24,7 +24,6 @@ LOST = 0.01
 SPIKES = 0.001  # of the samples
 LEAST_FULL_SCALE_MPS2 = 2.0 * 9.81  # of accelerometers that are made
 HOLE_AT_S = 10.0
-HOLE_S = 0.15
 JITTER = 0.5  # of a sample interval
 
 
@@ -135,10 +134,15 @@ def samples_lost(description: SensorDescription, imu: ImuBatch, rng: np.random.G
     return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
 
 
-def hole(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
-    since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
-    kept = np.abs(since_s - HOLE_AT_S) > HOLE_S / 2.0
-    return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+def hole(lasts_s: float) -> Change:
+    """All samples of so long are lost."""
+
+    def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+        since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+        kept = np.abs(since_s - HOLE_AT_S) > lasts_s / 2.0
+        return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+
+    return change
 
 
 def gyro_spikes(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
@@ -207,7 +211,8 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("accelerometer so, untold", accel_clipped_untold),
     Perturbation("accelerometer of 2 g, untold", accel_of_2_g_untold),
     Perturbation("1 % of samples lost", samples_lost),
-    Perturbation("0.15 s lost at once", hole),
+    Perturbation("0.15 s lost at once", hole(0.15)),
+    Perturbation("0.4 s lost at once", hole(0.4)),
     Perturbation("0.1 % of rates are spikes", gyro_spikes),
     Perturbation("accelerometer hangs for 0.3 s", hangs(slice(0, 3), 0.3)),
     Perturbation("gyroscope hangs for 0.3 s", hangs(slice(3, 6), 0.3)),

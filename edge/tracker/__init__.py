@@ -16,10 +16,15 @@ TRACKERS: tuple[TrackerEntry, ...] = (
 )
 
 
-def make_tracker(name: str, description: SensorDescription) -> Tracker:
-    """Return a new tracker by its name in ``TRACKERS``; ``ConfigError`` if there is none."""
+def make_tracker(
+    name: str, description: SensorDescription, beside: tuple[str, ...] = ()
+) -> Tracker:
+    """Return a new tracker by its name in ``TRACKERS``; ``ConfigError`` if there is none.
+
+    ``beside``: what else the caller would have taken for a name.
+    """
     for entry in TRACKERS:
         if entry.name == name:
             return entry.make(description)
-    known = ", ".join(entry.name for entry in TRACKERS)
+    known = ", ".join((*(entry.name for entry in TRACKERS), *beside))
     raise ConfigError(f"There is no tracker '{name}'. Known trackers: {known}.")

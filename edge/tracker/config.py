@@ -157,7 +157,7 @@ class EskfConfig(NamedTuple):
     start_window_s: float = 0.1
 
     # A gap: what may have happened meanwhile (gaps.py).
-    gap_bridged_s: float = 0.35  # a swing
+    gap_bridged_s: float = 0.28  # most of a swing
     gap_around_s: float = 0.5  # where rate and force are looked at
     gap_rate_s: float = 0.07  # for which a rate goes its way
     gap_force_s: float = 0.05  # the same of a force

@@ -19,6 +19,7 @@ from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.conditioning import admit_parts, limits_of, new_gate, regular_time
 from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.filter import filter_sample
+from edge.tracker.gaps import begins_anew
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
@@ -146,17 +147,21 @@ def work(
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered
-        ahead_s = config.lookahead_s + (config.lag_s if k == 0 else 0.0)
+        begins = begins_anew(ring, k, config)
+        if begins:
+            _release_all(ring, trail, memory)
+        ahead_s = config.lookahead_s + (config.lag_s if begins else 0.0)
         if not final and not _is_past(ring, memory.measured, k, ahead_s):
             break
         slot = k & (len(ring) - 1)
+        if begins:
+            memory.began_at, memory.began_s = k, ring[slot].t_s
         ring[slot].stride_minimum_m2ps4 = stride_minimum(ring, memory, k, config)
         filter_sample(ring, trail, memory, state[0], k, config)
         memory.filtered = k + 1
         _release(ring, trail, memory, k, config)
-    if final and memory.released < memory.filtered:
-        smooth(ring, trail, memory.released, memory.filtered, memory.filtered - 1)
-        memory.released = memory.filtered
+    if final:
+        _release_all(ring, trail, memory)
     return int(memory.released)
 
 
@@ -173,6 +178,14 @@ def _is_past(ring: Ring, count: int, k: int, wait_s: float) -> bool:
     """Whether samples up to ``wait_s`` after ``k`` are there, or the ring cannot hold more."""
     mask = len(ring) - 1
     return ring[(count - 1) & mask].t_s - ring[k & mask].t_s > wait_s or count >= reach(ring, k)
+
+
+@njit()
+def _release_all(ring: Ring, trail: Trail, memory: Progress) -> None:
+    """Release every row that is filtered: what comes tells nothing of them."""
+    if memory.released < memory.filtered:
+        smooth(ring, trail, memory.released, memory.filtered, memory.filtered - 1)
+        memory.released = memory.filtered
 
 
 @njit()

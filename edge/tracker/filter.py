@@ -23,7 +23,7 @@ from edge.tracker.error_model import (
 from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
-from edge.tracker.gaps import doubt_hole, open_hole_s, stand_over
+from edge.tracker.gaps import begins_anew, doubt_hole, open_hole_s, stand_over
 from edge.tracker.intervals import mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
@@ -128,7 +128,7 @@ def _predict(
     dt_s = ring[slot].t_s - ring[before].t_s
     ring[slot].interval_s = 0.0
     hole = ring[slot].flags & SAMPLE_GAP != 0
-    if hole and dt_s > config.gap_bridged_s:
+    if begins_anew(ring, k, config):
         ring[slot].interval_s = -1.0
         stand_over(ring, progress, state, k, dt_s, config)
         return

@@ -1,10 +1,11 @@
 """A hole in the samples: what the foot may have done meanwhile.
 
-In a hole shorter than a swing the motion goes on: rate and force are taken for straight lines from
-its one end to the other, and doubted by what they vary by in the strides around, about and along
-the same axes.  What is missed of a swing is mostly a turn about the axis on which a foot
-rolls: the next stance puts it right, and the heading knows little of it.  Of a longer hole
-nothing is known: the foot stands where it was, is levelled anew, and may have gone anywhere near.
+In a hole shorter than most of a swing the motion goes on: rate and force are taken for straight
+lines from its one end to the other, and doubted by what they vary by in the strides around, about
+and along the same axes.  What is missed of a swing is mostly a turn about the axis on which a foot
+rolls: the next stance puts it right, and the heading knows little of it.  After a longer one
+the walk begins anew, where the samples ceased: what follows is levelled by the next stance, and
+may be anywhere near.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.alignment import level
+from edge.tracker.conditioning import SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, POSITION, SIZE, VELOCITY
 from edge.tracker.state import FilterState, Progress, Ring, reach, span
-from edge.tracker.strapdown import rotation_matrix
+from edge.tracker.strapdown import rotate_attitude, rotation_matrix
 
 
 @njit()
@@ -85,12 +87,36 @@ def _missed(squares_b: Floats, rotation_nb: Floats, dt_s: float, keeps_s: float)
 
 
 @njit()
+def begins_anew(ring: Ring, k: int, config: EskfConfig) -> bool:
+    """Whether nothing is known of the motion before sample ``k``: the first, or after a long hole.
+
+    A foot may swing just then, and is levelled by the next stance, so that is waited for.
+    """
+    if k == 0:
+        return True
+    here, before = k & (len(ring) - 1), (k - 1) & (len(ring) - 1)
+    hole = ring[here].flags & SAMPLE_GAP != 0
+    return bool(hole and ring[here].t_s - ring[before].t_s > config.gap_bridged_s)
+
+
+@njit()
 def stand_over(
     ring: Ring, progress: Progress, state: FilterState, k: int, dt_s: float, config: EskfConfig
 ) -> None:
-    """Stand where the samples ceased, level anew, and say how far the foot may have gone."""
+    """Stand where the samples ceased, level anew, and say how far the foot may have gone.
+
+    It is levelled by the smallest turn that does it, which is a turn about a level axis and leaves
+    the heading alone; what is known of the turn meanwhile, at either end, comes before that.
+    """
     stop = min(progress.measured, reach(ring, k))
-    tilt_std_rad = level(ring, k, stop, config.lookahead_s, config, state.quaternion_nb)
+    ahead_s = config.lookahead_s + config.lag_s
+    mask = len(ring) - 1
+    for slot in ((k - 1) & mask, k & mask):
+        for i in range(3):
+            rate_radps = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
+            state.angle_rad[i] = config.gap_rate_s * rate_radps
+        rotate_attitude(state.quaternion_nb, state.angle_rad)
+    tilt_std_rad = level(ring, k, stop, ahead_s, config, state.quaternion_nb)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
     turn_std_rad = min(config.gap_turn_std_radps * dt_s, math.pi)
     for i in range(3):

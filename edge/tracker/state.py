@@ -245,6 +245,8 @@ PROGRESS = np.dtype(
         ("temperature_s", np.float64),  # of the sample that said it
         ("warmed_degc", np.float64),  # for which the gyroscope bias holds
         ("good_ns", np.int64),  # stamp of the last sample that was not bad
+        ("began_at", np.int64),  # sample before which nothing is known of the motion
+        ("began_s", np.float64),  # ... and its time
         ("in_stance", np.bool_),
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),

@@ -89,8 +89,9 @@ def motion_statistic(
 def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
     """Return the smallest statistic from ``stride_past_s`` before to ``lookahead_s`` after ``k``.
 
-    At the start it looks further ahead instead: a recording may begin in mid-swing, and half a
-    swing is no stride.  Called for every ``k`` in turn; ``progress`` keeps the sliding window.
+    At the start, and after a long hole, it looks further ahead instead: samples may begin in
+    mid-swing, and half a swing is no stride.  Called for every ``k`` in turn; ``progress`` keeps
+    the sliding window.
     """
     mask = len(ring) - 1
     now_s = ring[k & mask].t_s
@@ -98,9 +99,10 @@ def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -
     to = progress.minimum_to
     stop = min(progress.measured, reach(ring, k))
     ahead_s = config.lookahead_s
-    if now_s < config.lag_s:  # nothing came before; the first sample has waited for the lag too
-        ahead_s += config.lag_s - now_s
-        stop = min(stop, reach(ring, 0))
+    since_s = now_s - progress.began_s
+    if since_s < config.lag_s:  # nothing came before; the first sample has waited for the lag too
+        ahead_s += config.lag_s - since_s
+        stop = min(stop, reach(ring, progress.began_at))
     while to < stop and ring[to & mask].t_s - now_s <= ahead_s:
         if to == 0 or ring[to & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
             at = to

@@ -5,9 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.samples import SensorDescription
+from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.eskf import EskfTracker
 from edge.tracker.port import Quality, Reason
-from tests.faulty_walk import IN_STANCE, IN_SWING, LENGTH_M, copy, flagged, index, reached_m, run
+from edge.tracker.rows import join_rows
+from tests.faulty_walk import (
+    IN_STANCE,
+    IN_SWING,
+    LENGTH_M,
+    WALK,
+    copy,
+    flagged,
+    index,
+    reached_m,
+    run,
+)
 
 
 def test_stamps_that_go_back_are_left_out():
@@ -86,3 +98,72 @@ def test_a_clock_set_back_is_followed_after_a_moment():
     assert flagged(rows, Reason.SAMPLE_GAP)[k + 30]
     assert not flagged(rows, Reason.BAD_SAMPLES)[k + 40 :].any()
     assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.3)
+
+
+@pytest.mark.parametrize("after_lift_s", [-0.3, -0.2, 0.0, 0.2, 0.4])
+def test_samples_that_begin_again_in_a_swing_are_levelled_by_the_stance_that_follows(after_lift_s):
+    t_ns, accel, gyro = copy()
+    begin_s = IN_SWING - 0.35 + after_lift_s
+    first, stop = index(begin_s), index(begin_s + 0.4)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep])
+    off_m = rows.position_n_m[-1] - WALK.position_n_m[-1]
+    assert abs(off_m[2]) < 0.2  # a foot is lifted by less
+    assert abs(off_m[0]) < 1.3  # what the foot may have gone in the hole: a stride
+    assert abs(off_m[1]) < 0.3
+
+
+@pytest.mark.parametrize("late_s", [0.0, 0.05, 0.1])
+def test_the_stillest_part_of_a_swing_after_a_long_hole_is_no_stance(late_s):
+    t_ns, accel, gyro = copy()
+    lift_s = IN_SWING - 0.35
+    first, stop = index(lift_s - 1.0), index(lift_s + late_s)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep])
+    swings = (rows.t_ns > 1e9 * (lift_s + 0.02)) & (rows.t_ns < 1e9 * (lift_s + 0.68))
+    assert swings.sum() > 100
+    assert not rows.stationary[swings].any()
+
+
+def test_what_was_before_a_long_hole_does_not_wait_for_the_stance_after_it():
+    t_ns, accel, gyro = copy()
+    first, stop = index(IN_SWING), index(IN_SWING + 0.4)
+    tracker = EskfTracker(WALK.description)
+    before = tracker.push(ImuBatch(t_ns[:first], accel[:first], gyro[:first]))
+    assert before.t_ns[-1] < t_ns[first - 1]
+    soon = slice(stop, index(IN_SWING + 0.6))
+    after = tracker.push(ImuBatch(t_ns[soon], accel[soon], gyro[soon]))
+    assert after.t_ns[-1] == t_ns[first - 1]
+
+
+def test_what_a_foot_turned_by_at_either_end_of_a_long_hole_is_known():
+    """It turns evenly about an axis that is not level, of which levelling alone sees but a part."""
+    rate_radps, axis_b = 1.5, np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
+    t_s = np.arange(0.0, 6.0, 0.005)
+    angle_rad = rate_radps * np.clip(t_s - 3.0, 0.0, 0.6)
+    up_n = np.array([0.0, 0.0, -9.80665])
+    accel = np.array([_turned(axis_b, -angle) @ up_n for angle in angle_rad])
+    gyro = np.where((t_s > 3.0) & (t_s < 3.6), rate_radps, 0.0)[:, None] * axis_b
+    noise = np.random.default_rng(1).normal(0.0, 1.0, (2, len(t_s), 3))
+    accel, gyro = accel + 0.02 * noise[0], gyro + 0.002 * noise[1]
+    lost = (t_s > 3.1) & (t_s < 3.5)
+    tracker = EskfTracker(SensorDescription("turning", 200.0))
+    kept = ImuBatch(np.rint(1e9 * t_s[~lost]).astype(np.int64), accel[~lost], gyro[~lost])
+    rows = join_rows([tracker.push(kept), tracker.finish()])
+    whole = EskfTracker(SensorDescription("turning", 200.0))
+    all_of_it = ImuBatch(np.rint(1e9 * t_s).astype(np.int64), accel, gyro)
+    true = join_rows([whole.push(all_of_it), whole.finish()])
+    off_rad = abs(_heading_rad(rows.quaternion_nb[-1]) - _heading_rad(true.quaternion_nb[-1]))
+    unknown_rad = rate_radps * 0.4 * axis_b[2]
+    assert 0.4 * unknown_rad < off_rad < 0.75 * unknown_rad
+
+
+def _turned(axis, angle_rad):
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle_rad) * cross + (1.0 - np.cos(angle_rad)) * cross @ cross
+
+
+def _heading_rad(quaternion_nb):
+    w, x, y, z = quaternion_nb
+    return np.arctan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
