@@ -21,9 +21,11 @@ from base_station.db.models import (
     UnitStart,
 )
 from base_station.forgetting.erasure import FOREVER_NS, PLACES, Erasure, Wearing
-from base_station.forgetting.redaction import name_pattern
+from base_station.forgetting.redaction import name_pattern, what_is_left
 from base_station.live_state import FORGOTTEN
 from shared.messages.station import DoneApart
+
+_APART = DoneApart.__name__
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
@@ -96,20 +98,23 @@ def _audit(session: Session, erasure: Erasure) -> None:
     names = name_pattern(erasure.names)
     units = name_pattern(tuple(erasure.unit_ids))
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
-    for entry in session.scalars(select(AuditEntry).where(inside)):
+    for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
+        entry.detail = names.sub(FORGOTTEN, entry.detail)
         about = units.search(entry.detail) if entry.action in PLACES else None
-        told = about is not None or _is_told(erasure, entry)
-        entry.detail = FORGOTTEN if told else names.sub(FORGOTTEN, entry.detail)
+        if about is not None:
+            entry.detail = FORGOTTEN
+    for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
+        entry.detail = _apart(entry, erasure, names)
 
 
-def _is_told(erasure: Erasure, entry: AuditEntry) -> bool:
-    if entry.action != DoneApart.__name__ or entry.detail == FORGOTTEN:
-        return False
+def _apart(entry: AuditEntry, erasure: Erasure, names: re.Pattern[str]) -> str:
+    """What was done at the other station may have been written down long after it was done."""
     try:
-        apart = msgspec.json.decode(entry.detail, type=DoneApart)
-    except msgspec.DecodeError:  # somebody is called like a word of its, and was forgotten
-        return True
-    return erasure.is_told(entry.t_ns, apart)
+        done = msgspec.json.decode(entry.detail, type=DoneApart)
+    except msgspec.DecodeError:  # nothing is left of it, or nobody knows what it says
+        return FORGOTTEN
+    left = what_is_left(done, entry.t_ns, erasure, names)
+    return msgspec.json.encode(msgspec.structs.replace(done, what=left)).decode()
 
 
 def _cut_out(session: Session, erasure: Erasure) -> None:

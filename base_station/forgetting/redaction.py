@@ -48,8 +48,8 @@ from shared.messages.station import (
     Unassign,
 )
 
-# The program's own, whoever is called Heat or Fall.
-_WORDS = frozenset({"rule", "level", "part", "thresholds"})
+# The program's own, whoever is called Heat or Fall, and who did something.
+_WORDS = frozenset({"rule", "level", "part", "thresholds", "station", "who"})
 
 
 class Redactor:
@@ -187,9 +187,10 @@ class Redactor:
                     return message
                 fewer = msgspec.structs.replace(action, unit_ids=kept)
                 return msgspec.structs.replace(message, action=fewer) if kept else None
-            case DoneApart() if self._erasure.is_told(t_ns, action):
-                untold = msgspec.structs.replace(action, what=FORGOTTEN)
-                return msgspec.structs.replace(message, action=untold)
+            case DoneApart(what=what):
+                left = what_is_left(action, t_ns, self._erasure, self._names)
+                untold = msgspec.structs.replace(action, what=left)
+                return message if left == what else msgspec.structs.replace(message, action=untold)
             case _:
                 return message
 
@@ -220,6 +221,14 @@ def name_pattern(names: tuple[str, ...]) -> re.Pattern[str]:
     forgotten.
     """
     return re.compile(rf"(?<!\w)(?:{_any_of(names)})(?=s?(?!\w))", re.IGNORECASE)
+
+
+def what_is_left(apart: DoneApart, t_ns: int, erasure: Erasure, names: re.Pattern[str]) -> str:
+    """Of what was done apart, and written down at ``t_ns``."""
+    if erasure.is_told(t_ns, apart):
+        return FORGOTTEN
+    inside = any(erasure.from_ns <= one < erasure.until_ns for one in (t_ns, apart.t_ns))
+    return names.sub(FORGOTTEN, apart.what) if inside else apart.what
 
 
 def _any_of(names: tuple[str, ...]) -> str:

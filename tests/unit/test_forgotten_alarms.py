@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import msgspec
+import pytest
 
 from base_station.db.forgetting import forget_in
 from base_station.db.models import Alarm, AlarmLife, AuditEntry
@@ -38,8 +39,9 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
     assert told == texts | {20: "(forgotten) may have fallen"}
 
 
+@pytest.mark.parametrize("of_incident", [False, True])
 def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
-    tmp_path: Path,
+    tmp_path: Path, of_incident: bool
 ) -> None:
     """Somebody called Station was forgotten before."""
     details = {
@@ -49,7 +51,11 @@ def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
     }
     said = {name: msgspec.json.encode(one).decode() for name, one in details.items()}
     said["broken"] = said["pin of ana"].replace("station", FORGOTTEN)
-    ana = Erasure((Wearing("FF-01", 15, 25),), ("Ana",), person_id="p-ana")
+    wearing = (Wearing("FF-01", 15, 25),)
+    if of_incident:  # that was over before the stations were together again
+        ana = Erasure(wearing, ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
+    else:
+        ana = Erasure(wearing, ("Ana",), person_id="p-ana")
     with Store(tmp_path / "station.sqlite") as store:
         with store.write() as session:
             session.add_all(
@@ -61,8 +67,9 @@ def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
                 forget_in(session, ana)
         with store.read() as session:
             left = {one.entry_id: one.detail for one in session.query(AuditEntry)}
+    nothing = DoneApart("b", 20, "eve", FORGOTTEN)
     assert left == {
-        "pin of ana": FORGOTTEN,
+        "pin of ana": msgspec.json.encode(nothing).decode(),
         "pin of bo": said["pin of bo"],
         "evacuation": said["evacuation"].replace("Ana", FORGOTTEN),
         "broken": FORGOTTEN,

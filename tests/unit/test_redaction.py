@@ -213,7 +213,8 @@ def test_where_somebody_was_said_to_be_goes_and_where_others_were_stays(
 
 
 def apart(said_ns: int, what: str) -> DoneApart:
-    return DoneApart("b", said_ns, "eve", what)
+    """By somebody who is called like who is forgotten: who did what stays."""
+    return DoneApart("ada", said_ns, "Ada", what)
 
 
 PERSON = Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1")
@@ -239,6 +240,8 @@ INCIDENT = Erasure(
         (INCIDENT, 150, 150, "Assign carl, p2, Cem, ", FORGOTTEN),
         (INCIDENT, 300, 250, "Assign carl, p2, Cem, ", "Assign carl, p2, Cem, "),
         (INCIDENT, 150, 150, "SetPin p, anna, 3.0, 4.0", FORGOTTEN),
+        (INCIDENT, 300, 150, "SendCommand text, Ada!", f"SendCommand text, {FORGOTTEN}!"),
+        (INCIDENT, 300, 250, "SendCommand text, Ada!", "SendCommand text, Ada!"),
     ],
 )
 def test_what_was_done_apart_says_nothing_of_who_is_forgotten(
