@@ -29,7 +29,13 @@ def read_table(
     header, _, body = _read_text(path).lstrip("\ufeff").partition("\n")
     names = [name.strip() for name in header.split(",")]
     if names == [""]:
-        raise RecordingError(f"{path} is empty; it must start with a line of column names")
+        is_what = "starts with an empty line" if body.strip() else "is empty"
+        raise RecordingError(f"{path} {is_what}; it must start with a line of column names")
+    if len(names) == 1 and (";" in header or "\t" in header):
+        raise RecordingError(
+            f"{path}: its columns lie between {'semicolons' if ';' in header else 'tabs'}; save it "
+            "anew with commas between columns and points in numbers"
+        )
     _check_columns(path, names, required, optional)
     if not body.strip():
         raise RecordingError(f"{path} has column names but no samples below them")

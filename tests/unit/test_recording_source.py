@@ -130,6 +130,9 @@ def test_nothing_unusual_is_said_so(tmp_path: Path) -> None:
     ("header", "rows", "said"),
     [
         ("", [], "is empty"),
+        ("", [HEADER, *at_times(0, 1)], "starts with an empty line"),
+        (HEADER.replace(",", ";"), ["0;0,1;2,0;9,8;4,0;5,0;6,0"], "between semicolons"),
+        (HEADER.replace(",", "\t"), ["0\t1\t2\t9.8\t4\t5\t6"], "between tabs"),
         (HEADER, [], "no samples"),
         (HEADER.replace("gyro_y_radps,", ""), ["0,1,2,3,4,5"], "missing column gyro_y_radps"),
         (HEADER.replace("accel_x_mps2", "accel_x_g"), at_times(0, 1), "did you mean accel_x_mps2"),
