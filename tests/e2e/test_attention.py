@@ -152,8 +152,9 @@ def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:
 
 
 def test_the_last_hour_is_the_station_s_whatever_the_browser_s_clock_says(stage: Stage) -> None:
-    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), incident=None))
+    page, station = stage.open(msgspec.structs.replace(scenes.quiet(), incident=None))
     page.clock.set_fixed_time(datetime.fromtimestamp(scenes.NOW_MS / 1000, UTC) + timedelta(days=2))
+    station.change()
     dialog = menu(page, "Units")
     with page.expect_request(re.compile("/recordings$")) as sent:
         dialog.get_by_role("button", name="Fetch the recording of FF-01").click()
@@ -222,6 +223,16 @@ def test_a_picture_of_before_a_sleep_says_when_it_was(stage: Stage) -> None:
     banner = page.get_by_role("alert").filter(has_text="Connection to the station lost")
     heard = page.evaluate(f"new Date({scenes.NOW_MS}).toTimeString().slice(0, 8)")
     expect(banner).to_contain_text(f"This picture is from {heard} ")
+
+
+def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage: Stage) -> None:
+    """On many machines the steady clock stands in a sleep, and only the time of day goes on."""
+    page, station = stage.open(scenes.quiet())
+    station.change()
+    station.hang()
+    page.evaluate("const day = Date.now; Date.now = () => day() + 3_600_000")
+    expect(page.locator(".card").first).to_contain_text("Not updated")
+    expect(page.locator(".card").first).to_contain_text("1 h 00 min old")
 
 
 def test_whose_login_has_ended_is_told_so(stage: Stage) -> None:

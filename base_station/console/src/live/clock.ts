@@ -16,3 +16,30 @@ export class StationClock {
     return this.stationMs + (localMs - this.localMs) * this.speed;
   }
 }
+
+/** More than two clocks of one machine differ by in the time between two looks. */
+const SLEPT_MS = 5_000;
+
+/** The console's own clock.  `performance.now` never goes back, but on many machines it stands while
+ * they sleep; that they did is seen by the clock of the day. */
+export class LocalClock {
+  private lookedMs: number;
+  private dayMs: number;
+  private sleptMs = 0;
+
+  constructor(
+    private readonly steady: () => number = () => performance.now(),
+    private readonly day: () => number = () => Date.now(),
+  ) {
+    this.lookedMs = steady();
+    this.dayMs = day();
+  }
+
+  now(): number {
+    const [steadyMs, dayMs] = [this.steady(), this.day()];
+    const aheadMs = dayMs - this.dayMs - (steadyMs - this.lookedMs);
+    if (aheadMs > SLEPT_MS) this.sleptMs += aheadMs;
+    [this.lookedMs, this.dayMs] = [steadyMs, dayMs];
+    return steadyMs + this.sleptMs;
+  }
+}

@@ -1,7 +1,7 @@
 /** Keeps a picture as the station describes it: connection, messages, snapshots on a gap, time. */
 import { batch } from "@preact/signals";
 import type { Message } from "../wire";
-import { StationClock } from "./clock";
+import { LocalClock, StationClock } from "./clock";
 import { Connection } from "./connection";
 import { Picture } from "./picture";
 import { apply, type State } from "./state";
@@ -11,6 +11,7 @@ const CLOCK_STEP_MS = 500;
 export class Session {
   readonly picture = new Picture();
   private readonly clock = new StationClock();
+  private readonly local = new LocalClock();
   private readonly connection: Connection;
   private readonly timer: number;
   private state: State | null = null;
@@ -53,7 +54,7 @@ export class Session {
 
   private setClock({ replay, now_ms }: State): void {
     const speed = replay === null ? 1 : replay.playing && !replay.seeking ? replay.speed : 0;
-    this.clock.set(now_ms, performance.now(), speed);
+    this.clock.set(now_ms, this.local.now(), speed);
   }
 
   private lose(): void {
@@ -63,7 +64,7 @@ export class Session {
   }
 
   private tick(): void {
-    if (this.state !== null) this.picture.nowMs.value = this.clock.now(performance.now());
+    if (this.state !== null) this.picture.nowMs.value = this.clock.now(this.local.now());
   }
 }
 
