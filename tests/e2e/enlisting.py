@@ -36,7 +36,9 @@ def add_person(page: Page) -> None:
 
 def assign(page: Page, unit_id: str) -> None:
     dialog = menu(page, "Units")
-    dialog.get_by_label(f"Who wears {unit_id}").select_option(label=f"{NAME} (Ladder 1)")
+    worn = dialog.get_by_label(f"Who wears {unit_id}")
+    worn.focus()
+    worn.select_option(label=f"{NAME} (Ladder 1)")
     close(dialog)
 
 

@@ -141,6 +141,16 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     assert station.changes() == ["/check-ins"]
 
 
+def test_whom_to_choose_from_is_listed_where_somebody_chooses(stage: Stage) -> None:
+    """Each unit with each person would be a quarter of a million entries of 500."""
+    page, _ = stage.open(scenes.quiet())
+    worn = menu(page, "Units").get_by_role("combobox", name="Who wears")
+    expect(worn.first).to_have_value("p0")
+    assert worn.locator("option").count() <= 2 * worn.count()  # nobody, and who wears it
+    worn.first.hover()
+    expect(worn.first.locator("option[value=p3]")).to_be_attached()
+
+
 def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
     """Nor is that person taken from another; by keys it counts with Enter, or on leaving."""
     quiet = scenes.quiet()

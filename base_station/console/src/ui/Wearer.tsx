@@ -1,18 +1,29 @@
+import { useSignal } from "@preact/signals";
 import { attempt } from "../sessions";
 import * as api from "../api";
 import type { UnitView } from "../wire";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
 
-/** Who wears a unit, to be chosen among the people. */
+/** Who wears a unit, to be chosen among the people; they are listed once somebody goes to it, as
+ * hundreds of units with hundreds of people each would keep the page busy for a minute. */
 export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.Person[] }) {
   const change = (personId: string) =>
     void attempt(personId === "" ? api.unassign(unit.unit_id) : api.assign(unit.unit_id, personId));
-  const chosen = useChosen(unit.person?.person_id ?? "", change);
+  const wornBy = unit.person?.person_id ?? "";
+  const chosen = useChosen(wornBy, change);
+  const isAsked = useSignal(false);
+  const ask = () => void (isAsked.value = true);
+  const listed = isAsked.value ? people : people.filter((person) => person.person_id === wornBy);
   return (
-    <select aria-label={`Who wears ${unit.unit_id}`} {...chosen}>
+    <select
+      aria-label={`Who wears ${unit.unit_id}`}
+      {...chosen}
+      onFocus={ask}
+      onPointerEnter={ask}
+    >
       <option value="">nobody</option>
-      {people.map((person) => (
+      {listed.map((person) => (
         <option key={person.person_id} value={person.person_id}>
           {person.crew === "" ? person.name : `${person.name} (${person.crew})`}
         </option>
