@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
-from threading import Event
 from typing import Annotated
 
 import typer
@@ -81,6 +79,7 @@ def run(
     from edge.app import run_agent  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
+    from shared.end_signals import told_to_end  # noqa: PLC0415
     from shared.log import set_up_logging  # noqa: PLC0415
 
     flags = {
@@ -97,9 +96,7 @@ def run(
     }
     settings = load_config(config, EdgeConfig, flags)
     set_up_logging(settings.log_level)
-    stop = Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_end()
     run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import os
-import signal
 import sys
 from contextlib import closing
 from pathlib import Path
@@ -12,6 +11,7 @@ from threading import Event, Thread
 
 from base_station.router.process import FAILED, LINKS, READY
 from base_station.router.router import Router
+from shared.end_signals import told_to_end
 from shared.errors import MusterError
 from shared.log import set_up_logging
 
@@ -26,9 +26,7 @@ def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ())
     Tells the parent on standard output whether it is open.  Gives the exit code.
     """
     set_up_logging()
-    stop = Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_end()
     Thread(target=_stop_at_end_of_input, args=(stop,), daemon=True).start()
     try:
         router = Router(data, listen, links)

@@ -19,6 +19,7 @@ from deploy.demo.console_client import ConsoleClient
 from deploy.demo.crew import Crew, read_crew
 from deploy.demo.processes import Child, Children, ToldToEndError
 from deploy.demo.stations import Site, Stations
+from shared.end_signals import told_to_end
 from shared.errors import UserError
 
 _WATCH_EVERY_S = 0.5
@@ -52,9 +53,7 @@ def demo(
     ] = False,
 ) -> None:
     """Run a base station and five responders on this machine until Ctrl-C."""
-    stop = Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_end()
     folder = data or Path("muster-data") / f"demo-{datetime.now(UTC):%Y%m%d-%H%M%S}"
     address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
     bus = f"tls/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"

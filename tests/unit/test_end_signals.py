@@ -1,0 +1,29 @@
+"""A program ends however often, and whenever, it is told to."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+
+import pytest
+
+from shared.end_signals import told_to_end
+
+
+@pytest.fixture(autouse=True)
+def _handlers() -> Iterator[None]:
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_is_told_also_while_it_looks_whether_it_is(number: signal.Signals) -> None:
+    """Two presses of Ctrl-C, or one in the instant in which the main thread holds the lock."""
+    stop = told_to_end()
+    assert not stop.is_set()
+    with stop._cond:  # type: ignore[attr-defined]  # as it does for an instant in every wait
+        signal.raise_signal(number)
+        signal.raise_signal(number)
+    assert stop.wait(10.0)
