@@ -48,8 +48,8 @@ class Person(msgspec.Struct, frozen=True):
     role: str
 
 
-class Wearing(msgspec.Struct, frozen=True):
-    """Somebody wore a unit then; station times, until is left out."""
+class FormerWearer(msgspec.Struct, frozen=True):
+    """Who wore a unit before; station times, ``until_ns`` left out."""
 
     name: str
     from_ns: int
@@ -103,7 +103,7 @@ class UnitState(Sender):
     registered: bool = False
     person: Person | None = None
     worn_since_ns: int = 0  # by that person, or by nobody
-    worn_before: list[Wearing] = msgspec.field(default_factory=list)  # by whom, oldest first
+    worn_before: list[FormerWearer] = msgspec.field(default_factory=list)  # oldest first
     link: Link = "never"
     status: Status | None = None
     status_ns: int = 0
@@ -151,8 +151,8 @@ class UnitState(Sender):
     def end_wearing(self, t_ns: int) -> None:
         """Whoever wears it does so no more."""
         if self.person is not None:
-            wearing = Wearing(self.person.name, self.worn_since_ns, t_ns)
-            self.worn_before = [*self.worn_before[1 - WEARERS_KEPT :], wearing]
+            former = FormerWearer(self.person.name, self.worn_since_ns, t_ns)
+            self.worn_before = [*self.worn_before[1 - WEARERS_KEPT :], former]
         self.person, self.worn_since_ns, self.inside_since_ns = None, t_ns, None
 
     def forget_wearers(self) -> None:

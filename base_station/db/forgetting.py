@@ -20,7 +20,7 @@ from base_station.db.models import (
     TrackPoint,
     UnitStart,
 )
-from base_station.forgetting.erasure import FOREVER_NS, PLACES, Erasure, Wearing
+from base_station.forgetting.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
 from base_station.forgetting.redaction import name_pattern, what_is_left
 from base_station.live_state import FORGOTTEN
 from shared.messages.station import DoneApart
@@ -100,7 +100,7 @@ def _audit(session: Session, erasure: Erasure) -> None:
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
         entry.detail = names.sub(FORGOTTEN, entry.detail)
-        about = units.search(entry.detail) if entry.action in PLACES else None
+        about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
         if about is not None:
             entry.detail = FORGOTTEN
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):

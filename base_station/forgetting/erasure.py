@@ -18,7 +18,7 @@ from shared.messages.station import Assign, CloseIncident, DoneApart, OpenIncide
 FOREVER_NS = 2**63 - 1
 Record = tuple[int, str, bytes]  # station time, key, payload
 # What these say is where somebody was.
-PLACES = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
+PLACE_ACTIONS = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
 
 
 class Wearing(msgspec.Struct, frozen=True):
@@ -86,7 +86,7 @@ class Erasure(msgspec.Struct, frozen=True):
                 return self.person_id in values
             return self.from_ns <= apart.t_ns < self.until_ns
         times_ns = [t_ns, apart.t_ns, *(int(value) for value in values if value.isdecimal())]
-        told = self.unit_ids & {*values} if kind in PLACES else ()
+        told = self.unit_ids & {*values} if kind in PLACE_ACTIONS else ()
         return any(self.covers(unit_id, one) for unit_id in told for one in times_ns)
 
 
