@@ -1,10 +1,18 @@
 /** What people did, from the audit log as the station keeps it, in words and usual units.  Pure. */
-import { dateAndTime, duration } from "./words";
+import { dateAndTime, duration, floorName } from "./words";
 
 /** By number, as the station's messages have them (shared/messages/command.py). */
 const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm"];
 /** Says nothing to a person. */
 const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "term"]);
+/** Where 0 is no number: what it stands for, and nothing where it was left out. */
+const ZEROS = new Map([
+  ["t_ns", "where the path begins"],
+  ["after_t_ns", ""],
+  ["par_interval_s", ""],
+  ["work_limit_s", ""],
+  ["position_rate_hz", ""],
+]);
 const DEGREES = 180 / Math.PI;
 
 /** "AcknowledgeAlarm" as "Acknowledge alarm". */
@@ -16,8 +24,9 @@ export function actionWord(action: string): string {
 /** What was sent with an action, without what was left empty; `names` are people's, by id. */
 export function detailWords(detail: string, names: ReadonlyMap<string, string>): string {
   if (!detail.startsWith("{")) return withNames(detail, names);
-  const values = Object.entries(JSON.parse(detail) as Record<string, unknown>);
-  return values
+  const values = JSON.parse(detail) as Record<string, unknown>;
+  if (values["heading_rad"] === null) delete values["heading_std_rad"]; // it is of nothing
+  return Object.entries(values)
     .map(([name, value]) => said(name, value))
     .filter((words) => words !== "")
     .join(", ");
@@ -32,9 +41,11 @@ function withNames(detail: string, names: ReadonlyMap<string, string>): string {
 }
 
 function said(name: string, value: unknown): string {
-  if (WITHOUT_MEANING.has(name) || value === "" || value === null || value === 0) return "";
+  if (WITHOUT_MEANING.has(name) || value === "" || value === null) return "";
+  if (value === 0 && ZEROS.has(name)) return ZEROS.get(name) ?? "";
   if (name === "resting") return value === true ? "to rest" : "back to work";
   if (typeof value === "boolean") return value ? spaced(name) : "";
+  if (name === "floor" && typeof value === "number") return floorName(value);
   if (name === "kind" && typeof value === "number") return COMMANDS[value] ?? String(value);
   if (typeof value === "number") return quantity(name, value);
   if (name === "thresholds") return thresholds(value as Record<string, number>);

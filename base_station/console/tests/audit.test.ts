@@ -19,8 +19,32 @@ describe("the audit log", () => {
     ],
     [
       { unit_id: "FF-05", north_m: -6, east_m: 4.04, down_m: 0, std_m: 1, heading_std_rad: 0.2 },
-      "FF-05, north -6 m, east 4 m, ± 1 m, ± of heading 11.5°",
+      "FF-05, north -6 m, east 4 m, down 0 m, ± 1 m, ± of heading 11.5°",
     ],
+    [
+      {
+        pin_id: "17",
+        unit_id: "FF-05",
+        t_ns: 0,
+        north_m: 0,
+        east_m: 4,
+        std_m: 1,
+        floor: 0,
+        heading_rad: null,
+        heading_std_rad: 0.35,
+        note: "",
+      },
+      "FF-05, where the path begins, north 0 m, east 4 m, ± 1 m, ground floor",
+    ],
+    [{ beacon_id: "7", floor: -1, reach_m: 0 }, "beacon id: 7, basement 1, reach 0 m"],
+    [
+      { lat_deg: 0, lon_deg: 0, height_m: 0, plan_rotation_rad: 0 },
+      "lat 0°, lon 0°, height 0 m, plan rotation 0°",
+    ],
+    [{ name: "Mill Road", par_interval_s: 0, work_limit_s: 0 }, "name: Mill Road"],
+    [{ kind: 2, unit_id: "FF-01", position_rate_hz: 0 }, "PAR, FF-01"],
+    [{ station: "engine-2", after_t_ns: 0, after_count: 0 }, "station: engine-2, after count 0"],
+    [{ thresholds: { "heat.caution_degc": 0 } }, "heat caution 0 °C"],
     [{ unit_id: "FF-01", resting: false }, "FF-01, back to work"],
     [{ unit_ids: ["FF-01", "FF-02"], pin_id: "17" }, "FF-01 FF-02"],
     [
