@@ -43,14 +43,18 @@ def trust_of(unit: UnitState, conflicts: int) -> Trust:
 
 
 def note_trust(state: StationState) -> None:
-    """Time went by for the lights of all that an open incident has heard of."""
+    """Time went by for the lights of all that an open incident has heard of; one that was switched
+    off in order has none.
+    """
     lasted_s = (state.t_ns - state.trust_ns) / NS_PER_S
     state.trust_ns = state.t_ns
     if state.incident is None or state.incident.closed_ns is not None or lasted_s > LONGEST_S:
         return
     conflicts = conflicts_of(state)
     for unit in state.units.values():
-        if unit.registered and (unit.fused is not None or unit.person is not None):
+        if not unit.registered or unit.stopped_ns is not None:
+            continue
+        if unit.fused is not None or unit.person is not None:
             trust = trust_of(unit, conflicts.get(unit.unit_id, 0))
             unit.trust.note(trust.level, trust.cause, lasted_s)
 

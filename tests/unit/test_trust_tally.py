@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from shared.messages import EventKind
 from shared.messages.station import Assign, CloseIncident, OpenIncident
 from tests.station_script import Script
 
@@ -44,6 +45,21 @@ def test_who_wears_a_unit_that_was_never_heard_is_red(script: Script) -> None:
     tally = script.pipeline.state.units["FF-02"].trust
     assert tally.causes == {"no position yet": pytest.approx(30.0, abs=1.0)}
     assert tally.red_s == pytest.approx(30.0, abs=1.0)
+
+
+def test_one_that_was_switched_off_in_order_has_no_light_until_it_is_on_again(
+    script: Script,
+) -> None:
+    script.wait(20.0, lambda: said(script))
+    script.event("FF-01", EventKind.STOPPED)
+    tally = script.pipeline.state.units["FF-01"].trust
+    before_s = tally.green_s + tally.amber_s + tally.red_s
+    script.wait(60.0)
+    assert tally.green_s + tally.amber_s + tally.red_s == before_s
+    assert "not heard" not in tally.causes
+    script.wait(10.0, lambda: said(script))
+    script.wait(60.0)
+    assert tally.causes["not heard"] > 31.0
 
 
 def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -> None:
