@@ -7,7 +7,7 @@ import msgspec
 import pytest
 
 from base_station.db.principals import Role
-from shared.clock import NS_PER_S, ManualClock
+from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.station import DeskStation
 
@@ -66,6 +66,27 @@ async def test_a_pin_is_set_moved_and_removed(
         assert position.east_m == pytest.approx(0.0, abs=0.1)
 
 
+async def test_what_a_move_leaves_out_stays_as_it_was_said(
+    station: DeskStation, clock: ManualClock, make_position: object
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await walk(station, clock, commander, make_position)
+        said = {"std_m": 3.0, "floor": 2, "heading_rad": 1.0, "heading_std_rad": 0.1, "note": "A"}
+        here = {"unit_id": "FF-01", "north_m": 5.0, "east_m": 0.0}
+        pin = (await commander.post("/pins", json=here | said)).json()
+        clock.advance(5.0)
+        path = f"/pins/{pin['pin_id']}"
+        moved = (await commander.put(path, json=here | {"north_m": 6.0})).json()
+        assert moved["north_m"] == 6.0
+        kept = ("t_ms", *said)
+        assert {name: moved[name] for name in kept} == {name: pin[name] for name in kept}
+        unsaid = {"floor": None, "heading_rad": None, "note": "", "t_ms": None}
+        again = (await commander.put(path, json=here | unsaid)).json()
+        assert (again["floor"], again["heading_rad"], again["note"]) == (None, None, "")
+        assert again["t_ms"] == clock.utc_ns() // NS_PER_MS, "null is now, as where a pin is set"
+        assert again["std_m"] == 3.0
+
+
 async def test_units_start_together_and_meet(
     station: DeskStation, clock: ManualClock, make_position: object
 ) -> None:
@@ -94,9 +115,12 @@ async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> Non
         placed = await commander.put("/beacons/door-3", json={"north_m": 3.0, "east_m": 4.0})
         assert placed.status_code == 200, placed.text
         assert placed.json()["reach_m"] == 3.0
-        await commander.put("/beacons/door-3", json={"north_m": 5.0, "east_m": 4.0, "label": "D3"})
+        said = {"label": "D3", "floor": 1, "std_m": 0.2, "reach_m": 5.0}
+        for body in (said | {"north_m": 5.0, "east_m": 4.0}, {"north_m": 6.0, "east_m": 4.0}):
+            await commander.put("/beacons/door-3", json=body)
         (beacon,) = (await commander.get("/beacons")).json()
-        assert (beacon["north_m"], beacon["label"]) == (5.0, "D3")
+        assert beacon["north_m"] == 6.0
+        assert {name: beacon[name] for name in said} == said, "what a move leaves out stays"
         assert (await commander.delete("/beacons/door-3")).status_code == 204
         assert (await commander.delete("/beacons/door-3")).status_code == 404
 

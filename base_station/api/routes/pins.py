@@ -9,9 +9,10 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
+from base_station.api.acting import Act
 from base_station.api.forms import LAST_MS, Form, Id, Metres, Note, UnitIdText, Word
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import BeaconView, PinView
 from shared.clock import NS_PER_MS
@@ -49,7 +50,7 @@ class PlaceForm(Form):
 
 class PinForm(PlaceForm):
     unit_id: UnitIdText
-    t_ms: Milliseconds | None = None  # station time; left out: now
+    t_ms: Milliseconds | None = None  # station time; None: now
 
 
 class StartForm(PlaceForm):
@@ -74,6 +75,11 @@ class BeaconForm(Form):
     reach_m: Annotated[float, Field(ge=0.0, le=100.0)] = 3.0
 
 
+# What one that is moved may keep; its view calls them the same.
+_PIN_MAY_KEEP = frozenset({"t_ms", "std_m", "floor", "heading_rad", "heading_std_rad", "note"})
+_BEACON_MAY_KEEP = frozenset({"label", "floor", "std_m", "reach_m"})
+
+
 @router.get("/pins")
 def list_pins(station: Station, _: Viewer) -> list[PinView]:
     """In the order of setting, with what became of each."""
@@ -81,52 +87,49 @@ def list_pins(station: Station, _: Viewer) -> list[PinView]:
 
 
 @router.post("/pins", status_code=201)
-def set_pin(form: PinForm, station: Station, who: Commander) -> PinView:
+def set_pin(form: PinForm, station: Station, act: Act) -> PinView:
     """This unit was here then: its whole past is solved again."""
-    pin_id = uuid.uuid4().hex
-    station.act(who.username, _place_pin(station, pin_id, form))
-    return _pin_or_404(station, pin_id)
+    done = act(_place_pin(station, uuid.uuid4().hex, form))
+    return _pin_or_404(station, done.made_id)
 
 
 @router.post("/pins/start", status_code=201)
-def start_together(form: StartForm, station: Station, who: Commander) -> list[PinView]:
+def start_together(form: StartForm, station: Station, act: Act) -> list[PinView]:
     """These units were together here: where their paths begin, or then."""
-    pin_id = uuid.uuid4().hex
     said = form.model_dump(exclude={"t_ms", "unit_ids"})
-    action = StartTogether(pin_id, tuple(form.unit_ids), form.t_ms * NS_PER_MS, **said)
-    station.act(who.username, action)
-    return [view for view in station.picture().pins if view.pin_id.startswith(f"{pin_id}:")]
+    unit_ids = tuple(form.unit_ids)
+    action = StartTogether(uuid.uuid4().hex, unit_ids, form.t_ms * NS_PER_MS, **said)
+    made = f"{act(action).made_id}:"
+    return [view for view in station.picture().pins if view.pin_id.startswith(made)]
 
 
 @router.post("/pins/meeting", status_code=201)
-def set_meeting(form: MeetingForm, station: Station, who: Commander) -> PinView:
+def set_meeting(form: MeetingForm, station: Station, act: Act) -> PinView:
     """Two people met; nobody has to know where."""
-    pin_id = uuid.uuid4().hex
-    t_ns = _time(station, form.t_ms)
-    action = SetMeeting(pin_id, form.unit_id, form.other_unit_id, t_ns, form.std_m, form.note)
-    station.act(who.username, action)
-    return _pin_or_404(station, pin_id)
+    met = uuid.uuid4().hex, form.unit_id, form.other_unit_id
+    action = SetMeeting(*met, _time(station, form.t_ms), form.std_m, form.note)
+    return _pin_or_404(station, act(action).made_id)
 
 
 @router.put("/pins/{pin_id}")
-def move_pin(pin_id: Id, form: PinForm, station: Station, who: Commander) -> PinView:
-    """Take the pin back and set it as said now; without a time, the time stays."""
+def move_pin(pin_id: Id, form: PinForm, station: Station, act: Act) -> PinView:
+    """Take the pin back and set it as said now; what is left out stays as it was, the time too."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
         raise Problem(409, f"This pin is a {before.kind}; remove it, and set another.")
-    if form.t_ms is None:
-        form = form.model_copy(update={"t_ms": before.t_ms})
-    station.act(who.username, _place_pin(station, pin_id, form))
+    left_out = _PIN_MAY_KEEP - form.model_fields_set
+    form = form.model_copy(update={name: getattr(before, name) for name in left_out})
+    act(_place_pin(station, pin_id, form))
     return _pin_or_404(station, pin_id)
 
 
 @router.delete("/pins/{pin_id}", status_code=204)
-def remove_pin(pin_id: Id, station: Station, who: Commander) -> None:
+def remove_pin(pin_id: Id, station: Station, act: Act) -> None:
     """Everything is then as if it had never been set."""
     pins = station.picture().pins
     if not any(pin_id in (one.pin_id, one.pin_id.partition(":")[0]) for one in pins):
         raise Problem(404, _NO_PIN)
-    station.act(who.username, RemovePin(pin_id))
+    act(RemovePin(pin_id))
 
 
 @router.get("/beacons")
@@ -135,25 +138,35 @@ def list_beacons(station: Station, _: Viewer) -> list[BeaconView]:
 
 
 @router.put("/beacons/{beacon_id}")
-def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, who: Commander) -> BeaconView:
-    """Say where a beacon or tag hangs, or that it hangs elsewhere than was said."""
-    station.act(who.username, PlaceBeacon(beacon_id, **form.model_dump()))
-    for view in station.picture().beacons:
-        if view.beacon_id == beacon_id:
-            return view
-    raise Problem(404, _NO_BEACON)  # somebody else has just removed it
+def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, act: Act) -> BeaconView:
+    """Say where a beacon or tag hangs, or that it hangs elsewhere than was said: what is left out
+    then stays as it was.
+    """
+    before = _beacon(station, beacon_id)
+    if before is not None:
+        left_out = _BEACON_MAY_KEEP - form.model_fields_set
+        form = form.model_copy(update={name: getattr(before, name) for name in left_out})
+    act(PlaceBeacon(beacon_id, **form.model_dump()))
+    placed = _beacon(station, beacon_id)
+    if placed is None:  # somebody else has just removed it
+        raise Problem(404, _NO_BEACON)
+    return placed
 
 
 @router.delete("/beacons/{beacon_id}", status_code=204)
-def remove_beacon(beacon_id: Id, station: Station, who: Commander) -> None:
-    if all(one.beacon_id != beacon_id for one in station.picture().beacons):
+def remove_beacon(beacon_id: Id, station: Station, act: Act) -> None:
+    if _beacon(station, beacon_id) is None:
         raise Problem(404, _NO_BEACON)
-    station.act(who.username, RemoveBeacon(beacon_id))
+    act(RemoveBeacon(beacon_id))
 
 
 def _place_pin(station: Services, pin_id: str, form: PinForm) -> SetPin:
     said = form.model_dump(exclude={"t_ms", "unit_id"})
     return SetPin(pin_id, form.unit_id, _time(station, form.t_ms), **said)
+
+
+def _beacon(station: Services, beacon_id: str) -> BeaconView | None:
+    return next((one for one in station.picture().beacons if one.beacon_id == beacon_id), None)
 
 
 def _time(station: Services, t_ms: int | None) -> int:

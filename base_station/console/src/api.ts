@@ -236,32 +236,41 @@ export const endSessions = (username: string) =>
   call<void>("DELETE", `/users/${id(username)}/sessions`);
 export const audit = (untilMs?: number) => call<AuditEntry[]>("GET", `/audit${page(untilMs)}`);
 
-/** Where somebody was; `t_ms` left out: now, or with a start where each path begins. */
+/** Where somebody was. */
 export interface NewPin {
   unit_id: string;
-  t_ms?: number;
+  t_ms: number | null; // null: now
   north_m: number;
   east_m: number;
   std_m: number;
   floor: number | null;
-  heading_rad: number | null;
   note: string;
 }
 
+/** What is left out stays as it was. */
+export type MovedPin = Pick<NewPin, "unit_id" | "north_m" | "east_m"> & Partial<NewPin>;
+export type MovedBeacon = Pick<BeaconView, "beacon_id" | "north_m" | "east_m"> &
+  Partial<Omit<BeaconView, "seen_ms">>;
+
+export interface Start extends Omit<NewPin, "unit_id" | "t_ms"> {
+  unit_ids: string[];
+  t_ms: number; // 0: where each path begins
+  heading_rad: number | null;
+}
+
 export const setPin = (pin: NewPin) => call<PinView>("POST", "/pins", pin);
-export const movePin = (pinId: string, pin: NewPin) =>
+export const movePin = (pinId: string, pin: MovedPin) =>
   call<PinView>("PUT", `/pins/${id(pinId)}`, pin);
 export const removePin = (pinId: string) => call<void>("DELETE", `/pins/${id(pinId)}`);
-export const startTogether = (start: Omit<NewPin, "unit_id"> & { unit_ids: string[] }) =>
-  call<PinView[]>("POST", "/pins/start", start);
+export const startTogether = (start: Start) => call<PinView[]>("POST", "/pins/start", start);
 export const setMeeting = (meeting: {
   unit_id: string;
   other_unit_id: string;
-  t_ms?: number;
+  t_ms: number | null; // null: now
   std_m: number;
   note: string;
 }) => call<PinView>("POST", "/pins/meeting", meeting);
-export const placeBeacon = (beacon: Omit<BeaconView, "seen_ms">) => {
+export const placeBeacon = (beacon: MovedBeacon) => {
   const { beacon_id, ...place } = beacon;
   return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, place);
 };

@@ -22,7 +22,7 @@ export function BeaconPanel({ picture, beacon }: Props) {
       beacon_id: beacon?.beacon_id ?? given["beacon"] ?? "",
       label: given["label"] ?? "",
       reach_m: Number(given["reach"]),
-      ...placeOf(given),
+      ...placeOf(given, beacon ?? undefined),
     };
     void attempt(api.placeBeacon(wanted)).then((done) => done && putDown());
   };

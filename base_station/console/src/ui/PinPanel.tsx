@@ -28,19 +28,13 @@ export function PinPanel({ picture, unitId, pin }: Props) {
       : { north_m: pin.north_m, east_m: pin.east_m };
   const send = (event: SubmitEvent) => {
     const given = fields(event);
-    const t_ms = pin !== null && given["when"] === "" ? pin.t_ms : timeOf(given, picture);
-    const wanted = {
-      unit_id: unitId,
-      ...placeOf(given),
-      ...(t_ms === undefined ? {} : { t_ms }),
-      heading_rad: pin?.heading_rad ?? null,
-      note: given["note"] ?? "",
-    };
-    once(() =>
-      attempt(pin === null ? api.setPin(wanted) : api.movePin(pin.pin_id, wanted)).then(
-        (done) => done && putDown(),
-      ),
-    );
+    const t_ms = timeOf(given, picture);
+    const said = { unit_id: unitId, ...placeOf(given, at), note: given["note"] ?? "" };
+    const sent = () =>
+      pin === null
+        ? api.setPin({ ...said, t_ms })
+        : api.movePin(pin.pin_id, given["when"] === AS_SET ? said : { ...said, t_ms });
+    once(() => attempt(sent()).then((done) => done && putDown()));
   };
   return (
     <form class="tool-panel" aria-label={`Pin: ${name}`} onSubmit={send}>
@@ -106,7 +100,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
     const start = {
       unit_ids: units.map((unit) => unit.unit_id),
       ...placeOf(given),
-      t_ms: given["when"] === "" ? 0 : (timeOf(given, picture) ?? Math.round(picture.nowMs.peek())),
+      t_ms: given["when"] === AS_SET ? 0 : (timeOf(given, picture) ?? Math.round(picture.nowMs.peek())),
       heading_rad: facing === "" ? null : (Number(facing) * Math.PI) / 180,
       note: "",
     };
@@ -153,12 +147,11 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
   const once = useOnce();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
-    const t_ms = timeOf(given, picture);
     const meeting = {
       unit_id: unitId,
       other_unit_id: given["other"] ?? "",
       std_m: Number(given["within"]) / 2,
-      ...(t_ms === undefined ? {} : { t_ms }),
+      t_ms: timeOf(given, picture),
       note: "",
     };
     once(() => attempt(api.setMeeting(meeting)).then((done) => done && putDown()));
@@ -184,6 +177,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
 }
 
 const MINUTES_AGO = [0, 1, 2, 3, 5, 10, 15, 20, 30];
+const AS_SET = ""; // the time that stands there already
 
 /** When that was; `set` is the time of a pin that is changed. */
 function WhenField({ set }: { set: number | null }) {
@@ -192,7 +186,7 @@ function WhenField({ set }: { set: number | null }) {
       When
       <select name="when">
         {set !== null && (
-          <option value="">{set === 0 ? "at the start" : clockTime(set)}</option>
+          <option value={AS_SET}>{set === 0 ? "at the start" : clockTime(set)}</option>
         )}
         {MINUTES_AGO.map((ago) => (
           <option key={ago} value={ago}>
@@ -204,10 +198,10 @@ function WhenField({ set }: { set: number | null }) {
   );
 }
 
-/** Undefined where it was just now: the station knows better when that is. */
-function timeOf(given: Record<string, string>, picture: Picture): number | undefined {
+/** Null where it was just now: the station knows better when that is. */
+function timeOf(given: Record<string, string>, picture: Picture): number | null {
   const ago = Number(given["when"] ?? "0");
-  return ago === 0 ? undefined : Math.round(picture.nowMs.peek() - ago * 60_000);
+  return ago === 0 ? null : Math.round(picture.nowMs.peek() - ago * 60_000);
 }
 
 function onDuty(picture: Picture): UnitView[] {

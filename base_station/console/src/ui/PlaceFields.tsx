@@ -1,11 +1,11 @@
-import { clicked } from "../plan/tools";
+import { clicked, type Place } from "../plan/tools";
 import { floor } from "../view";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
 import { floorName } from "../words";
 
 /** Where on the plan: clicked, or typed by who has no pointer. */
-export function PlaceFields({ start }: { start?: { north_m: number; east_m: number } }) {
+export function PlaceFields({ start }: { start?: Place }) {
   const at = clicked.value.at(-1) ?? start;
   return (
     <fieldset class="place">
@@ -19,13 +19,17 @@ export function PlaceFields({ start }: { start?: { north_m: number; east_m: numb
 }
 
 function Metres({ name, label, value }: { name: string; label: string; value?: number }) {
-  const shown = value === undefined ? "" : value.toFixed(1);
+  const shown = value === undefined ? "" : inTenths(value);
   return (
     <label>
       {label}
       <input key={shown} name={name} type="number" step="0.1" required defaultValue={shown} />
     </label>
   );
+}
+
+function inTenths(metres: number): string {
+  return metres.toFixed(1);
 }
 
 interface FloorFieldProps {
@@ -76,11 +80,14 @@ export function WithinField({ startM }: { startM: number }) {
   );
 }
 
-/** The fields of a submitted form as numbers and places. */
-export function placeOf(given: Record<string, string>) {
+/** The fields of a submitted form as numbers and places; where nobody changed it, a place is
+ * exactly what it was at the start. */
+export function placeOf(given: Record<string, string>, start?: Place) {
+  const metres = (text: string | undefined, before: number | undefined) =>
+    before !== undefined && text === inTenths(before) ? before : Number(text);
   return {
-    north_m: Number(given["north"]),
-    east_m: Number(given["east"]),
+    north_m: metres(given["north"], start?.north_m),
+    east_m: metres(given["east"], start?.east_m),
     std_m: Number(given["within"]) / 2,
     floor: (given["floor"] ?? "") === "" ? null : Number(given["floor"]),
   };

@@ -90,14 +90,12 @@ async function move(picture: Picture, standing: Standing, place: Place): Promise
 function moved(picture: Picture, standing: Standing, place: Place): Promise<object | null> {
   const beacon = picture.beacons.peek().find((one) => one.beacon_id === standing.id);
   if (standing.kind === "beacon" && beacon !== undefined) {
-    const { beacon_id, label, floor, std_m, reach_m } = beacon;
-    return api.placeBeacon({ beacon_id, label, floor, std_m, reach_m, ...place });
+    return api.placeBeacon({ beacon_id: beacon.beacon_id, ...place });
   }
   const pin = picture.pins.peek().find((one) => one.pin_id === standing.id);
   if (pin === undefined || pin.kind !== "place") {
     notice.value = "This pin belongs to a start of several people: remove it and set another.";
     return Promise.resolve(null);
   }
-  const { unit_id, t_ms, std_m, floor, heading_rad, note } = pin;
-  return api.movePin(pin.pin_id, { unit_id, t_ms, std_m, floor, heading_rad, note, ...place });
+  return api.movePin(pin.pin_id, { unit_id: pin.unit_id, ...place });
 }

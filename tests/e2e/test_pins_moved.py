@@ -1,0 +1,48 @@
+"""A pin that is moved at the console keeps what was said of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+from playwright.sync_api import Locator, Page, Request, expect
+
+from tests.e2e import scenes
+from tests.e2e.stage import Stage
+
+PIN = msgspec.structs.replace(
+    scenes.pin("a", 0, "used", 3.04, ""), std_m=0.35, heading_rad=6.5, heading_std_rad=0.1, note="A"
+)
+
+
+def is_move(request: Request) -> bool:
+    return request.method == "PUT"
+
+
+def pin_panel(page: Page) -> Locator:
+    page.get_by_role("button", name="Pins 1").click()
+    page.get_by_role("button", name="Astrid Lindqvist here").click()
+    return page.get_by_role("form", name="Pin: ")
+
+
+def moved(page: Page, panel: Locator) -> dict[str, Any]:
+    """What the station is told."""
+    with page.expect_request(is_move) as asked:
+        panel.get_by_role("button", name="Move pin", exact=True).click()
+    page.keyboard.press("Escape")
+    expect(panel).to_have_count(0)
+    said: dict[str, Any] = asked.value.post_data_json
+    return said
+
+
+def test_a_form_says_only_what_stands_in_it(stage: Stage) -> None:
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), pins=(PIN,)))
+    panel = pin_panel(page)
+    panel.get_by_label("Note").fill("B")
+    as_it_is = {"unit_id": "FF-01", "north_m": 3.04, "east_m": 4.0, "std_m": 0.35, "floor": 0}
+    assert moved(page, panel) == as_it_is | {"note": "B"}, "what it does not show is left out"
+    panel = pin_panel(page)
+    panel.get_by_label("North, m").fill("3.2")
+    panel.get_by_label("When").select_option("now")
+    now = as_it_is | {"north_m": 3.2, "t_ms": None}
+    assert moved(page, panel) == now | {"note": "A"}, "it is now, and not when it was before"
