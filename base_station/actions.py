@@ -8,7 +8,7 @@ from typing import assert_never
 
 import msgspec
 
-from base_station import accountability
+from base_station import accountability, once
 from base_station.alarms.book import AlarmBook
 from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
@@ -175,6 +175,7 @@ class Actions:
         self._positioning.forget(state, unit)
         met = pin_book.forget(state, unit.unit_id)
         self._book.forget(state, unit)
+        once.forget_words(state)
         unit.forget_wearers()
         told = command_book.forget(state, unit)
         return [unit, TrailFilled(unit.unit_id), *told, _pins_of(met)]

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from base_station import once
 from base_station.api.wire import Snapshot
 from base_station.commands import book as command_book
 from base_station.events import Refused
@@ -76,7 +77,7 @@ class StationDrive:
             pipeline, ports.log, self._picture, self._projector, self._watch
         )
         self._saving = Saving(ports.log, ports.checkpoints, self._watch)
-        self._inbox: deque[tuple[str, Action, Future[ActionDone]]] = deque()
+        self._inbox: deque[tuple[str, Action, str, Future[ActionDone]]] = deque()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="station-drive")
@@ -99,9 +100,9 @@ class StationDrive:
         self._ports.feed.wake()
         self._thread.join(STOP_TIMEOUT_S)
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         future: Future[ActionDone] = Future()
-        self._inbox.append((by, action, future))
+        self._inbox.append((by, action, action_id, future))
         self._ports.feed.wake()
         if self._stopping.is_set() and not self._thread.is_alive():
             self._refuse_waiting()
@@ -208,11 +209,13 @@ class StationDrive:
 
     def _take_actions(self) -> None:
         for _ in range(len(self._inbox)):
-            by, action, future = self._inbox.popleft()
+            by, action, action_id, future = self._inbox.popleft()
             if isinstance(action, ForgetWearers) and self._saving.is_under_way:
-                self._inbox.append((by, action, future))  # what is being saved has them in it
+                self._inbox.append(
+                    (by, action, action_id, future)
+                )  # what is being saved has them in it
                 continue
-            done = self._do(by, action)
+            done = self._done_before(action_id) or self._do(by, action, action_id)
             self._settle()
             if isinstance(action, SendCommand):
                 self._ports.say(command_book.unanswered(self._pipeline.state))
@@ -220,9 +223,17 @@ class StationDrive:
                 future.set_result(done)
             self._due.delta_ns = 0  # who did something sees it at once
 
-    def _do(self, by: str, action: Action) -> ActionDone:
+    def _done_before(self, action_id: str) -> ActionDone | None:
+        """Its client asks again."""
+        before = once.done_before(self._pipeline.state, action_id)
+        if before is None:
+            return None
+        refused = Refused(before.action_id, before.refused) if before.refused else None
+        return ActionDone(before.action_id, before.t_ns, refused, before.made_id)
+
+    def _do(self, by: str, action: Action, action_id: str = "") -> ActionDone:
         header = self._stamper.header()
-        action_id = f"{header.boot_id:016x}-{header.seq}"
+        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, by, action)
         t_ns = max(header.t_utc_ns, self._not_before_ns)
         outputs = self._write_ahead.keep_and_step(
@@ -230,7 +241,7 @@ class StationDrive:
         )
         self._not_before_ns = self._pipeline.state.t_ns + 1
         refused = next((output for output in outputs if isinstance(output, Refused)), None)
-        return ActionDone(action_id, self._pipeline.state.t_ns, refused)
+        return ActionDone(action_id, self._pipeline.state.t_ns, refused, once.made_by(action))
 
     def _tick(self) -> None:
         header = self._stamper.header()
@@ -308,5 +319,5 @@ class StationDrive:
 
     def _refuse_waiting(self) -> None:
         while self._inbox:
-            future = self._inbox.popleft()[2]
+            future = self._inbox.popleft()[-1]
             future.set_exception(StoreError("the station is stopping; do it again when it runs"))

@@ -264,6 +264,15 @@ class Alarm(msgspec.Struct):
         return self.state is not AlarmState.RESOLVED
 
 
+class DoneOnce(msgspec.Struct, frozen=True):
+    """What became of a request that its client may send again (``base_station.once``)."""
+
+    action_id: str
+    t_ns: int
+    made_id: str  # of the command, pin or incident; empty: it made none
+    refused: str  # why it had no effect; empty: it had
+
+
 class Counts(msgspec.Struct):
     messages: int = 0
     undecodable: int = 0
@@ -300,6 +309,7 @@ class StationState(msgspec.Struct):
     learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)
     thresholds: dict[str, float] = msgspec.field(default_factory=dict)  # of alarm rules
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
+    done_once: dict[str, DoneOnce] = msgspec.field(default_factory=dict)  # by key, oldest first
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     counts: Counts = msgspec.field(default_factory=Counts)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import assert_never
 
-from base_station import accountability
+from base_station import accountability, once
 from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
@@ -147,7 +147,9 @@ class StationPipeline:
         try:
             effects = self._actions.apply(self.state, message.by, message.action)
         except UserError as error:
+            once.note_done(self.state, message, str(error))
             return [Refused(message.action_id, str(error))]
+        once.note_done(self.state, message, refused="")
         outputs: list[Output] = []
         for effect in effects:
             if isinstance(effect, Alarm):

@@ -140,8 +140,8 @@ class LiveStation:
         self._subscription.close()
         self.recorder.close()
 
-    def act(self, action: Action, by: str = "chief") -> ActionDone:
-        return self.drive.submit(by, action).result(PATIENCE_S)
+    def act(self, action: Action, by: str = "chief", action_id: str = "") -> ActionDone:
+        return self.drive.submit(by, action, action_id).result(PATIENCE_S)
 
     def say(self, message: Message) -> None:
         channel = channel_of(message)

@@ -14,6 +14,7 @@ import httpx
 from pwdlib import PasswordHash
 from pwdlib.hashers.argon2 import Argon2Hasher
 
+from base_station import once
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -92,13 +93,24 @@ class DeskDrive:
             self._hub.delta(Delta(self._seq, t_ns // 1_000_000))
             return outputs
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         done: Future[ActionDone] = Future()
-        header = self._stamper.header()
-        outputs = self.hear(OperatorAction(header, f"action-{header.seq}", by, action))
-        refused = next((one for one in outputs if isinstance(one, Refused)), None)
-        done.set_result(ActionDone(f"action-{header.seq}", self._clock.utc_ns(), refused))
+        done.set_result(self._done_before(action_id) or self._do(by, action, action_id))
         return done
+
+    def _done_before(self, action_id: str) -> ActionDone | None:
+        before = once.done_before(self._pipeline.state, action_id)
+        if before is None:
+            return None
+        refused = Refused(before.action_id, before.refused) if before.refused else None
+        return ActionDone(before.action_id, before.t_ns, refused, before.made_id)
+
+    def _do(self, by: str, action: Action, action_id: str) -> ActionDone:
+        header = self._stamper.header()
+        action_id = action_id or f"action-{header.seq}"
+        outputs = self.hear(OperatorAction(header, action_id, by, action))
+        refused = next((one for one in outputs if isinstance(one, Refused)), None)
+        return ActionDone(action_id, self._clock.utc_ns(), refused, once.made_by(action))
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         with self._lock:

@@ -22,6 +22,7 @@ LAST_MS = FOREVER_NS // NS_PER_MS
 _PRINTABLE = rf"^[^{BARRED}]*$"
 _NAME = rf"^[^{BARRED}]*[^\s{BARRED}][^{BARRED}]*$"
 _ID = r"^[A-Za-z0-9_.:-]{1,128}$"
+IDEMPOTENCY_KEY = r'^("[!#-~]{1,128}"|[!#-~]{1,128})$'  # the draft has it in quotes
 _ALARM_ID = r"^[A-Za-z0-9_.:@ -]{1,200}$"  # names a part of the station, and whose
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"
@@ -31,6 +32,7 @@ FITTING = {  # what each pattern asks for, in words
     _PRINTABLE: "must be one line of plain characters",
     _NAME: "must be one line of plain characters, and not blank",
     _ID: "must be 1 to 128 letters, digits and _.:-",
+    IDEMPOTENCY_KEY: "must be 1 to 128 letters, digits and signs without a space, in quotes or not",
     _ALARM_ID: "must be 1 to 200 letters, digits, spaces and _.:@-",
     _WHOLE_UNIT_ID: _A_UNIT_ID,
     _UNIT_ID_OR_NONE: f"{_A_UNIT_ID}; or empty",

@@ -55,17 +55,22 @@ class Services:
     # thread: those are for who acts.
     copying: asyncio.Lock = field(default_factory=asyncio.Lock)
 
-    def act(self, by: str, action: Action) -> ActionDone:
+    def act(self, by: str, action: Action, action_id: str = "") -> ActionDone:
         """Have the drive take a person's action, and wait until it can be read everywhere.
 
-        Raises UserError with the reason where the action had no effect.
+        Raises UserError with the reason where the action had no effect.  ``action_id``: as of
+        ``OperatorGate``.
         """
         try:
-            done = self.gate.submit(by, action).result(ACTION_TIMEOUT_S)
+            done = self.gate.submit(by, action, action_id).result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
+            again = (
+                "with the same Idempotency-Key it is done once, however often it is sent"
+                if action_id
+                else "look before you do it again"
+            )
             raise StoreError(
-                "the station is busy and has not done this yet; it may still do it, so look before "
-                "you do it again"
+                f"the station is busy and has not done this yet; it may still do it: {again}"
             ) from None
         if done.refused is not None:
             raise UserError(done.refused.reason)

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from base_station.db.models import Assignment, Person, Unit
 from base_station.db.pages import newest
 from base_station.db.store import Store
+from base_station.once import KEY_DIGITS
 from shared.clock import Clock
 from shared.errors import UserError
 
@@ -32,9 +33,12 @@ class Roster:
         with self._store.read() as session:
             return session.get(Person, person_id)
 
-    def add_person(self, name: str, crew: str, role: str) -> Person:
+    def add_person(self, name: str, crew: str, role: str, once_id: str = "") -> Person:
+        """``once_id`` (``base_station.once.row_id``): whoever was added with that key before is
+        the one.
+        """
         person = Person(
-            person_id=secrets.token_hex(8),
+            person_id=once_id or secrets.token_hex(8),
             name=name,
             crew=crew,
             role=role,
@@ -43,6 +47,11 @@ class Roster:
             photo_hash=None,
         )
         with self._store.write() as session:
+            if once_id:
+                same_key = Person.person_id.startswith(once_id[:KEY_DIGITS])
+                before = session.scalars(select(Person).where(same_key)).first()
+                if before is not None:
+                    return before
             session.add(person)
         return person
 

@@ -81,7 +81,7 @@ class LastKnown:
     def take_over(self) -> None:
         raise StoreError(self.refusal())
 
-    def submit(self, _by: str, _action: Action) -> Future[ActionDone]:
+    def submit(self, _by: str, _action: Action, _action_id: str = "") -> Future[ActionDone]:
         refused: Future[ActionDone] = Future()
         refused.set_exception(StoreError(self.refusal()))
         return refused

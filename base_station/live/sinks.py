@@ -77,13 +77,16 @@ class ActionDone(msgspec.Struct, frozen=True):
     action_id: str
     t_ns: int  # station time
     refused: Refused | None  # why it had no effect
+    made_id: str = ""  # of the command, pin or incident; empty: it makes none
 
 
 class OperatorGate(Protocol):
     """How the API hands people's actions to the drive."""
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         """From any thread.  The future is done once the action is in the log and in the live
-        state; it carries ``StoreError`` where the station is stopping.
+        state; it carries ``StoreError`` where the station is stopping.  With an ``action_id`` of a
+        client's (``base_station.once``) it tells what was done with that client's key, now or
+        before.
         """
         ...

@@ -12,8 +12,13 @@ from shared.messages.station import Action
 class ReadOnlyGate:
     """An ``OperatorGate`` through which nothing goes."""
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:  # noqa: ARG002  # the port's
+    def submit(
+        self,
+        by: str,  # noqa: ARG002  # the port's
+        action: Action,  # noqa: ARG002
+        action_id: str = "",
+    ) -> Future[ActionDone]:
         refused = Refused("", "this station only replays: nothing of an incident can be changed")
         done: Future[ActionDone] = Future()
-        done.set_result(ActionDone("", 0, refused))
+        done.set_result(ActionDone(action_id, 0, refused))
         return done

@@ -129,7 +129,7 @@ class LeadersGate:
         self._copy = copy
         self._refusal = refusal
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         told: Future[ActionDone] = Future()
         refusal = self._refusal()
         if refusal is not None:
@@ -143,7 +143,7 @@ class LeadersGate:
             else:
                 self._copy.confirm(done.result(), told)
 
-        self._gate.submit(by, action).add_done_callback(hand_on)
+        self._gate.submit(by, action, action_id).add_done_callback(hand_on)
         return told
 
 

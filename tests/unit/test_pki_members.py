@@ -20,7 +20,7 @@ class Gate:
     def __init__(self):
         self.registered: list[str] = []
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         assert isinstance(action, RegisterUnit)
         self.registered.append(action.unit_id)
         return Future()

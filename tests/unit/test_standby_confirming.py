@@ -18,7 +18,7 @@ from shared.messages.station import Action, CloseIncident
 class Drive:
     """An ``OperatorGate`` that does everything at once."""
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         done: Future[ActionDone] = Future()
         done.set_result(ActionDone("x", 1, None))
         return done
@@ -143,7 +143,7 @@ class TestConfirming:
 
     def test_what_a_station_that_stops_does_not_do_is_said(self, copy: OtherCopy) -> None:
         class Stopping:
-            def submit(self, by: str, action: Action) -> Future[ActionDone]:
+            def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
                 done: Future[ActionDone] = Future()
                 done.set_exception(StoreError("the station is stopping"))
                 return done

@@ -54,7 +54,7 @@ class Leading:
     def look(self) -> None:
         self._merging.look(self.stop)
 
-    def submit(self, by: str, action: Action) -> Future[ActionDone]:
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         assert by == STATION_ID
         self.done.append(action)
         told: Future[ActionDone] = Future()

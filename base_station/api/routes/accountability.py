@@ -8,10 +8,11 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.accountability import LONGEST_S, SHORTEST_S
+from base_station.api.acting import Act
 from base_station.api.forms import Form, Id, UnitId
 from base_station.api.problems import Problem
 from base_station.api.routes.commands import CrewTarget, Target, UnitTarget
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.api.wire import DutyView, IncidentView, PersonView
 from shared.messages.station import CheckIn, SetAccountability, SetRest
@@ -73,25 +74,25 @@ def usual_times(station: Station, _: Viewer) -> Times:
 
 
 @router.post("/check-ins", status_code=204)
-def check_in(new: NewCheckIn, station: Station, who: Commander) -> None:
+def check_in(new: NewCheckIn, act: Act) -> None:
     """Somebody has heard from them: that, and nothing that a unit measures, completes a PAR."""
     unit_id = new.target.unit_id if isinstance(new.target, UnitTarget) else ""
     crew = new.target.crew if isinstance(new.target, CrewTarget) else ""
-    station.act(who.username, CheckIn(unit_id, crew, everyone=not unit_id and not crew))
+    act(CheckIn(unit_id, crew, everyone=not unit_id and not crew))
 
 
 @router.put("/incidents/{incident_id}/accountability", status_code=204)
-def set_times(incident_id: Id, times: Times, station: Station, who: Commander) -> None:
+def set_times(incident_id: Id, times: Times, station: Station, act: Act) -> None:
     incident = station.picture().incident
     if incident is None or incident.incident_id != incident_id or incident.closed_ms is not None:
         raise Problem(404, f"There is no open incident {incident_id}.")
-    station.act(who.username, SetAccountability(times.par_interval_s, times.work_limit_s))
+    act(SetAccountability(times.par_interval_s, times.work_limit_s))
 
 
 @router.put("/units/{unit_id}/rest", status_code=204)
-def set_rest(unit_id: UnitId, rest: Rest, station: Station, who: Commander) -> None:
+def set_rest(unit_id: UnitId, rest: Rest, act: Act) -> None:
     """The wearer goes to rest, or is ready for work again."""
-    station.act(who.username, SetRest(unit_id, rest.resting))
+    act(SetRest(unit_id, rest.resting))
 
 
 def _on_duty(

@@ -9,9 +9,10 @@ import msgspec
 from fastapi import APIRouter, Depends
 
 from base_station.answer import Answer, to_ms
+from base_station.api.acting import Act
 from base_station.api.forms import AlarmId, Form, Limit, Note, window
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import AlarmView
 from base_station.db import models
@@ -60,15 +61,15 @@ def get_alarm(alarm_id: AlarmId, station: Station, _: Viewer) -> AlarmWithLife:
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)
-def acknowledge(alarm_id: AlarmId, station: Station, who: Commander) -> None:
+def acknowledge(alarm_id: AlarmId, station: Station, act: Act) -> None:
     _require_alarm(station, alarm_id)
-    station.act(who.username, AcknowledgeAlarm(alarm_id))
+    act(AcknowledgeAlarm(alarm_id))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
-def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, who: Commander) -> None:
+def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, act: Act) -> None:
     _require_alarm(station, alarm_id)
-    station.act(who.username, ResolveAlarm(alarm_id, resolution.note))
+    act(ResolveAlarm(alarm_id, resolution.note))
 
 
 def _alarm_or_404(station: Services, alarm_id: str) -> models.Alarm:

@@ -8,9 +8,10 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.answer import to_ms, to_ms_or_none
+from base_station.api.acting import Act
 from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.db.records import Window
 from shared.messages.station import Assign, Unassign
@@ -53,18 +54,15 @@ def list_assignments(
 
 
 @router.post("/assignments", status_code=204)
-def assign(new: NewAssignment, station: Station, who: Commander) -> None:
+def assign(new: NewAssignment, station: Station, act: Act) -> None:
     """From now on this person wears this unit, and no other."""
     person = station.roster.person(new.person_id)
     if person is None:
         raise Problem(404, "There is no such person.")
-    station.act(
-        who.username,
-        Assign(new.unit_id, person.person_id, person.name, person.crew, person.role),
-    )
+    act(Assign(new.unit_id, person.person_id, person.name, person.crew, person.role))
 
 
 @router.delete("/assignments/{unit_id}", status_code=204)
-def unassign(unit_id: UnitId, station: Station, who: Commander) -> None:
+def unassign(unit_id: UnitId, act: Act) -> None:
     """Nobody wears this unit from now on."""
-    station.act(who.username, Unassign(unit_id))
+    act(Unassign(unit_id))

@@ -9,9 +9,10 @@ from typing import Annotated, Literal
 from fastapi import APIRouter
 from pydantic import Discriminator, Field, Tag
 
+from base_station.api.acting import Act
 from base_station.api.forms import Form, Id, Note, UnitIdText, Word
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import CommandView
 from shared.messages import CommandKind
@@ -81,7 +82,7 @@ def get_command(command_id: Id, station: Station, _: Viewer) -> CommandView:
 
 
 @router.post("/commands", status_code=201)
-def send(new: NewCommand, station: Station, who: Commander) -> CommandView:
+def send(new: NewCommand, station: Station, act: Act) -> CommandView:
     """It is sent to each unit until that answers, ``expires_s`` from now at the latest."""
     action = SendCommand(
         command_id=uuid.uuid4().hex,
@@ -93,15 +94,14 @@ def send(new: NewCommand, station: Station, who: Commander) -> CommandView:
         position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
         lasts_s=new.expires_s,
     )
-    station.act(who.username, action)
-    return _command_or_404(station, action.command_id)
+    return _command_or_404(station, act(action).made_id)
 
 
 @router.post("/commands/{command_id}/confirm", status_code=204)
-def confirm(command_id: Id, by_voice: Confirmation, station: Station, who: Commander) -> None:
+def confirm(command_id: Id, by_voice: Confirmation, station: Station, act: Act) -> None:
     """Somebody has heard from the wearer in another way: that acknowledges the command."""
     _command_or_404(station, command_id)
-    station.act(who.username, ConfirmCommand(command_id, by_voice.unit_id))
+    act(ConfirmCommand(command_id, by_voice.unit_id))
 
 
 def _command_or_404(station: Services, command_id: str) -> CommandView:

@@ -14,10 +14,11 @@ from pydantic import BaseModel
 
 from base_station.alarms import ALARMS
 from base_station.answer import Answer, to_ms, to_ms_or_none
+from base_station.api.acting import Act
 from base_station.api.forms import Form, Id, Limit, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import AlarmView
 from base_station.db import models
@@ -77,7 +78,7 @@ def list_incidents(
 
 
 @router.post("/incidents", status_code=201)
-def open_incident(new: NewIncident, station: Station, who: Commander) -> Incident:
+def open_incident(new: NewIncident, station: Station, act: Act) -> Incident:
     opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
     incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
     usual = station.accountability
@@ -87,8 +88,7 @@ def open_incident(new: NewIncident, station: Station, who: Commander) -> Inciden
         new.par_interval_s or usual.par_interval_s,
         new.work_limit_s or usual.work_limit_s,
     )
-    station.act(who.username, opening)
-    incident = station.records.incident(incident_id)
+    incident = station.records.incident(act(opening).made_id)
     if incident is None:
         raise Problem(503, "The incident is open, but the database has not taken it yet.")
     return _incident(incident)
@@ -100,9 +100,9 @@ def get_incident(incident_id: Id, station: Station, _: Viewer) -> Incident:
 
 
 @router.post("/incidents/{incident_id}/close", status_code=204)
-def close_incident(incident_id: Id, station: Station, who: Commander) -> None:
+def close_incident(incident_id: Id, station: Station, act: Act) -> None:
     incident_or_404(station, incident_id)
-    station.act(who.username, CloseIncident(incident_id))
+    act(CloseIncident(incident_id))
 
 
 @router.get("/incidents/{incident_id}/alarms")

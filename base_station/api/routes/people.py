@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Response
 
+from base_station.api.acting import Act
 from base_station.api.forms import MOST_UPLOADED_BYTES, Form, Id, Name, Word
 from base_station.api.photos import clean_photo
 from base_station.api.problems import Problem
@@ -42,9 +43,11 @@ def list_people(station: Station, _: Viewer) -> list[PersonView]:
 
 
 @router.post("/people", status_code=201)
-def add_person(form: PersonForm, station: Station, who: Commander) -> PersonView:
-    person = station.roster.add_person(form.name, form.crew, form.role)
-    station.records.audit(who.username, "AddedPerson", f"{person.person_id} {form.name}")
+def add_person(form: PersonForm, station: Station, act: Act) -> PersonView:
+    person = station.roster.add_person(form.name, form.crew, form.role, act.row_id)
+    act.require_row(person.person_id)
+    added = {f"added-{person.person_id}": ("AddedPerson", f"{person.person_id} {form.name}")}
+    station.records.audit_once(act.by, added)
     return _person(person, station)
 
 
@@ -57,14 +60,14 @@ def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
 
 
 @router.put("/people/{person_id}")
-def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> PersonView:
+def change_person(person_id: Id, form: PersonForm, station: Station, act: Act) -> PersonView:
     """Whoever wears a unit is shown with the new name at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        station.act(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
-    station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
+        act(Assign(unit_id, person_id, form.name, form.crew, form.role))
+    station.records.audit(act.by, "ChangedPerson", f"{person_id} {form.name}")
     return _person(person, station)
 
 
@@ -80,7 +83,7 @@ def set_photo(
     person_id: Id,
     photo: Annotated[bytes, Body(media_type="image/jpeg")],
     station: Station,
-    who: Commander,
+    act: Act,
 ) -> None:
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
     if station.roster.person(person_id) is None:
@@ -91,8 +94,8 @@ def set_photo(
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        station.act(who.username, Assign(unit_id, person_id, person.name, person.crew, person.role))
-    station.records.audit(who.username, "SetPhoto", person_id)
+        act(Assign(unit_id, person_id, person.name, person.crew, person.role))
+    station.records.audit(act.by, "SetPhoto", person_id)
 
 
 @router.get("/people/{person_id}/photo", response_class=Response)

@@ -9,9 +9,10 @@ import msgspec
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from base_station.api.acting import Act
 from base_station.api.forms import MOST_UPLOADED_BYTES, Form
 from base_station.api.problems import Problem
-from base_station.api.security import AfterLogin, Commander, Viewer
+from base_station.api.security import AfterLogin, Viewer
 from base_station.api.services import Station
 from base_station.api.wire import AnchorView
 from base_station.site.plan import read_plan, require_floors
@@ -38,8 +39,8 @@ def get_anchor(station: Station, _: Viewer) -> AnchorView | None:
 
 
 @router.put("/site/anchor", status_code=204)
-def set_anchor(form: AnchorForm, station: Station, who: Commander) -> None:
-    station.act(who.username, SetAnchor(**form.model_dump()))
+def set_anchor(form: AnchorForm, act: Act) -> None:
+    act(SetAnchor(**form.model_dump()))
 
 
 @router.get("/site/plan", response_class=Response)
@@ -51,11 +52,11 @@ def get_plan(station: Station, _: Viewer) -> Response:
 
 
 @router.put("/site/plan", status_code=204, max_body_size=MOST_UPLOADED_BYTES)
-def set_plan(plan: dict[str, Any], station: Station, who: Commander) -> None:
+def set_plan(plan: dict[str, Any], act: Act) -> None:
     """GeoJSON in site metres; the documentation of messages shows one."""
     try:
         geojson = msgspec.json.encode(plan)
         require_floors(read_plan(geojson))
     except (UserError, ValueError, OverflowError) as error:
         raise Problem(422, str(error)) from error
-    station.act(who.username, SetPlan(geojson))
+    act(SetPlan(geojson))

@@ -9,9 +9,10 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.answer import to_ms_or_none
+from base_station.api.acting import Act
 from base_station.api.forms import Form, Metres, UnitId, UnitIdOrNone, UnitIdText, Word
 from base_station.api.problems import Problem
-from base_station.api.security import Commander, Viewer
+from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.db import models
 from shared.channels import validate_unit_id
@@ -65,38 +66,38 @@ def list_units(station: Station, _: Viewer) -> list[Unit]:
 
 
 @router.post("/units", status_code=201)
-def register_unit(new: NewUnit, station: Station, who: Commander) -> Unit:
+def register_unit(new: NewUnit, station: Station, act: Act) -> Unit:
     """From now on messages of this unit are believed; registering again changes its label."""
     validate_unit_id(new.unit_id)
-    station.act(who.username, RegisterUnit(new.unit_id, new.label))
+    act(RegisterUnit(new.unit_id, new.label))
     return _one(station, new.unit_id)
 
 
 @router.put("/units/{unit_id}")
-def label_unit(unit_id: UnitId, change: Label, station: Station, who: Commander) -> Unit:
+def label_unit(unit_id: UnitId, change: Label, station: Station, act: Act) -> Unit:
     unit = station.roster.unit(unit_id)
     if unit is None or unit.registered_ns is None:
         raise Problem(404, f"There is no registered unit {unit_id}.")
-    station.act(who.username, RegisterUnit(unit_id, change.label))
+    act(RegisterUnit(unit_id, change.label))
     return _one(station, unit_id)
 
 
 @router.put("/units/{unit_id}/start", status_code=204)
-def set_start(unit_id: UnitId, start: Start, station: Station, who: Commander) -> None:
+def set_start(unit_id: UnitId, start: Start, station: Station, act: Act) -> None:
     if station.roster.unit(unit_id) is None:
         raise Problem(404, f"There is no unit {unit_id}.")
-    station.act(who.username, SetStart(unit_id, **start.model_dump()))
+    act(SetStart(unit_id, **start.model_dump()))
 
 
 @router.put("/reference-barometer", status_code=204)
-def set_reference(reference: Reference, station: Station, who: Commander) -> None:
+def set_reference(reference: Reference, station: Station, act: Act) -> None:
     """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's.
     Where a start says where that unit stands, its satellite receiver tells what all receivers of
     the site err by.
     """
     if reference.unit_id and station.roster.unit(reference.unit_id) is None:
         raise Problem(404, f"There is no unit {reference.unit_id}.")
-    station.act(who.username, SetReference(reference.unit_id, reference.down_m))
+    act(SetReference(reference.unit_id, reference.down_m))
 
 
 def _one(station: Services, unit_id: str) -> Unit:

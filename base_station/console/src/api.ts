@@ -1,7 +1,7 @@
 /** The station's REST API, as far as the console uses it. */
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
-import { BASE, call, file, id, page, wholeList } from "./call";
+import { BASE, act, call, file, id, page, wholeList } from "./call";
 import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 /** Each may do what those before it may. */
@@ -136,7 +136,7 @@ export const me = () => call<Me>("GET", "/me");
 
 export const people = () => call<Person[]>("GET", "/people");
 export const addPerson = (person: { name: string; crew: string; role: string }) =>
-  call<Person>("POST", "/people", person);
+  act<Person>("POST", "/people", person);
 export const changePerson = (personId: string, person: Omit<Person, "person_id" | "photo_url">) =>
   call<Person>("PUT", `/people/${id(personId)}`, person);
 export const setPhoto = (personId: string, photo: Blob) =>
@@ -171,9 +171,9 @@ export const fetchRecording = (
 export const stopRecording = (fetchId: string) =>
   call<void>("DELETE", `/recordings/${id(fetchId)}`);
 export const registerUnit = (unitId: string, label: string) =>
-  call<object>("POST", "/units", { unit_id: unitId, label });
+  act<object>("POST", "/units", { unit_id: unitId, label });
 export const assign = (unitId: string, personId: string) =>
-  call<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
+  act<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);
 
 export const incidents = (untilMs?: number) =>
@@ -181,13 +181,13 @@ export const incidents = (untilMs?: number) =>
 export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
 export const openIncident = (name: string, times: Partial<Times>) =>
-  call<Incident>("POST", "/incidents", { name, ...times });
+  act<Incident>("POST", "/incidents", { name, ...times });
 /** As this station is configured. */
 export const usualTimes = () => call<Times>("GET", "/accountability/usual");
 export const setTimes = (incidentId: string, times: Times) =>
   call<void>("PUT", `/incidents/${id(incidentId)}/accountability`, times);
 export const closeIncident = (incidentId: string) =>
-  call<void>("POST", `/incidents/${id(incidentId)}/close`);
+  act<void>("POST", `/incidents/${id(incidentId)}/close`);
 export const incidentAlarms = (incidentId: string) =>
   wholeList<PastAlarm>(`/incidents/${id(incidentId)}/alarms`, (alarm) => alarm.raised_ms);
 
@@ -202,24 +202,24 @@ export const exported = (incidentId: string, format: string) =>
   file(`/incidents/${id(incidentId)}/export/${id(format)}`);
 
 export const acknowledge = (alarmId: string) =>
-  call<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
+  act<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
 export const resolve = (alarmId: string) =>
-  call<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
+  act<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
 
 export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
-  call<CommandView>("POST", "/commands", { kind, target, text });
+  act<CommandView>("POST", "/commands", { kind, target, text });
 export const setPositionRate = (unitId: string, rateHz: number) =>
-  call<CommandView>("POST", "/commands", {
+  act<CommandView>("POST", "/commands", {
     kind: "set_position_rate",
     target: { unit_id: unitId },
     position_rate_hz: rateHz,
   });
 export const confirmCommand = (commandId: string, unitId: string) =>
-  call<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
+  act<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
 
-export const checkIn = (target: Target) => call<void>("POST", "/check-ins", { target });
+export const checkIn = (target: Target) => act<void>("POST", "/check-ins", { target });
 export const setRest = (unitId: string, resting: boolean) =>
-  call<void>("PUT", `/units/${id(unitId)}/rest`, { resting });
+  act<void>("PUT", `/units/${id(unitId)}/rest`, { resting });
 
 export const changeOwnPassword = (old_password: string, new_password: string) =>
   call<void>("POST", "/me/password", { old_password, new_password });
@@ -258,18 +258,18 @@ export interface Start extends Omit<NewPin, "unit_id" | "t_ms"> {
   heading_rad: number | null;
 }
 
-export const setPin = (pin: NewPin) => call<PinView>("POST", "/pins", pin);
+export const setPin = (pin: NewPin) => act<PinView>("POST", "/pins", pin);
 export const movePin = (pinId: string, pin: MovedPin) =>
   call<PinView>("PUT", `/pins/${id(pinId)}`, pin);
 export const removePin = (pinId: string) => call<void>("DELETE", `/pins/${id(pinId)}`);
-export const startTogether = (start: Start) => call<PinView[]>("POST", "/pins/start", start);
+export const startTogether = (start: Start) => act<PinView[]>("POST", "/pins/start", start);
 export const setMeeting = (meeting: {
   unit_id: string;
   other_unit_id: string;
   t_ms: number | null; // null: now
   std_m: number;
   note: string;
-}) => call<PinView>("POST", "/pins/meeting", meeting);
+}) => act<PinView>("POST", "/pins/meeting", meeting);
 export const placeBeacon = (beacon: MovedBeacon) => {
   const { beacon_id, ...place } = beacon;
   return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, place);

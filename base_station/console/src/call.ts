@@ -12,14 +12,49 @@ export class ApiError extends Error {
 
 export const BASE = "/api/v1";
 
+/** How long somebody waits before the same is asked again: a connection may have died unnoticed. */
+const AGAIN_MS = 5_000;
+/** And then: the station itself gives up before. */
+const LAST_MS = 15_000;
+/** After this an action has been answered, or is given up. */
+export const ACT_MS = AGAIN_MS + LAST_MS;
+
 export async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
-  const init: RequestInit = { method };
-  if (body instanceof Blob) init.body = body;
-  else if (body !== undefined) {
-    init.body = JSON.stringify(body);
-    init.headers = { "content-type": "application/json" };
-  }
-  const response = await answer(path, init);
+  return read(await answer(path, request(method, body)));
+}
+
+/** Have the station do something.  Without an answer it is asked once more, and does it once all the
+ * same: both requests bear one key. */
+export async function act<T>(method: "POST" | "PUT", path: string, body?: object): Promise<T> {
+  const init = request(method, body);
+  init.headers = { ...init.headers, "idempotency-key": newKey() };
+  const first = await within<T>(AGAIN_MS, path, init).catch(noAnswer);
+  return first === null ? within<T>(LAST_MS, path, init) : first;
+}
+
+async function within<T>(ms: number, path: string, init: RequestInit): Promise<T> {
+  return read<T>(await answer(path, { ...init, signal: AbortSignal.timeout(ms) }));
+}
+
+/** A refusal is an answer. */
+function noAnswer(error: unknown): null {
+  if (error instanceof ApiError && error.status !== 0) throw error;
+  return null;
+}
+
+/** `randomUUID` is there over TLS only. */
+function newKey(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+function request(method: string, body?: object | Blob): RequestInit {
+  if (body === undefined || body instanceof Blob) return { method, body: body ?? null };
+  const headers = { "content-type": "application/json" };
+  return { method, body: JSON.stringify(body), headers };
+}
+
+async function read<T>(response: Response): Promise<T> {
   return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
 }
 

@@ -1,9 +1,8 @@
 import { useRef } from "preact/hooks";
+import { ACT_MS } from "../call";
 
 /** Two presses in haste are one. */
 export const HASTE_MS = 500;
-/** A station that has not answered for so long may be asked again. */
-const PATIENCE_MS = 5_000;
 
 /** For a row of a list that others move in: a press in haste on what has only just come to this place
  * was meant for what stood here before.  Keys press what has the focus, which moves along. */
@@ -21,7 +20,7 @@ export function useOnce(): (act: () => Promise<unknown>) => void {
   const untilMs = useRef(-Infinity);
   return (act) => {
     if (performance.now() < untilMs.current) return;
-    untilMs.current = performance.now() + PATIENCE_MS;
+    untilMs.current = performance.now() + ACT_MS;
     void act().then(() => (untilMs.current = performance.now() + HASTE_MS));
   };
 }

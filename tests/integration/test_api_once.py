@@ -1,0 +1,163 @@
+"""A request that had no answer is sent again with its key: it is done once, and answered alike."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from concurrent.futures import Future
+
+import httpx
+import pytest
+import pytest_asyncio
+
+from base_station.api import services
+from base_station.db.principals import Role
+from base_station.live.sinks import ActionDone
+from shared.clock import ManualClock
+from tests.station import DeskStation
+
+EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
+PIN = {"unit_id": "FF-01", "north_m": 1.0, "east_m": 2.0}
+KEY = {"Idempotency-Key": '"8e03978e-40d5-43dd-bc93-6894a57f9324"'}
+
+pytestmark = pytest.mark.usefixtures("consoles")
+
+
+@pytest_asyncio.fixture
+async def commander(station: DeskStation, clock: ManualClock) -> AsyncIterator[httpx.AsyncClient]:
+    """With a unit that somebody wears."""
+    async with station.client(Role.COMMANDER) as client:
+        person = (await client.post("/people", json={"name": "Ada", "crew": "A"})).json()
+        await client.post("/units", json={"unit_id": "FF-01"})
+        worn = {"unit_id": "FF-01", "person_id": person["person_id"]}
+        assert (await client.post("/assignments", json=worn)).status_code == 204
+        clock.advance(1.0)
+        yield client
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "listed"),
+    [
+        ("/commands", EVACUATE, "/commands"),
+        ("/pins", PIN, "/pins"),
+        ("/pins/start", {"unit_ids": ["FF-01"], "north_m": 1.0, "east_m": 2.0}, "/pins"),
+        ("/incidents", {"name": "Kitchen"}, "/incidents"),
+    ],
+)
+async def test_what_is_sent_again_with_its_key_is_done_once(
+    commander: httpx.AsyncClient, clock: ManualClock, path: str, body: object, listed: str
+) -> None:
+    first = await commander.post(path, json=body, headers=KEY)
+    clock.advance(30.0)
+    again = await commander.post(path, json=body, headers=KEY)
+    assert (first.status_code, again.status_code) == (201, 201), again.text
+    assert again.json() == first.json()
+    assert len((await commander.get(listed)).json()) == 1
+
+
+async def test_what_was_refused_is_refused_again_whatever_has_happened_since(
+    commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    rest = {"resting": True}
+    first = await commander.put("/units/FF-01/rest", json=rest, headers=KEY)
+    await commander.post("/incidents", json={"name": "Kitchen"})
+    clock.advance(1.0)
+    again = await commander.put("/units/FF-01/rest", json=rest, headers=KEY)
+    assert (first.status_code, again.status_code) == (409, 409)
+    assert again.json() == first.json()
+    anew = await commander.put("/units/FF-01/rest", json=rest, headers={"Idempotency-Key": "b"})
+    assert anew.status_code == 204
+    assert (await commander.put("/units/FF-01/rest", json=rest)).status_code == 409
+    same = await commander.put("/units/FF-01/rest", json=rest, headers={"Idempotency-Key": "b"})
+    assert same.status_code == 204
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [("/commands", EVACUATE | {"expires_s": 61}), ("/check-ins", {"target": {"everyone": True}})],
+    ids=["another body", "another path"],
+)
+async def test_a_key_that_came_with_another_request_is_refused(
+    commander: httpx.AsyncClient, path: str, body: object
+) -> None:
+    await commander.post("/commands", json=EVACUATE, headers=KEY)
+    other = await commander.post(path, json=body, headers=KEY)
+    assert other.status_code == 422
+    assert "was not done: give every request a key of its own" in other.json()["detail"]
+    assert len((await commander.get("/commands")).json()) == 1
+
+
+async def test_a_person_is_added_once(station: DeskStation, commander: httpx.AsyncClient) -> None:
+    mia = {"name": "Mia", "crew": "A"}
+    first = await commander.post("/people", json=mia, headers=KEY)
+    assert first.status_code == 201, first.text
+    path = f"/people/{first.json()['person_id']}"
+    await commander.put(path, json={"name": "Mia B.", "crew": "A"})
+    again = await commander.post("/people", json=mia, headers=KEY)
+    assert again.json() == first.json() | {"name": "Mia B."}
+    other = await commander.post("/people", json={"name": "Noa"}, headers=KEY)
+    assert other.status_code == 422
+    assert [one["name"] for one in (await commander.get("/people")).json()] == ["Ada", "Mia B."]
+    async with station.client(Role.ADMINISTRATOR) as administrator:
+        entries = (await administrator.get("/audit")).json()
+    assert [one["action"] for one in entries].count("AddedPerson") == 2
+
+
+async def test_a_key_is_its_persons_own(station: DeskStation, commander: httpx.AsyncClient) -> None:
+    mine = (await commander.post("/commands", json=EVACUATE, headers=KEY)).json()
+    async with station.client(Role.ADMINISTRATOR) as another:
+        theirs = (await another.post("/commands", json=EVACUATE, headers=KEY)).json()
+    assert theirs["command_id"] != mine["command_id"]
+
+
+async def test_quotes_are_none_of_the_key(commander: httpx.AsyncClient) -> None:
+    first = await commander.post("/commands", json=EVACUATE, headers=KEY)
+    bare = {"Idempotency-Key": KEY["Idempotency-Key"].strip('"')}
+    assert (await commander.post("/commands", json=EVACUATE, headers=bare)).json() == first.json()
+
+
+@pytest.mark.parametrize("key", ["", '""', "a b", "x" * 129, '"x'])
+async def test_what_is_no_key_is_told_so(commander: httpx.AsyncClient, key: str) -> None:
+    refused = await commander.post("/commands", json=EVACUATE, headers={"Idempotency-Key": key})
+    assert refused.status_code == 422
+    assert refused.json()["detail"].startswith("Idempotency-Key must be 1 to 128 letters")
+    assert (await commander.get("/commands")).json() == []
+
+
+async def test_who_gave_a_key_and_had_no_answer_is_told_to_ask_again(
+    station: DeskStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waiting: Future[ActionDone] = Future()
+    monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
+    monkeypatch.setattr(station.drive, "submit", lambda *_: waiting)
+    answer = await commander.post("/commands", json=EVACUATE, headers=KEY)
+    assert answer.status_code == 503
+    assert "with the same Idempotency-Key it is done once" in answer.json()["detail"]
+
+
+async def test_the_schema_tells_of_the_key_wherever_something_is_done(
+    commander: httpx.AsyncClient,
+) -> None:
+    paths = (await commander.get("/openapi.json")).json()["paths"]
+    with_key = {
+        path.removeprefix("/api/v1")
+        for path, methods in paths.items()
+        if any(
+            parameter["name"] == "Idempotency-Key"
+            for parameter in methods.get("post", {}).get("parameters", ())
+        )
+    }
+    assert with_key >= {
+        "/alarms/{alarm_id}/acknowledge",
+        "/alarms/{alarm_id}/resolve",
+        "/assignments",
+        "/check-ins",
+        "/commands",
+        "/commands/{command_id}/confirm",
+        "/incidents",
+        "/incidents/{incident_id}/close",
+        "/people",
+        "/pins",
+        "/pins/meeting",
+        "/pins/start",
+        "/units",
+    }
