@@ -51,6 +51,7 @@ class OpenReplay:
     replay_id: str
     hub: Hub
     player: ReplayPlayer
+    begun_by: str  # a user; empty: the station itself
     lasting: bool  # stays though nobody looks
     watched_s: float  # when somebody last looked
 
@@ -71,16 +72,22 @@ class Replays:
         incident: Incident,
         speed: float,
         loop: asyncio.AbstractEventLoop,
+        begun_by: str,
         lasting: Hub | None = None,
     ) -> OpenReplay:
         """Start a replay; one that is given its hub lasts until it is closed."""
         with self._lock:
             if len(self._open) >= MOST_REPLAYS:
-                raise UserError(f"{MOST_REPLAYS} replays are open already; close one of them")
+                raise UserError(f"{MOST_REPLAYS} replays are open already; end one of them")
             hub = lasting or Hub()
             player = self._start(incident, speed, hub)
             opened = OpenReplay(
-                secrets.token_hex(8), hub, player, lasting is not None, self._monotonic_s()
+                secrets.token_hex(8),
+                hub,
+                player,
+                begun_by,
+                lasting is not None,
+                self._monotonic_s(),
             )
             self._open[opened.replay_id] = opened
         loop.call_soon_threadsafe(hub.connect, loop, player)

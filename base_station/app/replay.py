@@ -79,7 +79,7 @@ def run_replay_station(
             hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
         )
         app = create_app(
-            services, started=lambda loop: _ignore(replays.open(incident, speed, loop, hub))
+            services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         asyncio.run(serve_until_stopped(server, announce))

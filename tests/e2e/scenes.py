@@ -319,6 +319,16 @@ INCIDENTS = [
         "closed_ms": NOW_MS + 8 * MINUTE_MS,
     }
 ]
+
+
+def replay(replay_id: str, begun_by: str) -> dict[str, object]:
+    return {
+        "replay_id": replay_id,
+        "incident_id": INCIDENT.incident_id,
+        "begun_by": begun_by,
+    }
+
+
 PEOPLE = [
     {
         "person_id": f"p{index}",

@@ -23,7 +23,7 @@ ANSWERS = answers(
         "/incidents": scenes.INCIDENTS,
         PAST: scenes.INCIDENTS[0],
         f"{PAST}/alarms": scenes.PAST_ALARMS,
-        "/replays": [{"replay_id": "r1", "incident_id": scenes.INCIDENT.incident_id}],
+        "/replays": [scenes.replay("r1", begun_by="")],
     },
     people=scenes.PEOPLE,
 )

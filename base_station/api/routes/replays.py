@@ -1,4 +1,8 @@
-"""Replays of past incidents, and their controls."""
+"""Replays of past incidents, and their controls.
+
+A replay belongs to the user who began it: nobody else moves what somebody looks at.  The one that a
+station was started for belongs to all.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +20,13 @@ from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.api.wire import ReplayView
+from base_station.db.principals import Principal, Role
 from base_station.past.replay import FASTEST, SLOWEST
 from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["replays"])
 
+_NO_REPLAY = "There is no such replay; it may have ended."
 Speed = Annotated[float, Field(ge=SLOWEST, le=FASTEST)]
 
 
@@ -39,6 +45,7 @@ class ReplayChange(Form):
 
 class Replay(ReplayView, frozen=True, kw_only=True):
     replay_id: str
+    begun_by: str  # a user; empty: the station, for all
 
 
 @router.get("/replays")
@@ -51,7 +58,7 @@ def start_replay(new: NewReplay, station: Station, who: Viewer, request: Request
     """It plays from its beginning; it ends by itself when nobody looks at it any more."""
     loop: asyncio.AbstractEventLoop = request.app.state.loop
     incident = incident_or_404(station, new.incident_id)
-    opened = station.replays.open(incident, new.speed, loop)
+    opened = station.replays.open(incident, new.speed, loop, who.username)
     station.records.audit(who.username, "StartedReplay", new.incident_id)
     return _replay(opened)
 
@@ -62,8 +69,11 @@ def get_replay(replay_id: Id, station: Station, _: Viewer) -> Replay:
 
 
 @router.post("/replays/{replay_id}", status_code=204)
-def change_replay(replay_id: Id, change: ReplayChange, station: Station, _: Viewer) -> None:
-    player = _replay_or_404(station, replay_id).player
+def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Viewer) -> None:
+    replay = _replay_or_404(station, replay_id)
+    if replay.begun_by and not _is_own(replay, who):
+        raise Problem(403, f"This replay is {replay.begun_by}'s; begin one of your own.")
+    player = replay.player
     if change.at_ms is not None:
         player.seek(change.at_ms * NS_PER_MS)
     if change.speed is not None:
@@ -73,18 +83,30 @@ def change_replay(replay_id: Id, change: ReplayChange, station: Station, _: View
 
 
 @router.delete("/replays/{replay_id}", status_code=204)
-def end_replay(replay_id: Id, station: Station, _: Viewer) -> None:
+def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
+    """One's own; a commander may end any."""
+    replay = _replay_or_404(station, replay_id)
+    if not _is_own(replay, who):
+        if who.role < Role.COMMANDER:
+            whose = f"{replay.begun_by}'s" if replay.begun_by else "for all"
+            raise Problem(403, f"This replay is {whose}; a commander may end it.")
+        said = f"{replay.player.view().incident_id} of {replay.begun_by or 'the station'}"
+        station.records.audit(who.username, "EndedReplay", said)
     if not station.replays.close(replay_id):
-        raise Problem(404, "There is no such replay; it may have ended.")
+        raise Problem(404, _NO_REPLAY)
+
+
+def _is_own(replay: OpenReplay, who: Principal) -> bool:
+    return replay.begun_by == who.username
 
 
 def _replay_or_404(station: Services, replay_id: str) -> OpenReplay:
     replay = station.replays.get(replay_id)
     if replay is None:
-        raise Problem(404, "There is no such replay; it may have ended.")
+        raise Problem(404, _NO_REPLAY)
     return replay
 
 
 def _replay(replay: OpenReplay) -> Replay:
     view = msgspec.structs.asdict(replay.player.view())
-    return Replay(**view, replay_id=replay.replay_id)
+    return Replay(**view, replay_id=replay.replay_id, begun_by=replay.begun_by)

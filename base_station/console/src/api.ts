@@ -111,6 +111,7 @@ export interface Times {
 export interface RunningReplay {
   replay_id: string;
   incident_id: string;
+  begun_by: string; // a user; empty: the station, for all
 }
 
 /** Degrees. */

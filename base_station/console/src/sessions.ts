@@ -128,7 +128,7 @@ effect(() => {
 });
 
 async function adopt(session: Session): Promise<void> {
-  const [running] = (await attempt(api.replays())) ?? [];
+  const running = ((await attempt(api.replays())) ?? []).find((one) => one.begun_by === "");
   if (running === undefined) return;
   const incident = await attempt(api.incident(running.incident_id));
   if (incident !== null) replay.value = { id: running.replay_id, session, incident };

@@ -9,6 +9,7 @@ import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
 import { useOnce } from "./haste";
+import { OpenReplays } from "./OpenReplays";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
@@ -96,6 +97,7 @@ export function IncidentsDialog() {
           Older incidents
         </button>
       )}
+      <OpenReplays incidents={entries.value} />
     </Dialog>
   );
 }

@@ -1,0 +1,89 @@
+"""Whose replay it is: who may move it, and who may end it."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+
+import pytest
+
+from base_station.api.hub import Hub
+from base_station.api.replays import Replays
+from base_station.db.models import Incident
+from base_station.db.principals import Role
+from base_station.db.records import Window
+from tests.noted_replay import NotedReplay
+from tests.station import DeskStation
+
+INCIDENT = Incident(incident_id="i-1", name="Kitchen", opened_ns=0)
+
+
+@pytest.fixture
+def replays(station: DeskStation) -> Replays:
+    replays = Replays(lambda *_: NotedReplay())
+    station.services = dataclasses.replace(station.services, replays=replays)
+    station.app.state.services = station.services
+    return replays
+
+
+def begun_by(replays: Replays, user: str) -> tuple[str, NotedReplay]:
+    lasting = None if user else Hub()
+    opened = replays.open(INCIDENT, 1.0, asyncio.get_running_loop(), user, lasting)
+    assert isinstance(opened.player, NotedReplay)
+    return f"/replays/{opened.replay_id}", opened.player
+
+
+async def test_a_viewer_moves_and_ends_only_the_own_replay(
+    station: DeskStation, replays: Replays
+) -> None:
+    own, own_player = begun_by(replays, "viewer")
+    others, others_player = begun_by(replays, "commander")
+    async with station.client(Role.VIEWER) as viewer:
+        listed = (await viewer.get("/replays")).json()
+        assert [one["begun_by"] for one in listed] == ["viewer", "commander"]
+        for refused in (
+            await viewer.post(others, json={"at_ms": 5}),
+            await viewer.delete(others),
+        ):
+            assert refused.status_code == 403
+            assert "commander's" in refused.json()["detail"]
+        assert (others_player.told, others_player.closed) == ([], False)
+        assert (await viewer.post(own, json={"playing": False})).status_code == 204
+        assert own_player.told == ["pause"]
+        assert (await viewer.delete(own)).status_code == 204
+        assert own_player.closed
+    assert [one.begun_by for one in replays.all()] == ["commander"]
+
+
+@pytest.mark.parametrize("role", [Role.COMMANDER, Role.ADMINISTRATOR])
+async def test_a_commander_ends_any_replay_by_name_and_moves_none_of_others(
+    station: DeskStation, replays: Replays, role: Role
+) -> None:
+    others, player = begun_by(replays, "viewer")
+    async with station.client(role) as commander:
+        assert (await commander.post(others, json={"speed": 8.0})).status_code == 403
+        assert player.told == []
+        assert (await commander.delete(others)).status_code == 204
+        assert (await commander.delete(others)).status_code == 404
+    (entry,) = station.services.records.audit_entries(Window(0, 2**62), 10)
+    assert (entry.by, entry.action, entry.detail) == (role.word, "EndedReplay", "i-1 of viewer")
+
+
+async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_no_viewer(
+    station: DeskStation, replays: Replays
+) -> None:
+    path, player = begun_by(replays, "")
+    async with station.client(Role.VIEWER) as viewer:
+        assert (await viewer.post(path, json={"playing": True})).status_code == 204
+        assert player.told == ["play"]
+        assert (await viewer.delete(path)).status_code == 403
+    assert not player.closed
+
+
+async def test_a_replay_is_of_who_begins_it(station: DeskStation, replays: Replays) -> None:
+    station.app.state.loop = asyncio.get_running_loop()
+    async with station.client(Role.COMMANDER) as commander:
+        incident = (await commander.post("/incidents", json={"name": "Fire"})).json()
+        body = {"incident_id": incident["incident_id"]}
+        begun = await commander.post("/replays", json=body)
+        assert (begun.status_code, begun.json()["begun_by"]) == (201, "commander")
