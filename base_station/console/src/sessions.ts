@@ -6,7 +6,7 @@ import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
-import { loadBaseMap } from "./plan/baseMap";
+import { keepBaseMap } from "./plan/baseMap";
 import { soundBlocked, soundOn } from "./sound";
 
 export interface Replay {
@@ -55,8 +55,8 @@ export function begin(me: api.Me): void {
   user.value = me;
   if (live.value !== null) return;
   live.value = new Session(api.LIVE_PATH, loginEnded);
-  stopWatching = watchOver(live.value, (url) => location.assign(url));
-  void attempt(loadBaseMap());
+  const stops = [watchOver(live.value, (url) => location.assign(url)), keepBaseMap()];
+  stopWatching = () => stops.forEach((stop) => stop());
 }
 
 let stopWatching: () => void = () => undefined;

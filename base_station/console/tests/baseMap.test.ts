@@ -1,7 +1,18 @@
-import { describe, expect, it } from "vitest";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { anchorThrough, siteOf } from "../src/plan/anchor";
 import type { BaseMap } from "../src/api";
-import { cornersOf, crsOf, earthAt, worldOf } from "../src/plan/baseMap";
+import {
+  AGAIN_MS,
+  baseMap,
+  cornersOf,
+  crsOf,
+  earthAt,
+  keepBaseMap,
+  worldOf,
+} from "../src/plan/baseMap";
+
+let answer: () => Promise<BaseMap | null> = () => Promise.resolve(null);
+vi.mock("../src/api", () => ({ baseMap: () => answer() }));
 
 const MAP: BaseMap = {
   image_url: "/api/v1/site/base-map/x",
@@ -41,5 +52,49 @@ describe("the base map", () => {
     const [upperLeft, upperRight, lowerLeft] = cornersOf(MAP, { ...anchor, plan_rotation_rad: 0 });
     expect(upperRight.east_m - upperLeft.east_m).toBeCloseTo(0.002 * 68_680, -1);
     expect(upperLeft.north_m - lowerLeft.north_m).toBeCloseTo(0.001 * 111_267, 0);
+  });
+});
+
+describe("the base map of the station", () => {
+  beforeEach(() => {
+    vi.useFakeTimers();
+    baseMap.value = null;
+  });
+  afterEach(() => {
+    vi.useRealTimers();
+  });
+
+  it("is shown as somebody else sets and removes it, and stays where the station does not say", async () => {
+    answer = () => Promise.resolve(null);
+    const end = keepBaseMap();
+    await vi.advanceTimersByTimeAsync(AGAIN_MS);
+    expect(baseMap.value).toBeNull();
+    answer = () => Promise.resolve({ ...MAP });
+    await vi.advanceTimersByTimeAsync(AGAIN_MS);
+    expect(baseMap.value).toEqual(MAP);
+    const shown = baseMap.value;
+    await vi.advanceTimersByTimeAsync(AGAIN_MS);
+    expect(baseMap.value, "the same is not drawn again").toBe(shown);
+    answer = () => Promise.reject(new Error("The station cannot be reached."));
+    await vi.advanceTimersByTimeAsync(AGAIN_MS);
+    expect(baseMap.value).toEqual(MAP);
+    answer = () => Promise.resolve(null);
+    await vi.advanceTimersByTimeAsync(AGAIN_MS);
+    expect(baseMap.value).toBeNull();
+    end();
+    answer = () => Promise.resolve(MAP);
+    await vi.advanceTimersByTimeAsync(2 * AGAIN_MS);
+    expect(baseMap.value, "nobody is logged in").toBeNull();
+  });
+
+  it("is not what it was when it was asked for, where it was set here since", async () => {
+    let say: (map: BaseMap | null) => void = () => undefined;
+    answer = () => new Promise((resolve) => (say = resolve));
+    const end = keepBaseMap();
+    baseMap.value = MAP;
+    say(null);
+    await vi.advanceTimersByTimeAsync(0);
+    expect(baseMap.value).toEqual(MAP);
+    end();
   });
 });

@@ -10,8 +10,22 @@ import type { Place } from "./tools";
 
 export const baseMap = signal<BaseMap | null>(null);
 
-export async function loadBaseMap(): Promise<void> {
-  baseMap.value = await api.baseMap();
+/** Others may set and remove it; live pictures do not carry it. */
+export const AGAIN_MS = 20_000;
+
+/** Ask for it, now and then again; the result ends it. */
+export function keepBaseMap(): () => void {
+  const look = () => void lookAgain().catch(() => undefined); // the one that is shown stays
+  look();
+  const timer = setInterval(look, AGAIN_MS);
+  return () => clearInterval(timer);
+}
+
+async function lookAgain(): Promise<void> {
+  const before = baseMap.peek();
+  const now = await api.baseMap();
+  const isSetHere = baseMap.peek() !== before;
+  if (!isSetHere && JSON.stringify(now) !== JSON.stringify(before)) baseMap.value = now;
 }
 
 /** The six numbers of a world file, one a line; null where it is none. */
