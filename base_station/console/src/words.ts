@@ -180,6 +180,15 @@ export function initials(name: string): string {
   return letters.map((word) => [...(word ?? "")][0]?.toUpperCase() ?? "").join("");
 }
 
+const LONGEST_ON_PLAN = 24;
+
+/** A name on the plan, where a long one would hide others' names and walls. */
+export function onPlan(name: string): string {
+  const letters = [...name];
+  if (letters.length <= LONGEST_ON_PLAN) return name;
+  return `${letters.slice(0, LONGEST_ON_PLAN - 1).join("").trimEnd()}…`;
+}
+
 export function bytes(count: number): string {
   const units = ["B", "kB", "MB", "GB", "TB"];
   const step = count < 1 ? 0 : Math.min(Math.floor(Math.log10(count) / 3), units.length - 1);

@@ -2,7 +2,7 @@
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
-import { age } from "../words";
+import { age, onPlan } from "../words";
 import { faint, type Colours } from "./colours";
 
 /** What the plan needs to know of one person. */
@@ -52,7 +52,7 @@ export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Styl
 /** Names keep clear of each other; the plan leaves out what does not fit, but never who is in danger or
  * chosen. */
 export function labelStyle(mark: Mark, colours: Colours): Style {
-  const words = [mark.name, mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
+  const words = [onPlan(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
   const strong = mark.chosen || mark.urgency === "immediate";
   return new Style({
     zIndex: strong ? 2 : 1,

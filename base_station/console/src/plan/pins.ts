@@ -8,7 +8,7 @@ import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { FloorChoice } from "../view";
 import type { BeaconView, PinView } from "../wire";
-import { clockTime } from "../words";
+import { clockTime, onPlan } from "../words";
 import { faint, type Colours } from "./colours";
 import { siteCoordinate } from "./site";
 import type { Place } from "./tools";
@@ -61,7 +61,7 @@ export class PinLayer {
     this.addRegion(at, RADIUS_95 * pin.std_m, colour, chosen);
     const name = scene.names.get(pin.unit_id) ?? pin.unit_id;
     const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
-    const label = chosen || pin.state === "conflict" ? `${name}, ${when}` : "";
+    const label = chosen || pin.state === "conflict" ? `${onPlan(name)}, ${when}` : "";
     const mark = new Feature({ geometry: new Point(siteCoordinate(at)) });
     mark.set("standing", { kind: "pin", id: pin.pin_id } satisfies Standing);
     mark.setStyle([
@@ -86,7 +86,7 @@ export class PinLayer {
         zIndex: chosen ? 3 : 1,
         renderer: (where, state) => drawDiamond(where as number[], state, colour, scene.colours),
       }),
-      textStyle(beacon.label || beacon.beacon_id, 17, scene.colours),
+      textStyle(onPlan(beacon.label || beacon.beacon_id), 17, scene.colours),
     ]);
     this.source.addFeature(mark);
   }
