@@ -9,8 +9,10 @@ from base_station.events import CommandTouched, PinsTouched, TrailFilled, UnitTo
 from base_station.live.picture import FILLED_A_TURN, Picture
 from base_station.live_state import Incident, UnitState
 from base_station.pipeline import StationPipeline
+from base_station.site.plan import read_plan
 from base_station.trail import TrailStep
 from shared.clock import NS_PER_S
+from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, AlarmState, Header
 from tests.live_station import Screen, make_pipeline
 
@@ -111,6 +113,21 @@ def test_another_incident_is_told_to_all_anew_and_what_was_to_be_told_with_it() 
     (after,) = told(screen)
     assert units_of([after]) == [[]]
     assert (after.alarms, after.pins, after.seq) == ((), None, whole.seq + 1)
+
+
+def test_another_plan_or_another_place_on_the_earth_is_told_to_all_anew() -> None:
+    screen, pipeline = Screen(), make_pipeline()
+    picture = walked_in(pipeline, screen)
+    geojson = b'{"type":"FeatureCollection","features":[],"muster":{"frame":"site-m"}}'
+    pipeline.state.plan = read_plan(geojson)
+    picture.flush()
+    pipeline.state.anchor = Anchor(48.0, 11.0, 0.0, 0.0)
+    picture.flush()
+    picture.flush()
+    laid, anchored = screen.resets
+    assert (bytes(laid.plan or b""), laid.anchor) == (geojson, None)
+    assert anchored.anchor is not None
+    assert anchored.anchor.lat_deg == 48.0
 
 
 def test_who_joins_goes_on_with_what_is_told_next() -> None:
