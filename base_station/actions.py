@@ -120,8 +120,8 @@ class Actions:
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
     ) -> Alarm:
         if isinstance(action, AcknowledgeAlarm):
-            return _or_refuse(self._book.acknowledge(state, action.alarm_id, by))
-        return _or_refuse(self._book.resolve(state, action.alarm_id, by, action.note))
+            return _or_refuse(self._book.acknowledge(state, by, action))
+        return _or_refuse(self._book.resolve(state, by, action))
 
     def _of_itself(
         self, state: StationState, action: ReportProblem | SetThresholds

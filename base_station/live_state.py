@@ -254,6 +254,7 @@ class Alarm(msgspec.Struct):
     by: str
     latched: bool  # only a person resolves it
     raised_ns: int
+    last_raised_ns: int  # at first, or anew: it got worse, or happened again
     changed_ns: int
     held: bool = False  # resolved by a person while the condition went on
     clear_since_ns: int | None = None  # time of the first evidence that it is over

@@ -300,6 +300,7 @@ class StationPipeline:
             text=alarm.text,
             by=alarm.by,
             raised_ns=alarm.raised_ns,
+            last_raised_ns=alarm.last_raised_ns,
         )
 
     def _header(self) -> Header:

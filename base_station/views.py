@@ -59,6 +59,7 @@ def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm) -> AlarmView:
         text=alarm.text,
         by=alarm.by,
         raised_ms=to_ms(alarm.raised_ns),
+        last_raised_ms=to_ms(alarm.last_raised_ns),
         changed_ms=to_ms(changed_ns),
     )
 

@@ -16,7 +16,7 @@ import msgspec
 from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
 from base_station.alarms.thresholds import Thresholds, with_thresholds
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import (
     AlarmState,
     GpsFix,
@@ -27,6 +27,7 @@ from shared.messages import (
     Status,
     Temperature,
 )
+from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 # What comes all the time: only who heeds it looks at it before the next tick.
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
@@ -103,25 +104,25 @@ class AlarmBook:
             if standing is not None:
                 yield _resolve(state, standing, "works again")
 
-    def acknowledge(self, state: StationState, alarm_id: str, by: str) -> Alarm | str:
+    def acknowledge(self, state: StationState, by: str, action: AcknowledgeAlarm) -> Alarm | str:
         """The alarm, or for a person why nothing came of it."""
-        alarm = _open_alarm(state, alarm_id)
-        if alarm is None:
-            return f"no open alarm {alarm_id}"
+        alarm = _alarm_as_seen(state, action)
+        if isinstance(alarm, str):
+            return alarm
         if alarm.state is AlarmState.ACKNOWLEDGED:
             return f"{alarm.by} has acknowledged it already"
         alarm.state, alarm.by, alarm.changed_ns = AlarmState.ACKNOWLEDGED, by, state.t_ns
         return alarm
 
-    def resolve(self, state: StationState, alarm_id: str, by: str, note: str) -> Alarm | str:
+    def resolve(self, state: StationState, by: str, action: ResolveAlarm) -> Alarm | str:
         """The alarm, or for a person why nothing came of it."""
-        alarm = _open_alarm(state, alarm_id)
-        if alarm is None:
-            return f"no open alarm {alarm_id}"
+        alarm = _alarm_as_seen(state, action)
+        if isinstance(alarm, str):
+            return alarm
         alarm.held = True
         if alarm.rule == STATION_RULE:
             state.problems.pop(alarm.level, None)
-        return _resolve(state, alarm, f"{by}: {note}" if note else by)
+        return _resolve(state, alarm, f"{by}: {action.note}" if action.note else by)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """What alarms say of who wore the unit, and what was said when they were dealt with; that
@@ -167,6 +168,7 @@ class AlarmBook:
             by="",
             latched=finding.latched,
             raised_ns=state.t_ns,
+            last_raised_ns=state.t_ns,
             changed_ns=state.t_ns,
         )
         state.alarms[key] = alarm
@@ -200,7 +202,7 @@ def _move_level(
         if finding.seen_ns - alarm.lower_since_ns < rule.clear_after_s * NS_PER_S:
             return None
     else:
-        alarm.state, alarm.by = AlarmState.RAISED, ""
+        alarm.state, alarm.by, alarm.last_raised_ns = AlarmState.RAISED, "", state.t_ns
     alarm.lower_since_ns = None
     alarm.level, alarm.priority, alarm.text = finding.level, finding.priority, finding.text
     alarm.latched = alarm.latched or finding.latched
@@ -210,7 +212,7 @@ def _move_level(
 
 def _raise_anew(state: StationState, alarm: Alarm, text: str) -> Alarm:
     alarm.state, alarm.by, alarm.text = AlarmState.RAISED, "", text
-    alarm.changed_ns = state.t_ns
+    alarm.changed_ns = alarm.last_raised_ns = state.t_ns
     return alarm
 
 
@@ -245,8 +247,12 @@ def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
     return alarm
 
 
-def _open_alarm(state: StationState, alarm_id: str) -> Alarm | None:
-    return next(
-        (alarm for alarm in state.alarms.values() if alarm.alarm_id == alarm_id and alarm.is_open),
-        None,
-    )
+def _alarm_as_seen(state: StationState, action: AcknowledgeAlarm | ResolveAlarm) -> Alarm | str:
+    """The open alarm, where it has not been raised anew since it was seen; for a person why not."""
+    alarms = (one for one in state.alarms.values() if one.alarm_id == action.alarm_id)
+    alarm = next((one for one in alarms if one.is_open), None)
+    if alarm is None:
+        return f"no open alarm {action.alarm_id}"
+    if action.last_raised_ms not in (0, alarm.last_raised_ns // NS_PER_MS):
+        return f"this has been raised anew since you saw it, look again: {alarm.text}"
+    return alarm

@@ -69,6 +69,7 @@ class AlarmView(Answer, frozen=True):
     text: str
     by: str
     raised_ms: int
+    last_raised_ms: int  # at first, or anew: it got worse, or happened again
     changed_ms: int
 
 

@@ -166,6 +166,7 @@ class Alarm(Base):
     text: Mapped[str]
     by: Mapped[str]
     raised_ns: Mapped[int] = mapped_column(index=True)
+    last_raised_ns: Mapped[int] = mapped_column(server_default="0")  # at first, or anew
     changed_ns: Mapped[int]
 
 

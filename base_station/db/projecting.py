@@ -140,6 +140,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
         "text": change.text,
         "by": change.by,
         "raised_ns": change.raised_ns,
+        "last_raised_ns": change.last_raised_ns,
         "changed_ns": t_ns,
     }
     session.execute(

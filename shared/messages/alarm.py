@@ -29,6 +29,7 @@ class AlarmChange(msgspec.Struct, frozen=True):
     text: str  # for a person
     by: str  # who acknowledged, or what resolved it
     raised_ns: int  # station time of the first change
+    last_raised_ns: int  # when it was raised anew last: worse, or again; or ``raised_ns``
 
     def to_wire(self) -> alarm_pb2.AlarmChange:
         return alarm_pb2.AlarmChange(
@@ -42,6 +43,7 @@ class AlarmChange(msgspec.Struct, frozen=True):
             text=self.text,
             by=self.by,
             raised_ns=self.raised_ns,
+            last_raised_ns=self.last_raised_ns,
         )
 
     @staticmethod
@@ -57,4 +59,5 @@ class AlarmChange(msgspec.Struct, frozen=True):
             text=wire.text,
             by=wire.by,
             raised_ns=wire.raised_ns,
+            last_raised_ns=wire.last_raised_ns,
         )

@@ -35,11 +35,13 @@ class Tick(msgspec.Struct, frozen=True):
 
 class AcknowledgeAlarm(msgspec.Struct, frozen=True):
     alarm_id: str
+    last_raised_ms: int = 0  # which raising somebody saw; 0: that is not said
 
 
 class ResolveAlarm(msgspec.Struct, frozen=True):
     alarm_id: str
     note: str
+    last_raised_ms: int = 0  # as above
 
 
 class OpenIncident(msgspec.Struct, frozen=True):

@@ -147,6 +147,7 @@ def alarm(index: int, rule: str, priority: int, text: str, ago_s: int) -> wire.A
         "",
         raised_ms,
         raised_ms,
+        raised_ms,
     )
 
 

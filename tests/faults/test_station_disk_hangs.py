@@ -7,6 +7,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -42,7 +43,7 @@ class Walk:
         self.shown = 0  # deltas with the unit in it
         self.problems: list[str] = []
         self.alarms: dict[str, str] = {}  # state by kind
-        self.alarm_ids: dict[str, str] = {}
+        self.seen: dict[str, dict[str, Any]] = {}  # alarms, by rule
         for work in (self._walk, self._look):
             thread = threading.Thread(target=work, daemon=True)
             thread.start()
@@ -75,7 +76,7 @@ class Walk:
                 self.problems = message["health"]["problems"]
             for alarm in message.get("alarms", ()):
                 self.alarms[alarm["rule"]] = alarm["state"]
-                self.alarm_ids[alarm["rule"]] = alarm["alarm_id"]
+                self.seen[alarm["rule"]] = alarm
 
 
 def logged(log: Path) -> list[int]:
@@ -122,8 +123,10 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
                 until(lambda: walk.alarms.get("mayday") == "raised", "mayday is raised")
                 everybody_out = {"kind": "evacuate", "target": {"everyone": True}}
                 assert post(browser, "/commands", everybody_out, browser.cookie()).is_success
-                acknowledge = f"/alarms/{walk.alarm_ids['mayday']}/acknowledge"
-                assert post(browser, acknowledge, None, browser.cookie()).is_success
+                mayday = walk.seen["mayday"]
+                acknowledge = f"/alarms/{mayday['alarm_id']}/acknowledge"
+                as_seen = {"last_raised_ms": mayday["last_raised_ms"]}
+                assert post(browser, acknowledge, as_seen, browser.cookie()).is_success
                 until(lambda: walk.alarms.get("mayday") == "acknowledged")
                 shown = walk.shown
                 until(lambda: walk.shown > shown + 20, "the picture goes on")

@@ -125,13 +125,55 @@ async def test_an_alarm_is_acknowledged_and_resolved(
     (alarm,) = (await commander.get("/alarms")).json()
     assert (alarm["priority"], alarm["state"]) == (1, "raised")
     path = f"/alarms/{alarm['alarm_id']}"
+    seen = {"last_raised_ms": alarm["last_raised_ms"]}
     clock.advance(1.0)
-    assert (await commander.post(f"{path}/acknowledge")).status_code == 204
+    assert (await commander.post(f"{path}/acknowledge", json=seen)).status_code == 204
     clock.advance(1.0)
-    assert (await commander.post(f"{path}/resolve", json={"note": "found"})).status_code == 204
+    found = seen | {"note": "found"}
+    assert (await commander.post(f"{path}/resolve", json=found)).status_code == 204
     told = (await commander.get(path)).json()
     assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged", "resolved"]
     assert told["changes"][1]["by"] == "commander"
+
+
+async def acknowledge(commander: httpx.AsyncClient, alarm_id: str, seen_ms: int) -> httpx.Response:
+    seen = {"last_raised_ms": seen_ms}
+    return await commander.post(f"/alarms/{alarm_id}/acknowledge", json=seen)
+
+
+@pytest.mark.parametrize("what", ["acknowledge", "resolve"])
+async def test_an_alarm_that_was_raised_anew_is_not_dealt_with_as_it_was_seen_before(
+    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, what: str
+) -> None:
+    await commander.post("/units", json={"unit_id": "FF-01"})
+    stamper = Stamper("FF-01", 1, clock)
+    station.drive.hear(Temperature(stamper.header(), 120.0))
+    station.projection.flush()
+    (seen,) = (await commander.get("/alarms")).json()
+    assert seen["last_raised_ms"] == seen["raised_ms"]
+    clock.advance(5.0)
+    station.drive.hear(Temperature(stamper.header(), 170.0))
+    as_seen = {"last_raised_ms": seen["last_raised_ms"]}
+    path = f"/alarms/{seen['alarm_id']}"
+    refused = await commander.post(f"{path}/{what}", json=as_seen)
+    assert refused.status_code == 409
+    assert "raised anew since you saw it, look again: 170 °C" in refused.json()["detail"]
+    (now,) = (await commander.get("/alarms")).json()
+    assert now["last_raised_ms"] - now["raised_ms"] == 5_000
+    as_seen = {"last_raised_ms": now["last_raised_ms"]}
+    assert (await commander.post(f"{path}/{what}", json=as_seen)).status_code == 204
+
+
+async def test_who_deals_with_an_alarm_says_which_raising_they_saw(
+    station: DeskStation, commander: httpx.AsyncClient
+) -> None:
+    station.drive.submit("station", ReportProblem("log", "It fails"))
+    station.projection.flush()
+    (alarm,) = (await commander.get("/alarms")).json()
+    for what in ("acknowledge", "resolve"):
+        refused = await commander.post(f"/alarms/{alarm['alarm_id']}/{what}", json={})
+        assert refused.status_code == 422
+        assert refused.json()["detail"] == "last_raised_ms is missing; fill it in"
 
 
 async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
@@ -165,13 +207,13 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
     heat, pressed = (await commander.get("/alarms")).json()[::-1]
     assert heat["changed_ms"] > worse_ms, "it has eased"
     clock.advance(1.0)
-    assert (await commander.post(f"/alarms/{pressed['alarm_id']}/acknowledge")).status_code == 204
+    assert (await acknowledge(commander, pressed["alarm_id"], pressed_ms)).status_code == 204
     mayday()
     again_ms = now_ms()
     path = f"/incidents/{incident['incident_id']}"
     clock.advance(1.0)
     await commander.post(f"{path}/close")
-    await commander.post(f"/alarms/{pressed['alarm_id']}/acknowledge")
+    assert (await acknowledge(commander, pressed["alarm_id"], again_ms)).status_code == 204
     mayday()
     station.projection.flush()
     told = (await commander.get(f"{path}/alarms")).json()
@@ -189,10 +231,11 @@ async def test_whatever_part_of_the_station_fails_people_can_deal_with_it(
     station.projection.flush()
     (alarm,) = (await commander.get("/alarms")).json()
     path = f"/alarms/{quote(alarm['alarm_id'])}"
+    seen = {"last_raised_ms": alarm["last_raised_ms"]}
     clock.advance(1.0)
-    assert (await commander.post(f"{path}/acknowledge")).status_code == 204
+    assert (await commander.post(f"{path}/acknowledge", json=seen)).status_code == 204
     clock.advance(1.0)
-    assert (await commander.post(f"{path}/resolve", json={})).status_code == 204
+    assert (await commander.post(f"{path}/resolve", json=seen)).status_code == 204
     assert (await commander.get(path)).json()["state"] == "resolved"
 
 

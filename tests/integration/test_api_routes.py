@@ -21,7 +21,7 @@ from base_station.api.wire import StandbyView
 from base_station.db.principals import Role
 from base_station.db.records import EVER, Window
 from base_station.recordings.desk import RecordingDesk
-from shared.clock import ManualClock
+from shared.clock import NS_PER_MS, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from tests.station import ORIGIN, PASSWORD, DeskStation
 from tests.waiting import until
@@ -293,8 +293,9 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
     station.services.settle()
     (alarm, *_) = station.services.records.alarms(Window(0, 2**62))
-    await do("POST /alarms/{alarm_id}/acknowledge", alarm_id=alarm.alarm_id)
-    await do("POST /alarms/{alarm_id}/resolve", {}, alarm_id=alarm.alarm_id)
+    seen = {"last_raised_ms": alarm.last_raised_ns // NS_PER_MS}
+    await do("POST /alarms/{alarm_id}/acknowledge", seen, alarm_id=alarm.alarm_id)
+    await do("POST /alarms/{alarm_id}/resolve", seen, alarm_id=alarm.alarm_id)
     pull = await do("POST /recordings", unit | {"from_ms": 1_000, "to_ms": 2_000})
     await do("DELETE /recordings/{fetch_id}", fetch_id=pull["fetch_id"])
     await do("DELETE /assignments/{unit_id}", **unit)

@@ -215,8 +215,9 @@ def header(t_s: float) -> Header:
 
 def alarm(t_s: float, state: AlarmState, by: str = "") -> AlarmChange:
     return AlarmChange(
-        header(t_s), "heat:FF-01:5", "heat", "FF-01", 1, state, "critical", "hot", by, 5 * NS_PER_S
-    )
+        header(t_s), "heat:FF-01:5", "heat", "FF-01", 1, state, "critical", "hot", by,
+        5 * NS_PER_S, 5 * NS_PER_S,
+    )  # fmt: skip
 
 
 def fused(t_s: float, north_m: float) -> FusedPosition:

@@ -106,7 +106,8 @@ def store_what_happened(disk: Disk, raised_before_s: float = 0.0) -> None:
                     "",
                     "MAYDAY",
                     "",
-                    t_ns - round(raised_before_s * NS_PER_S),
+                    raised_ns := t_ns - round(raised_before_s * NS_PER_S),
+                    raised_ns,
                 ),
             ),
         )

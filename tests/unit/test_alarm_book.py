@@ -292,6 +292,25 @@ def test_heat_that_eases_is_of_a_lower_level_once_it_stays_so(script: Script) ->
     assert changes(script, "heat")[3:] == [("ACKNOWLEDGED", "caution")]
 
 
+def test_an_alarm_says_when_it_was_raised_last_whatever_has_become_of_it_since(
+    script: Script,
+) -> None:
+    """An alarm that has eased asks for somebody since it was raised."""
+    script.wait(5, lambda: script.temperature(U, 120.0))
+    script.wait(5, lambda: script.temperature(U, 270.0))
+    script.wait(20, lambda: script.temperature(U, 170.0))
+    raised, worse, eased = script.alarms
+    script.act(AcknowledgeAlarm(raised.alarm_id))
+    script.wait(1, lambda: script.temperature(U, 270.0))
+    taken, again = script.alarms[3:]
+    told_s = [
+        (one.last_raised_ns - raised.header.t_utc_ns) // 10**9
+        for one in (raised, worse, eased, taken, again)
+    ]
+    assert told_s == [0, 5, 5, 5, 30]
+    assert {one.raised_ns for one in script.alarms} == {raised.header.t_utc_ns}
+
+
 def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Script) -> None:
     script.wait(1, lambda: script.temperature(U, 120.0))
     script.act(ResolveAlarm(script.alarms[0].alarm_id, "is on his way out"))

@@ -45,6 +45,7 @@ ALARM = AlarmChange(
     text="too hot",
     by="",
     raised_ns=T0_NS,
+    last_raised_ns=T0_NS,
 )
 
 

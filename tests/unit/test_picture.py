@@ -34,8 +34,9 @@ def walked_in(pipeline: StationPipeline, screen: Screen) -> Picture:
 def alarm_of(unit_id: str) -> AlarmChange:
     header = Header(STATION_ID, 1, 1, 0, 0)
     return AlarmChange(
-        header, "a1", "mayday", unit_id, 1, AlarmState.RAISED, "alarm", "MAYDAY", "", NS_PER_S
-    )
+        header, "a1", "mayday", unit_id, 1, AlarmState.RAISED, "alarm", "MAYDAY", "",
+        NS_PER_S, NS_PER_S,
+    )  # fmt: skip
 
 
 def told(screen: Screen) -> list[Delta]:

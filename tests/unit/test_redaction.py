@@ -77,6 +77,7 @@ def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
         "Heat is hot",
         "Heat",
         5,
+        5,
     )
     wanted = msgspec.structs.replace(alarm, text=f"{FORGOTTEN} is hot", by=FORGOTTEN)
     assert redacted("Heat", ALARM, alarm) == wanted

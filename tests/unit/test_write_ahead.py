@@ -31,6 +31,7 @@ ALARM = AlarmChange(
     text="no word from Anna",
     by="",
     raised_ns=T_NS,
+    last_raised_ns=T_NS,
 )
 
 

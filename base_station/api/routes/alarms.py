@@ -7,10 +7,11 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, Depends
+from pydantic import Field
 
 from base_station.answer import Answer, to_ms
 from base_station.api.acting import Act
-from base_station.api.forms import AlarmId, Form, Limit, Note, window
+from base_station.api.forms import LAST_MS, AlarmId, Form, Limit, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
@@ -38,7 +39,13 @@ class AlarmWithLife(AlarmView, frozen=True):
     changes: tuple[Change, ...]  # oldest first
 
 
-class Resolution(Form):
+class Acknowledgement(Form):
+    """Of the alarm as it was seen: what has been raised anew since nobody has seen."""
+
+    last_raised_ms: Annotated[int, Field(gt=0, le=LAST_MS)]
+
+
+class Resolution(Acknowledgement):
     note: Note = ""
 
 
@@ -61,15 +68,16 @@ def get_alarm(alarm_id: AlarmId, station: Station, _: Viewer) -> AlarmWithLife:
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)
-def acknowledge(alarm_id: AlarmId, station: Station, act: Act) -> None:
+def acknowledge(alarm_id: AlarmId, seen: Acknowledgement, station: Station, act: Act) -> None:
+    """Refused (409) where it has been raised anew since it was seen; so is resolving it."""
     _require_alarm(station, alarm_id)
-    act(AcknowledgeAlarm(alarm_id))
+    act(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
 def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, act: Act) -> None:
     _require_alarm(station, alarm_id)
-    act(ResolveAlarm(alarm_id, resolution.note))
+    act(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
 
 
 def _alarm_or_404(station: Services, alarm_id: str) -> models.Alarm:

@@ -2,7 +2,7 @@
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
 import { BASE, act, call, file, id, page, wholeList } from "./call";
-import type { AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
+import type { AlarmView, AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
 
 /** Each may do what those before it may. */
 export const ROLES = ["viewer", "commander", "administrator"] as const;
@@ -202,10 +202,11 @@ export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats"
 export const exported = (incidentId: string, format: string) =>
   file(`/incidents/${id(incidentId)}/export/${id(format)}`);
 
-export const acknowledge = (alarmId: string) =>
-  act<void>("POST", `/alarms/${id(alarmId)}/acknowledge`);
-export const resolve = (alarmId: string) =>
-  act<void>("POST", `/alarms/${id(alarmId)}/resolve`, {});
+/** As it is seen: the station refuses it for one that has been raised anew since. */
+export const acknowledge = ({ alarm_id, last_raised_ms }: AlarmView) =>
+  act<void>("POST", `/alarms/${id(alarm_id)}/acknowledge`, { last_raised_ms });
+export const resolve = ({ alarm_id, last_raised_ms }: AlarmView) =>
+  act<void>("POST", `/alarms/${id(alarm_id)}/resolve`, { last_raised_ms });
 
 export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
   act<CommandView>("POST", "/commands", { kind, target, text });

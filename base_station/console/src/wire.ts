@@ -55,6 +55,7 @@ export interface AlarmView {
   text: string;
   by: string;
   raised_ms: number;
+  last_raised_ms: number; // at first, or anew: it got worse, or happened again
   changed_ms: number;
 }
 

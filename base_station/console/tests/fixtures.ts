@@ -95,6 +95,7 @@ export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmVi
     text: "No motion",
     by: "",
     raised_ms: 0,
+    last_raised_ms: 0,
     changed_ms: 0,
     ...change,
   };

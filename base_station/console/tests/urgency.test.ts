@@ -117,7 +117,7 @@ describe("openAlarms", () => {
 });
 
 describe("sinceMs", () => {
-  const times = { raised_ms: 5, changed_ms: 2_000 };
+  const times = { raised_ms: 5, last_raised_ms: 2_000, changed_ms: 9_000 };
 
   it("is when an alarm was raised last, and once it is acknowledged, when it was first", () => {
     expect(sinceMs(alarm("again", times))).toBe(2_000);

@@ -29,8 +29,8 @@ export function hasAlarm(
 }
 
 /** Since when it asks for somebody: what has happened again, or got worse, was raised anew. */
-export function sinceMs({ state, raised_ms, changed_ms }: AlarmView): number {
-  return state === "raised" ? changed_ms : raised_ms;
+export function sinceMs({ state, raised_ms, last_raised_ms }: AlarmView): number {
+  return state === "raised" ? last_raised_ms : raised_ms;
 }
 
 /** Who has the unit now, where an alarm was raised while somebody else did; else empty. */

@@ -80,7 +80,7 @@ function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
         about={alarm.text}
         question="Is it over?"
         focused={pressed.current}
-        onConfirm={steady(() => void attempt(api.resolve(alarm.alarm_id)))}
+        onConfirm={steady(() => void attempt(api.resolve(alarm)))}
       />
     );
   }
@@ -91,7 +91,7 @@ function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
       aria-label={`Acknowledge: ${alarm.text}`}
       onClick={steady(() => {
         pressed.current = true;
-        void attempt(api.acknowledge(alarm.alarm_id));
+        void attempt(api.acknowledge(alarm));
       })}
     >
       Acknowledge
