@@ -14,24 +14,28 @@ from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Timer
 
-from edge.black_box import BlackBox
 from edge.calibration import Calibration, identity
-from edge.calibration_in_use import calibration_in_use
+from edge.calibration.in_use import calibration_in_use
+from edge.clocks.station import StationClock
+from edge.clocks.timeline import Follower, Timekeeper
 from edge.commands import CommandDesk
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
-from edge.journal_server import JournalServer
-from edge.journal_writer import JournalWriter
+from edge.journal.previous_boot import answers_before, mayday_before, position_rate_before
+from edge.journal.server import JournalServer
+from edge.journal.spool import Spool, open_spool
+from edge.journal.writer import JournalWriter
 from edge.link import Link, OtherEnd
 from edge.membership import Membership, membership
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.previous_boot import answers_before, mayday_before, position_rate_before
-from edge.raw_stream import RawStream, sensor_of
-from edge.raw_uplink import RawUplink
+from edge.raw.listener import UnitListener
+from edge.raw.stream import RawStream, sensor_of
+from edge.raw.uplink import RawUplink
 from edge.reachability_probe import ReachabilityProbe
 from edge.receivers import open_receiver
-from edge.recording_server import RecordingServer
+from edge.recording.black_box import BlackBox
+from edge.recording.server import RecordingServer
 from edge.runtime import Agent, Parts
 from edge.samples import SensorDescription
 from edge.source_reader import SourceReader
@@ -39,12 +43,8 @@ from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Beside, Source
 from edge.sources.sighting_reader import SightingReader
-from edge.spool import Spool, open_spool
-from edge.station_clock import StationClock
-from edge.timeline import Follower, Timekeeper
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
-from edge.unit_listener import UnitListener
 from shared.bus import Bus
 from shared.channels import NO_TRACKER, tracked_unit, tracker_id
 from shared.clock import SystemClock

@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterable
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 
-from edge.journal_writer import JournalWriter
-from edge.spool import Journaled
+from edge.journal.spool import Journaled
+from edge.journal.writer import JournalWriter
 from shared.channels import Qos, channel_of
 from shared.codec import encode
 from shared.messages import Message

@@ -10,12 +10,13 @@ import math
 from dataclasses import dataclass
 
 from edge.calibration import Calibration, Correction, identity
+from edge.clocks.timeline import Timeline
 from edge.decimation import Decimator, OncePerPeriod
 from edge.expected_field import ExpectedField, Place
 from edge.motion.activity import ActivityMonitor
 from edge.position_stream import PositionStream
-from edge.raw_stream import gps_fix, says_what, sighting
-from edge.raw_uplink import RawUplink
+from edge.raw.stream import gps_fix, says_what, sighting
+from edge.raw.uplink import RawUplink
 from edge.samples import (
     CANCEL,
     MAYDAY,
@@ -29,7 +30,6 @@ from edge.samples import (
     SightingSample,
 )
 from edge.sensor_health import SensorHealth
-from edge.timeline import Timeline
 from edge.tracker.port import Tracker
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
@@ -104,7 +104,7 @@ class TrackerPipeline:
         return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
 
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
-        """Take one batch, quantised as by ``edge.raw_stream``; return what is to be sent."""
+        """Take one batch, quantised as by ``edge.raw.stream``; return what is to be sent."""
         self._learn_field(batch, timeline)
         imu = batch.imu if self._correction is None else self._correction.push(batch.imu)
         track = self._tracker.push(imu)

@@ -7,9 +7,9 @@ from bisect import bisect_right
 
 import numpy as np
 
+from edge.clocks.timeline import Timeline
 from edge.decimation import Decimator
 from edge.samples import ImuBatch
-from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper

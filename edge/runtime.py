@@ -15,20 +15,20 @@ from threading import Event
 
 import msgspec
 
-from edge.black_box import BlackBox
+from edge.clocks.station import StationClock
+from edge.clocks.timeline import Timeline
 from edge.commands import CommandDesk
-from edge.journal_writer import JournalWriter
+from edge.journal.previous_boot import FAILED
+from edge.journal.spool import Spool
+from edge.journal.writer import JournalWriter
 from edge.link import Link
 from edge.outbox import Outbox
 from edge.pipeline import TrackerPipeline
-from edge.previous_boot import FAILED
-from edge.raw_stream import RawStream, batch_of
+from edge.raw.stream import RawStream, batch_of
+from edge.recording.black_box import BlackBox
 from edge.samples import ACKNOWLEDGE, ButtonPress
 from edge.source_reader import PlacedBatch, SourceReader
 from edge.sources.port import Source
-from edge.spool import Spool
-from edge.station_clock import StationClock
-from edge.timeline import Timeline
 from shared.bus import ReplyHandler
 from shared.channels import COMMAND, clock_key
 from shared.clock import NS_PER_S

@@ -15,9 +15,9 @@ from threading import Event, Thread
 
 import numpy as np
 
+from edge.clocks.timeline import Pacer, Timekeeper, Timeline
 from edge.samples import ImuBatch, OtherSample, SensorBatch
 from edge.sources.port import Beside, Source, TellsFaults
-from edge.timeline import Pacer, Timekeeper, Timeline
 from shared.clock import NS_PER_S, Clock
 from shared.errors import MusterError
 

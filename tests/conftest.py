@@ -15,8 +15,8 @@ import pytest
 from hypothesis import settings
 
 from base_station.bench.rig import said
-from edge.journal_writer import JournalWriter
-from edge.spool import Spool
+from edge.journal.spool import Spool
+from edge.journal.writer import JournalWriter
 from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from base_station.recordings.fetch import Fetch, Wanted
-from edge.black_box import BlackBox
+from edge.clocks.station import StationClock
 from edge.data_folder import DataFolder
-from edge.raw_stream import RawStream
-from edge.recording_server import RecordingServer
+from edge.raw.stream import RawStream
+from edge.recording.black_box import BlackBox
+from edge.recording.server import RecordingServer
 from edge.sources import open_source
-from edge.station_clock import StationClock
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 
 U = "FF-01"

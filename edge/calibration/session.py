@@ -14,10 +14,10 @@ from edge.calibration.file import write_calibration
 from edge.calibration.guide import guide, solve, take
 from edge.calibration.report import print_report
 from edge.calibration.steps import PosesStep, Step, StillStep, TurningStep, WarmUpStep
+from edge.clocks.timeline import Pacer
 from edge.samples import SensorBatch
 from edge.sources import SOURCES, open_source
 from edge.sources.port import Source
-from edge.timeline import Pacer
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 

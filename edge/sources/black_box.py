@@ -6,7 +6,7 @@ import logging
 from collections.abc import Iterator
 from pathlib import Path
 
-from edge.raw_stream import batch_of, sensor_of
+from edge.raw.stream import batch_of, sensor_of
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.port import Played
 from shared.channels import DESCRIPTION, Channel, parse_key

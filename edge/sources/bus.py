@@ -6,10 +6,10 @@ import logging
 from collections.abc import Iterator
 from threading import Event
 
-from edge.raw_stream import batch_of
+from edge.raw.listener import UnitListener
+from edge.raw.stream import batch_of
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.port import Played
-from edge.unit_listener import UnitListener
 from shared.channels import validate_unit_id
 from shared.errors import BusError, RecordingError, WireError
 from shared.messages import RawImu

@@ -10,13 +10,13 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from edge.black_box import BlackBox
-from edge.raw_stream import RawStream, raw_imu
+from edge.raw.listener import UnitListener
+from edge.raw.stream import RawStream, raw_imu
+from edge.recording.black_box import BlackBox
 from edge.sources import SOURCES, open_source
 from edge.sources.bus import BusSource
 from edge.sources.port import Source
 from edge.sources.ximu3 import Ximu3Source
-from edge.unit_listener import UnitListener
 from shared.bus_memory import MemoryRouter
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, Qos
 from shared.clock import ManualClock

@@ -17,8 +17,8 @@ from shared.clock import NS_PER_S
 WRITER = """
 import sys, time
 from pathlib import Path
-from edge.black_box import BlackBox
-from edge.raw_stream import RawStream
+from edge.recording.black_box import BlackBox
+from edge.raw.stream import RawStream
 from edge.sources import open_source
 from shared.clock import SystemClock
 source = open_source("simulated:straight")

@@ -9,8 +9,8 @@ import pytest
 
 from base_station.clock_server import ClockServer
 from base_station.steady_clock import SteadyClock
-from edge.clock_offset import ClockOffset, Exchange
-from edge.station_clock import StationClock
+from edge.clocks.offset import ClockOffset, Exchange
+from edge.clocks.station import StationClock
 from shared.bus import ReplyHandler
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_S

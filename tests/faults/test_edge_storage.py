@@ -15,8 +15,8 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
+from edge.journal.spool import Journaled
 from edge.sources import open_source
-from edge.spool import Journaled
 from edge.warm_up import compile_trackers
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -114,7 +114,7 @@ def test_a_full_disk_under_the_journal(running):
 
 
 def test_what_a_full_disk_cost_is_said_with_the_heartbeat(running, monkeypatch):
-    monkeypatch.setattr("edge.journal_writer._UNSAVED_KEPT", 3)
+    monkeypatch.setattr("edge.journal.writer._UNSAVED_KEPT", 3)
     set_room(running, 1)
     until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
     set_room(running, 1_000_000)

@@ -18,10 +18,10 @@ from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
 from base_station.live.drive_ports import Record
 from base_station.past.playback import compare
+from edge.clocks.station import StationClock
 from edge.commands import CommandDesk
-from edge.journal_server import JournalServer
-from edge.spool import Spool
-from edge.station_clock import StationClock
+from edge.journal.server import JournalServer
+from edge.journal.spool import Spool
 from shared.channels import (
     CHANNELS,
     COMMAND,

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from edge.black_box import BlackBox
+from edge.clocks.station import StationClock
 from edge.data_folder import DataFolder
-from edge.raw_stream import RawStream
-from edge.recording_server import RecordingServer
+from edge.raw.stream import RawStream
+from edge.recording.black_box import BlackBox
+from edge.recording.server import RecordingServer
 from edge.sources import open_source
-from edge.station_clock import StationClock
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths
@@ -107,7 +107,7 @@ def test_of_boots_that_ended_long_before_nothing_is_read(
     clock = record(folder, machine, STATION_NS, set_at_s=-1.0)
     last = segment_paths(next(folder.black_box.iterdir()))[-1]
     last.write_bytes(last.read_bytes()[:-100])
-    monkeypatch.setattr("edge.recording_server.SegmentReader", Counted)
+    monkeypatch.setattr("edge.recording.server.SegmentReader", Counted)
     server = RecordingServer(U, folder, clock)
     assert found(server, SECONDS - 20.0) == [f"{last.parent.name}/{last.name}"]
     assert found(server, SECONDS - 1.0) == [f"{last.parent.name}/{last.name}"], "it may go on"

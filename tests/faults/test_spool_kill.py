@@ -11,14 +11,14 @@ import sys
 import time
 from pathlib import Path
 
-from edge.spool import Spool
+from edge.journal.spool import Spool
 
 ROUNDS = 8
 # Tells each boot id and, after each append, how far everything is said to be safe.
 WRITER = """
 import random, sys
 from pathlib import Path
-from edge.spool import Journaled, Spool
+from edge.journal.spool import Journaled, Spool
 from shared.channels import EVENT, IMU, POSITION
 spool = Spool(Path(sys.argv[1]), lambda: random.randrange(1, 50), 0, 10**8)
 print("boot", spool.boot_id, flush=True)

@@ -15,7 +15,7 @@ from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.command import kill_both
 from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
-from edge.spool import Journaled, Spool
+from edge.journal.spool import Journaled, Spool
 from shared.channels import POSITION
 from shared.clock import NS_PER_S
 from shared.codec import encode

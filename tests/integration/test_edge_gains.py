@@ -12,8 +12,8 @@ import pytest
 
 from edge.app import run_agent
 from edge.config import EdgeConfig
+from edge.journal.spool import Spool
 from edge.sources.black_box import BlackBoxSource
-from edge.spool import Spool
 from edge.tracker.config import EskfConfig
 from shared.channels import DESCRIPTION, POSITION, Channel
 from shared.codec import decode

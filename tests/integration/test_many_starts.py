@@ -10,8 +10,8 @@ from pathlib import Path
 from base_station.bench.rig.said import position
 from base_station.journals.backfill import Backfill
 from base_station.sender import STARTS
-from edge.journal_server import JournalServer
-from edge.spool import Journaled, Spool
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode

@@ -12,17 +12,17 @@ from threading import Event
 import msgspec
 import pytest
 
-from edge.journal_server import JournalServer
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.raw_stream import RawStream, batch_of
-from edge.raw_uplink import RawUplink
+from edge.raw.listener import UnitListener
+from edge.raw.stream import RawStream, batch_of
+from edge.raw.uplink import RawUplink
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources import open_source
 from edge.sources.bus import BusSource
-from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker
 from edge.tracker.none import NoTracker
-from edge.unit_listener import UnitListener
 from shared.bus_memory import MemoryRouter
 from shared.channels import IMU, NO_TRACKER, channel_of, tracker_id
 from shared.clock import NS_PER_S, ManualClock

@@ -11,8 +11,8 @@ import msgspec
 import pytest
 
 from base_station.journals.backfill import Backfill
-from edge.journal_server import JournalServer
-from edge.spool import Journaled, Spool
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
 from shared.channels import POSITION
 from shared.clock import SystemClock
 from shared.codec import encode

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from edge.raw_stream import RawStream, batch_of, sensor_of
+from edge.raw.stream import RawStream, batch_of, sensor_of
 from edge.samples import (
     AmbientSample,
     BatterySample,

@@ -8,7 +8,7 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from edge.raw_stream import gps_fix
+from edge.raw.stream import gps_fix
 from edge.receivers.fix_clock import FixClock
 from edge.receivers.gpsd import Gpsd
 from edge.receivers.nmea import Nmea

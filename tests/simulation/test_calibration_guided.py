@@ -17,14 +17,14 @@ from edge.calibration.guide import guide, solve
 from edge.calibration.session import calibrate_guided
 from edge.calibration.steps import AXES, PosesStep, Step, StillStep, TurningStep
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.raw_stream import RawStream, batch_of
-from edge.raw_uplink import RawUplink
+from edge.raw.listener import UnitListener
+from edge.raw.stream import RawStream, batch_of
+from edge.raw.uplink import RawUplink
 from edge.samples import ImuBatch, SensorBatch
 from edge.simulation.handling import HandledUnit, cut
 from edge.sources import open_source
 from edge.sources.bus import BusSource
 from edge.tracker.none import NoTracker
-from edge.unit_listener import UnitListener
 from shared.bus_memory import MemoryRouter
 from shared.channels import NO_TRACKER, channel_of
 from shared.clock import ManualClock

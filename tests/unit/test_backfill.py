@@ -11,8 +11,8 @@ import pytest
 from base_station.journals.backfill import AT_ONCE, Backfill, Report
 from base_station.journals.pace import LEAST_BYTES
 from base_station.journals.unit_journal import Held
-from edge.journal_server import JournalServer
-from edge.spool import Journaled, Spool
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
 from shared.bus import Bus, ReplyHandler
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, POSITION, backfilled_key, parse_unread_key

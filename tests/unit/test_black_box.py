@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from edge.black_box import BlackBox
 from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.raw_stream import RawStream, batch_of, sensor_of
-from edge.recording_time import ahead_of
+from edge.raw.stream import RawStream, batch_of, sensor_of
+from edge.recording.black_box import BlackBox
+from edge.recording.station_time import ahead_of
 from edge.samples import ButtonPress, ImuBatch, SensorBatch
 from edge.sources import open_source
 from edge.sources.black_box import BlackBoxSource
@@ -218,8 +218,8 @@ def test_a_disk_that_hangs_costs_samples_and_not_the_unit_s_memory(tmp_path, mon
             answers.wait(PATIENCE_S)
             return super().write(*what, **how)
 
-    monkeypatch.setattr("edge.black_box.SegmentWriter", Hanging)
-    monkeypatch.setattr("edge.black_box._WAITING_MAX", 3)
+    monkeypatch.setattr("edge.recording.black_box.SegmentWriter", Hanging)
+    monkeypatch.setattr("edge.recording.black_box._WAITING_MAX", 3)
     monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.0)
     box, raw = boxed(tmp_path, ManualClock())
     batches = [raw.messages(one) for one in itertools.islice(open_source(SCENARIO).batches(), 50)]

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from edge.clock_offset import ClockEstimate, ClockOffset, Exchange
+from edge.clocks.offset import ClockEstimate, ClockOffset, Exchange
 from shared.clock import NS_PER_S
 
 OFFSET_S = 1_800_000_000.0

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.clocks.timeline import Timeline
 from edge.samples import (
     SensorBatch,
 )
-from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason
 from shared.clock import NS_PER_S
 from shared.messages import (

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from edge.journal_server import JournalServer
-from edge.previous_boot import answers_before, mayday_before
-from edge.spool import Journaled, Spool, open_spool
+from edge.journal.previous_boot import answers_before, mayday_before
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool, open_spool
 from shared.channels import EVENT, POSITION
 from shared.clock import ManualClock
 from shared.codec import encode

@@ -7,8 +7,8 @@ import logging
 
 import pytest
 
-from edge.journal_server import JournalServer
-from edge.spool import Journaled, Spool
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
 from shared.channels import EVENT, IMU, POSITION
 from shared.errors import StoreError
 from shared.messages import JournalChunk, JournalIndex

@@ -8,7 +8,7 @@ from threading import Event, Thread
 
 import pytest
 
-from edge.spool import Journaled, Spool
+from edge.journal.spool import Journaled, Spool
 from shared.channels import EVENT, TEMPERATURE
 from shared.errors import StoreError
 from tests.waiting import PATIENCE_S, until
@@ -97,7 +97,7 @@ def test_what_a_disk_refuses_is_written_when_it_has_room(spool, journal, full_di
 
 def test_nobody_waits_for_longer_than_the_disk_takes(spool, journal, monkeypatch, full_disk):
     """What is said would be on the air a second late, all of it."""
-    monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 1e6)
+    monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 1e6)
     journal.write([mayday(1)])
     assert kept(spool) == [1]
     with full_disk():
@@ -116,7 +116,7 @@ def test_a_disk_that_has_just_refused_is_not_asked_at_every_message(spool, journ
         offered.append(len(messages))
         raise StoreError("the disk is full")
 
-    monkeypatch.setattr("edge.journal_writer._AGAIN_S", 600.0)
+    monkeypatch.setattr("edge.journal.writer._AGAIN_S", 600.0)
     monkeypatch.setattr(spool, "append", refuse)
     for seq in range(1, 6):
         journal.write([mayday(seq)])
@@ -129,7 +129,7 @@ def test_a_disk_that_has_just_refused_is_not_asked_at_every_message(spool, journ
 def test_a_disk_that_has_refused_is_asked_again_though_nothing_more_is_said(
     spool, journal, monkeypatch, full_disk
 ):
-    monkeypatch.setattr("edge.journal_writer._AGAIN_S", 0.01)
+    monkeypatch.setattr("edge.journal.writer._AGAIN_S", 0.01)
     with full_disk():
         journal.write([said(1)])
     until(lambda: kept(spool) == [1])
@@ -138,7 +138,7 @@ def test_a_disk_that_has_refused_is_asked_again_though_nothing_more_is_said(
 
 def test_an_alert_is_not_ousted_by_what_came_after_it(spool, journal, monkeypatch, full_disk):
     """Neither a disk nor a link for minutes: the mayday is what must not be missing."""
-    monkeypatch.setattr("edge.journal_writer._UNSAVED_KEPT", 3)
+    monkeypatch.setattr("edge.journal.writer._UNSAVED_KEPT", 3)
     with full_disk():
         journal.write([mayday(1)])
         journal.write(map(said, range(2, 7)))
@@ -149,7 +149,7 @@ def test_an_alert_is_not_ousted_by_what_came_after_it(spool, journal, monkeypatc
 
 
 def test_what_a_full_disk_cost_is_counted_and_said(spool, journal, monkeypatch, caplog, full_disk):
-    monkeypatch.setattr("edge.journal_writer._UNSAVED_KEPT", 3)
+    monkeypatch.setattr("edge.journal.writer._UNSAVED_KEPT", 3)
     with full_disk():
         for seq in range(1, 6):
             journal.write([mayday(seq)])
@@ -166,9 +166,9 @@ def test_what_a_full_disk_cost_is_counted_and_said(spool, journal, monkeypatch, 
 def test_a_disk_that_hangs_is_not_waited_for(spool, journal, monkeypatch, hanging_disk):
     monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.0)
     with hanging_disk() as is_asked:
-        monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.05)
+        monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 0.05)
         journal.write([said(1)])
-        monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.0)
+        monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 0.0)
         is_asked.wait(PATIENCE_S)
         monkeypatch.setattr(journal._changed, "wait_for", lambda *_: pytest.fail("it waits"))
         for seq in (2, 3, 4):
@@ -183,8 +183,8 @@ def test_a_disk_that_hangs_is_not_waited_for(spool, journal, monkeypatch, hangin
 def test_what_a_disk_has_in_hand_while_it_hangs_is_kept_once_and_not_ousted(
     spool, journal, monkeypatch, hanging_disk
 ):
-    monkeypatch.setattr("edge.journal_writer._UNSAVED_KEPT", 2)
-    monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.01)
+    monkeypatch.setattr("edge.journal.writer._UNSAVED_KEPT", 2)
+    monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 0.01)
     with hanging_disk() as is_asked:
         journal.write([said(1), said(2)])
         is_asked.wait(PATIENCE_S)
@@ -194,7 +194,7 @@ def test_what_a_disk_has_in_hand_while_it_hangs_is_kept_once_and_not_ousted(
 
 
 def test_a_disk_that_is_slow_now_and_then_is_no_fault(spool, journal, monkeypatch, hanging_disk):
-    monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.01)
+    monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 0.01)
     with hanging_disk():
         journal.write([said(1)])
         journal.write([said(2)])
@@ -203,7 +203,7 @@ def test_a_disk_that_is_slow_now_and_then_is_no_fault(spool, journal, monkeypatc
 
 def test_the_end_does_not_wait_for_a_disk_that_hangs(spool, journal, monkeypatch, hanging_disk):
     monkeypatch.setattr("edge.disk_watch.HANGS_S", 0.3)
-    monkeypatch.setattr("edge.journal_writer._PATIENCE_S", 0.01)
+    monkeypatch.setattr("edge.journal.writer._PATIENCE_S", 0.01)
     with hanging_disk() as is_asked:
         journal.write([said(1)])
         is_asked.wait(PATIENCE_S)

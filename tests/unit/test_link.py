@@ -12,12 +12,12 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
+from edge.journal.previous_boot import FAILED
+from edge.journal.spool import Spool
 from edge.link import Link
-from edge.previous_boot import FAILED
 from edge.samples import SensorBatch
 from edge.sources import open_source
 from edge.sources.bench import BenchSource
-from edge.spool import Spool
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
 from shared.codec import decode

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.clocks.timeline import Timeline
 from edge.position_stream import PositionStream
 from edge.samples import Floats, ImuBatch
-from edge.timeline import Timeline
 from edge.tracker.port import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper

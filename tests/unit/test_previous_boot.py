@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
-from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.previous_boot import (
+from edge.journal.previous_boot import (
     FAILED,
     answers_before,
     mayday_before,
     position_rate_before,
 )
+from edge.journal.spool import Journaled, Spool
+from edge.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import SensorDescription
-from edge.spool import Journaled, Spool
 from edge.tracker import make_tracker
 from shared.channels import EVENT, REPLY, channel_of
 from shared.clock import ManualClock

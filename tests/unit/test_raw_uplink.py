@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from edge.raw_uplink import RawUplink
+from edge.clocks.timeline import Timeline
+from edge.raw.uplink import RawUplink
 from edge.samples import ImuBatch
-from edge.timeline import Timeline
 from shared.channels import IMU
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper

@@ -10,10 +10,11 @@ from typing import Any
 
 import pytest
 
-from edge import journal_file, journal_room
-from edge import spool as spool_module
-from edge.journal_rows import RAW
-from edge.spool import Journaled, Spool, open_spool
+from edge.journal import file as journal_file
+from edge.journal import room as journal_room
+from edge.journal import spool as spool_module
+from edge.journal.rows import RAW
+from edge.journal.spool import Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
 from tests.spoiled_journal import spoil_page

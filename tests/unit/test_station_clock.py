@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from edge.station_clock import StationClock
+from edge.clocks.station import StationClock
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, ManualClock
 from shared.messages.clock import ClockAnswer

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from edge.timeline import Follower, Pacer, Timeline
+from edge.clocks.timeline import Follower, Pacer, Timeline
 from shared.clock import NS_PER_S
 
 

@@ -10,8 +10,8 @@ import typer
 from typer.testing import CliRunner
 
 from edge.bench.track import WIDTH, bench_track, find_trials
-from edge.black_box import BlackBox
-from edge.raw_stream import RawStream
+from edge.raw.stream import RawStream
+from edge.recording.black_box import BlackBox
 from edge.samples import AmbientSample, SensorBatch, SensorDescription
 from edge.track_command import COLUMNS, track
 from shared.clock import ManualClock

@@ -11,8 +11,8 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
+from edge.journal.spool import Journaled, Spool
 from edge.sources import open_source
-from edge.spool import Journaled, Spool
 from edge.warm_up import compile_trackers
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter

@@ -8,10 +8,10 @@ from threading import Event
 import numpy as np
 import pytest
 
-from edge.raw_stream import RawStream
+from edge.raw.listener import UnitListener
+from edge.raw.stream import RawStream
 from edge.samples import SensorDescription
 from edge.sources.bus import BusSource
-from edge.unit_listener import UnitListener
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, Qos, raw_journal_key

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import sqlite3
 
-from edge.journal_rows import WORTHS
+from edge.journal.rows import WORTHS
 
 _ROWS_FREED_AT_ONCE = 50
 _FREE_DOWN_TO = 0.95  # of the limit, so that room is not made at every append

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from threading import Lock
 
-from edge.clock_offset import ClockEstimate, ClockOffset, Exchange
+from edge.clocks.offset import ClockEstimate, ClockOffset, Exchange
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, Clock
 from shared.errors import WireError

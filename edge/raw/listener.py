@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from threading import Condition, Event
 
-from edge.raw_stream import sensor_of
+from edge.raw.stream import sensor_of
 from edge.samples import SensorDescription
 from shared.bus import Bus
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, raw_journal_key

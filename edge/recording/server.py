@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from edge.answers import Answers, Parameters
+from edge.clocks.station import StationClock
 from edge.data_folder import DataFolder
-from edge.recording_time import ahead_of
-from edge.station_clock import StationClock
+from edge.recording.station_time import ahead_of
 from shared.clock import NS_PER_S
 from shared.mcap_log import (
     SegmentPolicy,

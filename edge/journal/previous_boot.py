@@ -8,7 +8,7 @@ import logging
 from collections.abc import Iterator
 
 from edge.commands import REMEMBERED, position_rate_of
-from edge.spool import Spool
+from edge.journal.spool import Spool
 from shared.channels import EVENT, REPLY, Channel
 from shared.codec import decode
 from shared.errors import StoreError, WireError

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from threading import Condition, Thread
 
 from edge.disk_watch import HANGS_S, DiskWatch
-from edge.spool import Journaled, Spool
+from edge.journal.spool import Journaled, Spool
 from shared.channels import Qos
 from shared.errors import StoreError
 

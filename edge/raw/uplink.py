@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from edge.raw_stream import raw_imu
+from edge.clocks.timeline import Timeline
+from edge.raw.stream import raw_imu
 from edge.samples import Floats, ImuBatch
-from edge.timeline import Timeline
 from shared.channels import IMU
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper

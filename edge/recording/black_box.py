@@ -16,7 +16,7 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 
 from edge.disk_watch import HANGS_S, DiskWatch
-from edge.recording_time import ahead_of, note_ahead, remove_if_empty
+from edge.recording.station_time import ahead_of, note_ahead, remove_if_empty
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode

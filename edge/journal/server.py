@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from functools import partial
 
 from edge.answers import Answer, Answers, Parameters
-from edge.journal_rows import EVERYTHING, RAW, URGENT
-from edge.spool import Spool
+from edge.journal.rows import EVERYTHING, RAW, URGENT
+from edge.journal.spool import Spool
 from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
-from edge.journal_file import (
+from edge.journal.file import (
     DAMAGE,
     REFUSAL,
     anew,
@@ -27,8 +27,8 @@ from edge.journal_file import (
     is_no_journal,
     rename,
 )
-from edge.journal_room import bytes_used, make_room
-from edge.journal_rows import (
+from edge.journal.room import bytes_used, make_room
+from edge.journal.rows import (
     EVERYTHING,
     SCHEMA,
     boots,

@@ -1,0 +1,1 @@
+"""Raw sensor batches as messages: written, sent by a unit that does not track, and heard."""
