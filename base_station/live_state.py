@@ -148,6 +148,13 @@ class UnitState(Sender):
         worn = [one for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
         return worn[-1].name if worn else self.label or self.unit_id
 
+    def worn_from_ns(self, t_ns: int) -> int:
+        """When whoever wore it then began to; names one wearing of this unit."""
+        if t_ns >= self.worn_since_ns:
+            return self.worn_since_ns
+        worn = [one.from_ns for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
+        return worn[-1] if worn else 0
+
     def end_wearing(self, t_ns: int) -> None:
         """Whoever wears it does so no more."""
         if self.person is not None:
@@ -254,6 +261,7 @@ class Alarm(msgspec.Struct):
     by: str
     latched: bool  # only a person resolves it
     raised_ns: int
+    worn_from_ns: int | None  # by whom it is about; None: it is about the unit
     last_raised_ns: int  # at first, or anew: it got worse, or happened again
     changed_ns: int
     held: bool = False  # resolved by a person while the condition went on
@@ -288,7 +296,8 @@ class StationState(msgspec.Struct):
     boot_id: int = 0  # station time of the first event: names this run of the pipeline
     seq: int = 0  # of the last output
     units: dict[str, UnitState] = msgspec.field(default_factory=dict)
-    alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)  # newest of each rule and unit
+    # The newest of each rule and unit; beside it those that are open of who wore the unit before.
+    alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)
     history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
     commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first
     incident: Incident | None = None

@@ -88,7 +88,10 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     match event.kind:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
-            if not _is_pressed(unit) or said_ns > unit.mayday_said_ns:
+            stands = _is_pressed(unit) and unit.worn_from_ns(said_ns) == unit.worn_from_ns(
+                unit.mayday_said_ns
+            )
+            if not stands or said_ns > unit.mayday_said_ns:
                 _press(unit, t_ns, said_ns)
         case EventKind.MAYDAY_CANCELLED:
             if said_ns >= unit.mayday_said_ns:  # else it was pressed again since

@@ -76,6 +76,8 @@ class AlarmBook:
                 if current is not None:  # what nobody can say has not stayed so
                     current.clear_since_ns = current.lower_since_ns = None
                 continue
+            if isinstance(verdict, Finding) and current is not None and current.is_open:
+                current = _of_the_same(state, key, current, verdict)
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
                 yield changed
@@ -120,6 +122,7 @@ class AlarmBook:
         if isinstance(alarm, str):
             return alarm
         alarm.held = True
+        state.alarms.pop(alarm.alarm_id, None)  # where it stood beside a newer one
         if alarm.rule == STATION_RULE:
             state.problems.pop(alarm.level, None)
         return _resolve(state, alarm, f"{by}: {action.note}" if action.note else by)
@@ -168,11 +171,29 @@ class AlarmBook:
             by="",
             latched=finding.latched,
             raised_ns=state.t_ns,
+            worn_from_ns=finding.worn_from_ns,
             last_raised_ns=state.t_ns,
             changed_ns=state.t_ns,
         )
         state.alarms[key] = alarm
         return alarm
+
+
+def _of_the_same(state: StationState, key: str, newest: Alarm, finding: Finding) -> Alarm | None:
+    """The open alarm about the same wearer, None where there is none: who pressed the button
+    while another one wore the unit is not forgotten over it.
+    """
+    if finding.worn_from_ns == newest.worn_from_ns:
+        return newest
+    state.alarms[newest.alarm_id] = state.alarms.pop(key)
+    for beside, alarm in state.alarms.items():
+        same = (alarm.rule, alarm.unit_id, alarm.worn_from_ns) == (
+            newest.rule, newest.unit_id, finding.worn_from_ns
+        )  # fmt: skip
+        if same and alarm.is_open:
+            state.alarms[key] = state.alarms.pop(beside)
+            return alarm
+    return None
 
 
 def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Finding) -> bool:

@@ -28,4 +28,5 @@ class Fall:
             seen_ns=unit.fall_ns,
             onset_ns=unit.fall_ns,
             latched=True,
+            worn_from_ns=unit.worn_from_ns(unit.fall_said_ns),
         )

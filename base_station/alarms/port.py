@@ -21,6 +21,7 @@ class Finding(msgspec.Struct, frozen=True):
     seen_ns: int  # station time of the evidence
     onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
     latched: bool = False  # only a person resolves it
+    worn_from_ns: int | None = None  # of what befell a wearer: whose (``UnitState.worn_from_ns``)
 
 
 class Clear(msgspec.Struct, frozen=True):

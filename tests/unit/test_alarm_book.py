@@ -140,6 +140,77 @@ def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
     assert told == {name: text.format(name or f"unit {U}") for name in told}
 
 
+def open_texts(script: Script) -> set[str]:
+    return {one.text for one in script.pipeline.state.alarms.values() if one.is_open}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("late", [False, True])
+def test_two_wearers_of_one_unit_are_two_people_in_need(
+    script: Script, kind: EventKind, late: bool
+) -> None:
+    """Whichever of the two is told last."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    of_ana = UnitEvent(script.header(U), kind)
+    if not late:
+        script.record(EVENT.key(U), encode(of_ana))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, kind)
+    if late:
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+        script.record(backfilled_key(U, EVENT.suffix), encode(of_ana))
+    script.wait(3)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    ana, bo = (text.format(name) for name in ("Ana", "Bo"))
+    assert open_texts(script) == {ana, bo}
+    assert [one.text for one in script.alarms if one.state is AlarmState.RAISED] == (
+        [bo, ana] if late else [ana, bo]
+    )
+    of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
+    script.act(ResolveAlarm(of_bo, "helped"))
+    script.wait(3)
+    assert open_texts(script) == {ana}
+    script.act(ResolveAlarm(next(one.alarm_id for one in script.alarms if one.text == ana), ""))
+    script.wait(3)
+    assert open_texts(script) == set()
+    assert len(script.pipeline.state.alarms) == 1, "of each rule and unit the newest is kept"
+
+
+def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_comes_again(
+    script: Script,
+) -> None:
+    maydays = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3, lambda: script.status(U))
+        maydays.append(UnitEvent(script.header(U), EventKind.MAYDAY))
+        script.wait(3)
+    ana, bo = maydays
+    for late in (bo, ana):
+        script.record(backfilled_key(U, EVENT.suffix), encode(late))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+    raised = len(script.alarms)
+    script.event(U, EventKind.MAYDAY)
+    (again,) = script.alarms[raised:]
+    assert (again.text, again.alarm_id) == ("Mayday from Bo", script.alarms[0].alarm_id)
+    assert len(script.pipeline.state.alarms) == 2
+
+
+def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, EventKind.MAYDAY)
+    script.act(Assign(U, "ana", "Ana B.", "", ""))
+    script.wait(3)
+    assert len(script.alarms) == 1
+
+
 def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
