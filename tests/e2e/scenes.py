@@ -235,6 +235,25 @@ def pin(pin_id: str, index: int, state: str, north_m: float, text: str) -> wire.
     )
 
 
+def switched_off() -> wire.Snapshot:
+    """Two units that were switched off in order ten minutes ago; the alarm about one is open."""
+    units = [unit(index) for index in range(5)]
+    for index in (0, 1):
+        units[index] = msgspec.structs.replace(
+            units[index],
+            link="lost",
+            switched_off=True,
+            last_heard_ms=NOW_MS - 10 * MINUTE_MS,
+            status_ms=NOW_MS - 10 * MINUTE_MS,
+            position=position(index, 10 * MINUTE_MS),
+            trust=wire.TrustView("red", "not heard: shown where it last was"),
+        )
+    off = alarm(0, "link-lost", 3, "Astrid Lindqvist's unit was switched off", 600)
+    off = msgspec.structs.replace(off, level="switched off")
+    units[0] = with_alarms(units[0], off)
+    return picture(units, off)
+
+
 def taken(one: wire.AlarmView) -> wire.AlarmView:
     """The same alarm once somebody has acknowledged it."""
     return msgspec.structs.replace(one, state="acknowledged", by="chief")

@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, confirm, menu, press
+from tests.e2e.console_page import barriers, confirm, menu, painted, press
 from tests.e2e.looks import flaws
 from tests.e2e.stage import ANSWERS, PAST, Stage
 
@@ -40,6 +40,24 @@ def test_what_somebody_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
     expect(silent).to_contain_text("1 min old")
     heard = page.locator(".card", has_text="Mira Okafor").locator(".activity")
     expect(heard).to_have_text("Walking")
+
+
+def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
+    """Its wearer is looked for by nobody: no hatching, no doubt, no place above those at work."""
+    page, _ = stage.open(scenes.switched_off())
+    cards = page.locator(".card")
+    expect(cards.locator(".name").first).to_have_text("Astrid Lindqvist")  # by name
+    for name in ("Astrid Lindqvist", "Jonas Bergman"):
+        card = cards.filter(has_text=name)
+        expect(card).to_have_class(re.compile(r"\bnormal\b"))
+        expect(card).not_to_have_class(re.compile("unheard"))
+        assert card.evaluate("card => getComputedStyle(card).backgroundImage") == "none"
+        expect(card).to_contain_text("Switched off")
+        expect(card).to_contain_text("10 min old")
+        expect(card).not_to_contain_text("trust")
+    page.get_by_role("button", name="All 5").click()
+    page.wait_for_timeout(600)  # the plan has come to rest
+    assert painted(page, "--quiet") < 4000, "the plan is not hatched for them"
 
 
 def test_whoever_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:

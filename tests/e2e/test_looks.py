@@ -34,6 +34,7 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
         scenes.nobody,
         scenes.past,
         scenes.stored,
+        scenes.switched_off,
     ],
 )
 def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
@@ -42,7 +43,15 @@ def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], S
 
 
 @pytest.mark.parametrize(
-    "scene", [scenes.bad_minute, scenes.crowd, scenes.nobody, scenes.past, scenes.stored]
+    "scene",
+    [
+        scenes.bad_minute,
+        scenes.crowd,
+        scenes.nobody,
+        scenes.past,
+        scenes.stored,
+        scenes.switched_off,
+    ],
 )
 def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapshot]) -> None:
     page, _ = stage.open(scene())

@@ -166,9 +166,12 @@ export function gpsWord(reason: string | null): string {
   return reason === "" ? "used" : `not used: ${reason}`;
 }
 
+/** The level of an alarm that only informs: the unit's silence is no loss. */
+export const SWITCHED_OFF = "switched off";
+
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
 export function alarmWord(alarm: AlarmView): string {
-  if (alarm.level === "switched off") return "Switched off"; // its link is not lost
+  if (alarm.level === SWITCHED_OFF) return "Switched off"; // its link is not lost
   const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;

@@ -8,6 +8,7 @@ const ALARMS: ReadonlyMap<string, AlarmView> = new Map([
   ["one", alarm("one", { priority: 1 })],
   ["two", alarm("two", { priority: 2 })],
   ["three", alarm("three", { priority: 3 })],
+  ["off", alarm("off", { priority: 3, rule: "link-lost", level: "switched off" })],
 ]);
 
 describe("samePlaces", () => {
@@ -46,7 +47,8 @@ describe("urgencyOf", () => {
     ["normal", {}],
     ["normal", { link: "stale", switched_off: true }],
     ["normal", { link: "lost", switched_off: true }],
-    ["watch", { link: "lost", switched_off: true, alarms: ["three"] }],
+    ["normal", { link: "lost", switched_off: true, alarms: ["off"] }],
+    ["watch", { link: "lost", switched_off: true, alarms: ["off", "three"] }],
   ])("is %s for %o", (urgency, change) => {
     expect(urgencyOf(unit("a", change), ALARMS)).toBe(urgency);
   });

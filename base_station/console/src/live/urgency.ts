@@ -1,5 +1,6 @@
 /** Who needs attention first, and a list that does not jump while somebody reads it.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
+import { SWITCHED_OFF } from "../words";
 
 export type Urgency = "immediate" | "soon" | "watch" | "normal";
 
@@ -9,14 +10,19 @@ const IN_NEED = 1; // by more than a roll call that nobody has answered yet
 const CALMING_MS = 10_000;
 
 /** From the unit's open alarms, its state, and whether it can be heard; one that was switched off in
- * order is not missed. */
+ * order is not missed, and that this is said is no need. */
 export function urgencyOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): Urgency {
-  const priorities = unit.alarms.map((id) => alarms.get(id)?.priority ?? 1);
+  const open = unit.alarms.map((id) => alarms.get(id));
+  const priorities = open.filter((one) => !saysSwitchedOff(one)).map((one) => one?.priority ?? 1);
   const link = unit.switched_off ? "live" : unit.link;
   if (unit.status?.mayday || priorities.includes(1)) return "immediate";
   if (priorities.includes(2) || link === "lost") return "soon";
   const watched = priorities.length > 0 || link === "stale" || unit.heat_level !== "";
   return watched ? "watch" : "normal";
+}
+
+function saysSwitchedOff(alarm: AlarmView | undefined): boolean {
+  return alarm?.level === SWITCHED_OFF;
 }
 
 /** Where that puts the unit in the list: a mayday first, and whoever is only not heard from last. */

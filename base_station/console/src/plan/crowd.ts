@@ -83,7 +83,8 @@ export class Crowd {
     const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
     const ellipse = regionAt(position, scene.silentMs);
-    region.getGeometry()?.setCoordinates([outline(centre, position, scene.silentMs)]);
+    const border = isMissed(unit) ? outline(centre, position, scene.silentMs) : [];
+    region.getGeometry()?.setCoordinates([border]);
     mark.getGeometry()?.setCoordinates(centre);
     label.getGeometry()?.setCoordinates(centre);
     trail.setStyle(trailStyle(looks, scene.colours));
@@ -130,6 +131,12 @@ function isShown(unit: UnitView, position: PositionView, scene: Scene): boolean 
 
 function isHere({ floor }: PositionView, scene: Scene): boolean {
   return scene.floor === "all" || floor === null || floor === scene.floor;
+}
+
+/** Where somebody can have got to since is asked of who is looked for, and grows over the whole plan:
+ * not of a unit that was switched off in order. */
+function isMissed(unit: UnitView): boolean {
+  return unit.link === "live" || !unit.switched_off;
 }
 
 /** In a crowd trails would hide the plan: those of whom somebody looks for remain. */

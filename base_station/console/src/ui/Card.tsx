@@ -30,10 +30,11 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
   const card = useInSight(chosen);
   if (unit === undefined) return null;
   const name = displayName(unit);
-  const unheard = unit.link === "lost" || unit.link === "never";
+  const off = unit.switched_off;
+  const unheard = !off && (unit.link === "lost" || unit.link === "never");
   const short = brief && !chosen && urgency === "normal" && isUsual(unit);
   return (
-    <li class={`card ${urgency} ${flags({ unheard, chosen, brief: short })}`} data-unit={unitId} ref={card}>
+    <li class={`card ${urgency} ${flags({ unheard, off, chosen, brief: short })}`} data-unit={unitId} ref={card}>
       <button
         type="button"
         class="card-head"
