@@ -13,7 +13,7 @@ from base_station.alarms.book import AlarmBook
 from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
-from base_station.events import PinsTouched, TrailFilled
+from base_station.events import NamesForgotten, PinsTouched, TrailFilled
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
@@ -50,7 +50,9 @@ from shared.messages.station import (
     Unassign,
 )
 
-Effect = Alarm | UnitState | SentCommand | PinsTouched | TrailFilled  # what an action changed
+Effect = (
+    Alarm | UnitState | SentCommand | PinsTouched | TrailFilled | NamesForgotten
+)  # what an action changed
 
 
 class Actions:
@@ -178,7 +180,7 @@ class Actions:
         once.forget_words(state)
         unit.forget_wearers()
         told = command_book.forget(state, unit)
-        return [unit, TrailFilled(unit.unit_id), *told, _pins_of(met)]
+        return [unit, TrailFilled(unit.unit_id), *told, _pins_of(met), NamesForgotten()]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[Effect]:
         unit = _registered(state, action.unit_id)

@@ -64,6 +64,10 @@ class CommandTouched(msgspec.Struct, frozen=True):
     command_id: str
 
 
+class NamesForgotten(msgspec.Struct, frozen=True):
+    """What consoles were told before may name somebody who is forgotten: they begin anew."""
+
+
 class Refused(msgspec.Struct, frozen=True):
     """A person's action that had no effect."""
 
@@ -72,7 +76,14 @@ class Refused(msgspec.Struct, frozen=True):
 
 
 Output = (
-    FusedPosition | AlarmChange | UnitTouched | TrailFilled | PinsTouched | CommandTouched | Refused
+    FusedPosition
+    | AlarmChange
+    | UnitTouched
+    | TrailFilled
+    | PinsTouched
+    | CommandTouched
+    | NamesForgotten
+    | Refused
 )
 
 

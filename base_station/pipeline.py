@@ -20,6 +20,7 @@ from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
 from base_station.events import (
     CommandTouched,
+    NamesForgotten,
     Output,
     PinsTouched,
     Received,
@@ -158,7 +159,7 @@ class StationPipeline:
                 outputs.append(CommandTouched(effect.command_id))
             elif isinstance(effect, PinsTouched):
                 outputs.extend(self._repin(effect.unit_ids))
-            elif isinstance(effect, TrailFilled):
+            elif isinstance(effect, TrailFilled | NamesForgotten):
                 outputs.append(effect)
             else:
                 outputs.append(UnitTouched(effect.unit_id))

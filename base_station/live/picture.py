@@ -9,7 +9,14 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from base_station.api.wire import Delta, ReplayView, Snapshot
-from base_station.events import CommandTouched, Output, PinsTouched, TrailFilled, UnitTouched
+from base_station.events import (
+    CommandTouched,
+    NamesForgotten,
+    Output,
+    PinsTouched,
+    TrailFilled,
+    UnitTouched,
+)
 from base_station.live.drawn_trails import DrawnTrails
 from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.pipeline import StationPipeline
@@ -50,6 +57,7 @@ class Picture:
         self._filled: dict[str, None] = {}  # since trails were last told
         self._untold: dict[str, None] = {}  # filled trails that are to be told now
         self._pins_changed = False
+        self._forgotten = False  # somebody, since consoles were told everything
         self._frame = self._frame_now()
 
     def note(self, outputs: Sequence[Output]) -> None:
@@ -64,6 +72,8 @@ class Picture:
                 self._filled[output.unit_id] = None
             elif isinstance(output, PinsTouched):
                 self._pins_changed = True
+            elif isinstance(output, NamesForgotten):
+                self._forgotten = True
             elif isinstance(output, AlarmChange):
                 self._alarms.append(output)
                 if output.unit_id:
@@ -71,7 +81,8 @@ class Picture:
 
     def flush(self, health: bool = False, replay: ReplayView | None = None) -> None:
         """Tell what changed, and when asked for, how the station is."""
-        if any(now is not told for now, told in zip(self._frame_now(), self._frame, strict=True)):
+        frames = zip(self._frame_now(), self._frame, strict=True)
+        if self._forgotten or any(now is not told for now, told in frames):
             self.reset(replay)
             return
         if health or replay:
@@ -126,7 +137,7 @@ class Picture:
         self._commands.clear()
         self._filled.clear()
         self._untold.clear()
-        self._pins_changed = False
+        self._pins_changed = self._forgotten = False
         self._sink.reset(*self._whole(replay))
 
     def whole(self, replay: ReplayView | None = None) -> tuple[Snapshot, Trails]:

@@ -70,6 +70,9 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         saved = station.pipeline.checkpoint()
         assert ANA.encode() not in saved
         assert BO in station.pipeline.state.alarms["mayday|FF-02"].text
+        until(lambda: station.screen.resets != [], "open consoles begin anew")
+        shown = msgspec.json.encode(station.screen.resets[-1]).decode()
+        assert (ANA in shown, BO in shown) == (False, True)
         station.act(RegisterUnit("FF-03", "FF-03"))  # the log goes on
         assert len(station.recorder.segments()) == 2
     assert len(list(read_log(folder.log))) > 10

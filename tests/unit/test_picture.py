@@ -5,7 +5,13 @@ from __future__ import annotations
 import msgspec
 
 from base_station.api.wire import Delta, ReplayView
-from base_station.events import CommandTouched, PinsTouched, TrailFilled, UnitTouched
+from base_station.events import (
+    CommandTouched,
+    NamesForgotten,
+    PinsTouched,
+    TrailFilled,
+    UnitTouched,
+)
 from base_station.live.picture import FILLED_A_TURN, Picture
 from base_station.live_state import Incident, UnitState
 from base_station.pipeline import StationPipeline
@@ -99,6 +105,17 @@ def test_alarms_commands_and_pins_are_urgent_until_they_are_told() -> None:
         assert units_of([shown]) == [[unit_id] if unit_id else []]
         pins = () if isinstance(output, PinsTouched) else None
         assert (shown.pins, shown.beacons) == (pins, pins)
+
+
+def test_a_forgetting_is_told_to_all_anew_whatever_was_still_to_be_told() -> None:
+    """Alarms that a console was told before, or is about to be, may name somebody."""
+    screen = Screen()
+    picture = walked(screen)
+    picture.note([alarm_of("FF-03"), NamesForgotten()])
+    picture.flush()
+    assert (told(screen), len(screen.resets)) == ([], 1)
+    picture.flush()
+    assert (told(screen), len(screen.resets)) == ([], 1)
 
 
 def test_another_incident_is_told_to_all_anew_and_what_was_to_be_told_with_it() -> None:
