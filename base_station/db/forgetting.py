@@ -23,9 +23,9 @@ from base_station.db.models import (
 from base_station.forgetting.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
 from base_station.forgetting.redaction import name_pattern, what_is_left
 from base_station.live_state import FORGOTTEN
-from shared.messages.station import DoneApart
+from shared.messages.station import DoneApart, ResolveAlarm
 
-_APART = DoneApart.__name__
+_APART, _RESOLVED = DoneApart.__name__, ResolveAlarm.__name__
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
@@ -80,8 +80,9 @@ def _alarms(session: Session, erasure: Erasure) -> None:
     names = name_pattern(erasure.names)
     for alarm in session.scalars(select(Alarm)):
         covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
-        inside = erasure.from_ns <= alarm.raised_ns < erasure.until_ns
-        if covered or inside:  # what it said before may name others than what it says now
+        if covered or erasure.is_about(
+            alarm.unit_id, alarm.raised_ns
+        ):  # what it said before may name others than what it says now
             _rewrite_alarm(session, alarm, covered, names)
 
 
@@ -103,8 +104,19 @@ def _audit(session: Session, erasure: Erasure) -> None:
         about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
         if about is not None:
             entry.detail = FORGOTTEN
+    for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _RESOLVED)):
+        if _is_about(entry, erasure):
+            entry.detail = names.sub(FORGOTTEN, entry.detail)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
         entry.detail = _apart(entry, erasure, names)
+
+
+def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:
+    try:
+        noted = msgspec.json.decode(entry.detail, type=ResolveAlarm)
+    except msgspec.DecodeError:  # nothing is left of it
+        return False
+    return erasure.is_about_alarm(noted.alarm_id)
 
 
 def _apart(entry: AuditEntry, erasure: Erasure, names: re.Pattern[str]) -> str:

@@ -42,6 +42,7 @@ class Erasure(msgspec.Struct, frozen=True):
     worn_after: tuple[Assign, ...] = ()  # what was worn when it was closed
     opening_id: str = ""  # of the action that opened it
     closing_id: str = ""
+    about_until_ns: int = FOREVER_NS  # alarms of its units: until the next incident is opened
 
     @property
     def unit_ids(self) -> frozenset[str]:
@@ -75,6 +76,18 @@ class Erasure(msgspec.Struct, frozen=True):
         return any(
             one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
         )
+
+    def is_about(self, unit_id: str, raised_ns: int) -> bool:
+        """Whether an alarm may name who is to be forgotten: also where it was raised when an
+        incident was over, of what a unit could not say before.
+        """
+        until_ns = self.about_until_ns if unit_id in self.unit_ids else self.until_ns
+        return self.from_ns <= raised_ns < until_ns
+
+    def is_about_alarm(self, alarm_id: str) -> bool:
+        """The same of one whose id is all that is known (``base_station.alarms.book``)."""
+        _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
+        return raised_ns.isdecimal() and self.is_about(unit_id, int(raised_ns))
 
     def is_told(self, t_ns: int, apart: DoneApart) -> bool:
         """Whether what was done apart, and written down at ``t_ns``, says where somebody was, or
@@ -134,7 +147,8 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     names: set[str] = set()
     opened_ns = closed_ns = None
     opening_id = closing_id = ""
-    for t_ns, action in _actions(records):
+    told = iter(_actions(records))
+    for t_ns, action in told:
         done = action.action
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
             opened_ns, opening_id = t_ns, action.action_id
@@ -170,6 +184,9 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         worn_after=tuple(worn.values()),
         opening_id=opening_id,
         closing_id=closing_id,
+        about_until_ns=next(
+            (t_ns for t_ns, later in told if isinstance(later.action, OpenIncident)), FOREVER_NS
+        ),
     )
 
 

@@ -44,6 +44,7 @@ from shared.messages.station import (
     CloseIncident,
     DoneApart,
     OpenIncident,
+    ResolveAlarm,
     SetStart,
     Unassign,
 )
@@ -92,7 +93,11 @@ class Redactor:
     def _heard(self, record: Record, event: Received) -> list[Record]:
         match event.message:
             case OperatorAction() as action:
-                return [self._renamed(one) for one in self._actions(record, action)]
+                done = action.action
+                about = isinstance(done, ResolveAlarm) and self._erasure.is_about_alarm(
+                    done.alarm_id
+                )
+                return [self._renamed(one, about) for one in self._actions(record, action)]
             case FusedPosition() as fused:
                 gone = self._erasure.covers(fused.unit_id, fused.t_meas_ns)
                 return [] if gone else [record]
@@ -136,7 +141,7 @@ class Redactor:
     def _alarm(self, record: Record, change: AlarmChange) -> Record:
         t_ns, key, _ = record
         if not self._erasure.covers(change.unit_id, change.raised_ns):
-            return self._renamed(record)
+            return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
         by = self._names.sub(FORGOTTEN, change.by)
         return t_ns, key, encode(msgspec.structs.replace(change, text=FORGOTTEN, by=by))
 
@@ -194,11 +199,13 @@ class Redactor:
             case _:
                 return message
 
-    def _renamed(self, record: Record) -> Record:
-        """With every name replaced, wherever in the record it stands; who did something stays."""
+    def _renamed(self, record: Record, about: bool = False) -> Record:
+        """With every name replaced, wherever in the record it stands; who did something stays.
+        ``about``: also of a record of another time.
+        """
         t_ns, key, payload = record
         inside = self._erasure.from_ns <= t_ns < self._erasure.until_ns
-        if not inside or not self._holds_a_name(payload):
+        if not (inside or about) or not self._holds_a_name(payload):
             return record
         wire_type = wire_type_of(key)
         assert wire_type is not None  # it could be read

@@ -93,6 +93,25 @@ def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
     assert not erasure.covers("A", 40)
 
 
+def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_next_one() -> None:
+    """What a unit could not say before, and what somebody notes of it when it is dealt with."""
+    records = done(
+        (5, OpenIncident("i0", "")), (6, CloseIncident("i0")),
+        (10, ana("A")), (20, OPEN), (40, CLOSE), (50, OpenIncident("i2", "")),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    raised_ns = (19, 20, 39, 40, 49, 50)
+    about = [erasure.is_about("A", one) for one in raised_ns]
+    assert about == [False, True, True, True, True, False]
+    about = [erasure.is_about("B", one) for one in raised_ns]
+    assert about == [False, True, True, False, False, False]
+    assert [erasure.is_about_alarm(f"fall:{one}:45") for one in "AB"] == [True, False]
+    assert erasure.is_about_alarm("station:log:30")
+    assert not erasure.is_about_alarm("of another program")
+    last = erasure_of_incident(records[:-1], "i1")
+    assert last.is_about("A", 10**18)
+
+
 def test_of_an_incident_that_was_forgotten_the_log_tells_the_units_all_the_same() -> None:
     """Their journals may bring more of it."""
     records = done(

@@ -12,7 +12,7 @@ from base_station.db.models import Alarm, AlarmLife, AuditEntry
 from base_station.db.store import Store
 from base_station.forgetting.erasure import Erasure, Wearing
 from base_station.live_state import FORGOTTEN
-from shared.messages.station import DoneApart
+from shared.messages.station import DoneApart, ResolveAlarm
 
 FALL = {"alarm_id": "fall:FF-01:1", "state": "raised", "level": "fall", "by": ""}
 
@@ -37,6 +37,44 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
         with store.read() as session:
             told = {one.t_ns: one.text for one in session.query(AlarmLife)}
     assert told == texts | {20: "(forgotten) may have fallen"}
+
+
+def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
+    tmp_path: Path,
+) -> None:
+    ana = Erasure(
+        (Wearing("FF-01", 15, 25),), ("Ana",), incident_id="i1", from_ns=15, until_ns=25,
+        about_until_ns=50,
+    )  # fmt: skip
+    ids = ["mayday:FF-01:30", "mayday:FF-02:30", "mayday:FF-01:60"]
+    fields = {"rule": "mayday", "priority": 1, "state": "resolved", "level": "mayday"}
+    with Store(tmp_path / "station.sqlite") as store:
+        with store.write() as session:
+            for alarm_id in ids:
+                _, unit_id, raised_ns = alarm_id.split(":")
+                session.add(
+                    Alarm(
+                        **fields, alarm_id=alarm_id, unit_id=unit_id, text="Mayday from Ana",
+                        by="eve: spoke to Ana", raised_ns=int(raised_ns), changed_ns=70,
+                    )
+                )  # fmt: skip
+                noted = ResolveAlarm(alarm_id, "spoke to Ana")
+                session.add(
+                    AuditEntry(
+                        entry_id=alarm_id, t_ns=70, by="eve", action="ResolveAlarm",
+                        detail=msgspec.json.encode(noted).decode(),
+                    )
+                )  # fmt: skip
+        for _ in range(2):  # every statement may run again
+            with store.write() as session:
+                forget_in(session, ana)
+        with store.read() as session:
+            told = {one.alarm_id: (one.text, one.by) for one in session.query(Alarm)}
+            noted_of = {one.entry_id: "Ana" in one.detail for one in session.query(AuditEntry)}
+    kept = "Mayday from Ana", "eve: spoke to Ana"
+    gone = f"Mayday from {FORGOTTEN}", f"eve: spoke to {FORGOTTEN}"
+    assert told == dict(zip(ids, (gone, kept, kept), strict=True))
+    assert noted_of == dict(zip(ids, (False, True, True), strict=True))
 
 
 @pytest.mark.parametrize("of_incident", [False, True])

@@ -33,6 +33,7 @@ from shared.messages.station import (
     Action,
     Assign,
     DoneApart,
+    ResolveAlarm,
     SendCommand,
     SetStart,
     SetThresholds,
@@ -222,6 +223,34 @@ PERSON = Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1")
 INCIDENT = Erasure(
     (Wearing("anna", 110, 200),), ("Ada",), incident_id="i1", from_ns=110, until_ns=200
 )
+
+
+@pytest.mark.parametrize(
+    ("t_ns", "unit_id", "raised_ns", "left"),
+    [
+        (250, "anna", 250, FORGOTTEN),  # said in the incident, perhaps, and told after it
+        (250, "bert", 250, "Ada"),
+        (250, "bert", 150, FORGOTTEN),
+        (350, "anna", 350, "Ada"),  # of the next one
+        (350, "anna", 250, FORGOTTEN),
+    ],
+)
+def test_an_alarm_about_an_incident_and_what_is_noted_of_it_name_nobody_after_it_either(
+    t_ns: int, unit_id: str, raised_ns: int, left: str
+) -> None:
+    redact = Redactor(msgspec.structs.replace(INCIDENT, about_until_ns=300), Clocks())
+    alarm = AlarmChange(
+        HEADER, f"fall:{unit_id}:{raised_ns}", "fall", unit_id, 1, AlarmState.RAISED, "fall",
+        "Ada may have fallen", "eve: spoke to Ada", raised_ns, raised_ns,
+    )  # fmt: skip
+    ((_, _, payload),) = redact((t_ns, ALARM.key(STATION_ID), encode(alarm)))
+    said = f"{left} may have fallen", f"eve: spoke to {left}"
+    assert encode(msgspec.structs.replace(alarm, text=said[0], by=said[1])) == payload
+    noted = ResolveAlarm(alarm.alarm_id, "spoke to Ada")
+    done = OperatorAction(HEADER, "a-1", "Ada", noted)
+    ((_, _, payload),) = redact((t_ns, OPERATOR.key(STATION_ID), encode(done)))
+    told = msgspec.structs.replace(noted, note=f"spoke to {left}")
+    assert encode(msgspec.structs.replace(done, action=told)) == payload
 
 
 @pytest.mark.parametrize(
