@@ -71,9 +71,22 @@ class PlayedStation:
         self._sockets.clear()
 
     def _speak(self, socket: WebSocketRoute) -> None:
+        if "/replays/" in socket.url:
+            self._replay(socket)
+            return
         self._sockets.append(socket)
         socket.on_message(lambda _: self._show(socket))
         self._show(socket)
+
+    @staticmethod
+    def _replay(socket: WebSocketRoute) -> None:
+        """Beside what is live: a bad minute, again and again."""
+
+        def show(_: object = None) -> None:
+            socket.send(msgspec.json.encode(scenes.past()).decode())
+
+        socket.on_message(show)
+        show()
 
     def _show(self, socket: WebSocketRoute) -> None:
         if self._hangs:
@@ -89,7 +102,11 @@ class PlayedStation:
         path = url.path.removeprefix(API)
         if method != "GET":
             self._changes.append(path)
-            route.fulfill(status=204)
+            made = self._answers.get(f"{method} {path}")
+            if made is None:
+                route.fulfill(status=204)
+            else:
+                route.fulfill(json=made)
             return
         kind = parse_qs(url.query).get("kind", [""])[0]
         answer = self._answers.get(f"{path}?{kind}", self._answers.get(path))

@@ -363,6 +363,51 @@ def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
         expect(page.get_by_role("combobox", name="Floor")).to_have_value(floor)
 
 
+def begin_replay(page: Page) -> Locator:
+    """Beside what is live."""
+    menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
+    banner = page.get_by_role("region", name="Replay")
+    expect(banner).to_contain_text("This is the past")
+    return banner
+
+
+def test_what_cannot_wait_is_said_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    banner = begin_replay(page)
+    dialog = menu(page, "Account")
+    expect(dialog).not_to_contain_text("Jonas Bergman may have fallen")  # that was then
+    mayday = scenes.alarm(0, "mayday", 1, "MAYDAY of Astrid Lindqvist", 2)
+    station.change(alarms=(mayday,), units=(scenes.with_alarms(scenes.unit(0), mayday),))
+    now = dialog.get_by_role("alert").get_by_role("button")
+    expect(now).to_have_text("Live now: MAYDAY of Astrid Lindqvist")
+    now.click()
+    expect(banner).to_have_count(0)
+    expect(page.locator(".card.chosen .name")).to_have_text("Astrid Lindqvist")
+    expect(page.locator(".card.chosen")).to_contain_text("Mayday")
+
+
+def test_a_station_that_replays_says_no_alarm_of_the_past_as_one_that_cannot_wait(
+    stage: Stage,
+) -> None:
+    page, _ = stage.open(scenes.past())
+    expect(strip(page)).to_contain_text("Jonas Bergman may have fallen")
+    expect(menu(page, "Account").get_by_role("button", name="may have fallen")).to_have_count(0)
+
+
+def test_a_replay_does_not_say_that_the_station_is_well(stage: Stage) -> None:
+    """What was measured of the machine is no part of the past; what is wrong now is said beside."""
+    health = msgspec.structs.replace(scenes.HEALTH, problems=("only 700 MB are free", "b"))
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), health=health))
+    light = page.get_by_role("button", name="Station health")
+    expect(light).to_be_visible()
+    banner = begin_replay(page)
+    expect(light).to_have_count(0)
+    expect(banner).to_contain_text("Station: only 700 MB are free +1")
+    assert flaws(page) == []
+    banner.get_by_role("button", name="Back to live").click()
+    expect(light).to_be_visible()
+
+
 def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
     page, _ = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")

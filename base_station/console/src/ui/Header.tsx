@@ -1,3 +1,4 @@
+import { isPast } from "../sessions";
 import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf } from "../words";
@@ -11,7 +12,7 @@ export function Header({ picture }: { picture: Picture }) {
       <IncidentTitle picture={picture} />
       <Clock picture={picture} />
       <ParClock picture={picture} />
-      <HealthLight picture={picture} />
+      {!isPast.value && <HealthLight picture={picture} />}
       <LinkLight picture={picture} />
       <Menu />
     </header>

@@ -1,7 +1,7 @@
 import { besideLive, stopReplay, type Replay } from "../sessions";
 import { assess } from "../view";
 import type { Picture } from "../live/picture";
-import { dateAndTime } from "../words";
+import { dateAndTime, problemsOf } from "../words";
 import { Icon } from "./Icon";
 import { Transport } from "./Transport";
 
@@ -25,6 +25,7 @@ export function ReplayBar({ replay, live }: Props) {
       {besideLive.value && (
         <>
           <LiveAlarms live={live} />
+          <LiveProblems live={live} />
           <button type="button" class="primary" onClick={stopReplay}>
             Back to live
           </button>
@@ -41,6 +42,19 @@ function LiveAlarms({ live }: { live: Picture }) {
   return (
     <span class="replay-live alarmed" role="alert">
       <Icon name="alarm" /> Live now: {open} open {open === 1 ? "alarm" : "alarms"}
+    </span>
+  );
+}
+
+/** The station's own: the picture of the past does not have them. */
+function LiveProblems({ live }: { live: Picture }) {
+  const health = live.health.value;
+  const [first, ...more] = health === null ? [] : problemsOf(health);
+  if (first === undefined) return null;
+  return (
+    <span class="replay-live alarmed" role="alert">
+      <Icon name="alarm" /> Station: {first}
+      {more.length > 0 && ` +${more.length}`}
     </span>
   );
 }

@@ -1,16 +1,19 @@
-import { live } from "../sessions";
+import { besideLive, isPast, live, stopReplay } from "../sessions";
 import { dialog, find } from "../view";
 import { Icon } from "./Icon";
 
-/** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait. */
+/** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait.  Over a
+ * replay they are of what is live, and lead there; of the past there are none. */
 export function UrgentNow() {
-  const picture = live.value?.picture;
+  const overPast = isPast.value;
+  const picture = overPast && !besideLive.value ? undefined : live.value?.picture;
   const urgent = (picture?.openAlarms.value ?? []).filter(
     (alarm) => alarm.priority === 1 && alarm.state === "raised",
   );
   const [first, ...more] = urgent;
   if (picture === undefined || first === undefined) return <div role="alert" />;
   const show = () => {
+    stopReplay();
     dialog.value = null;
     find(first.unit_id, picture.unit(first.unit_id)?.peek().position?.floor ?? null);
   };
@@ -18,6 +21,7 @@ export function UrgentNow() {
     <div role="alert" class="urgent-now">
       <button type="button" onClick={show}>
         <Icon name="alarm" />
+        {overPast && "Live now: "}
         {first.text}
         {more.length > 0 && ` (+${more.length})`}
       </button>
