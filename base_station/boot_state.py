@@ -96,6 +96,16 @@ def captured_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int 
     return min(boot.station_ns(header.t_mono_ns), now_ns)
 
 
+def told_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int | None:
+    """The same, and of a run of which nothing came live as its unit itself knew the station's time;
+    None where nobody can tell.
+    """
+    known_ns = captured_ns(boots, header, now_ns)
+    if known_ns is None and header.utc_std_s > 0.0:
+        return min(header.t_utc_ns, now_ns)
+    return known_ns
+
+
 def _said_ns(header: Header, drifted_ns: int) -> int | None:
     """The offset as the unit estimates it, where that can be."""
     said_ns = header.t_utc_ns - header.t_mono_ns

@@ -123,10 +123,12 @@ class UnitState(Sender):
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
     mayday_ns: int | None = None  # when it was last told that the button was pressed
     mayday_said_ns: int = 0  # and when the unit said that: it may have waited in its journal
+    mayday_is_dated: bool = True  # else nobody can tell when it was said
     mayday_cancelled_ns: int | None = None  # since then
     mayday_cancelled_said_ns: int = 0
     fall_ns: int | None = None
     fall_said_ns: int = 0
+    fall_is_dated: bool = True
     fault: Fault | None = None
     inside_since_ns: int | None = None
     reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
@@ -141,19 +143,28 @@ class UnitState(Sender):
         """What a person would call the unit."""
         return self.person.name if self.person else self.label or self.unit_id
 
-    def name_at(self, t_ns: int) -> str:
-        """What a person would have called it then, by who wore it."""
+    def name_at(self, t_ns: int | None) -> str:
+        """What a person would have called it then, by who wore it; None: nobody can tell when."""
+        if t_ns is None:
+            before = [one.name for one in self.worn_before if one.name != self.name]
+            return " or, before, ".join([self.name, *before[-1:]])
         if t_ns >= self.worn_since_ns:
             return self.name
-        worn = [one for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
-        return worn[-1].name if worn else self.label or self.unit_id
+        worn = self._worn_at(t_ns)
+        return worn.name if worn else self.label or self.unit_id
 
-    def worn_from_ns(self, t_ns: int) -> int:
+    def worn_from_ns(self, t_ns: int | None) -> int | None:
         """When whoever wore it then began to; names one wearing of this unit."""
+        if t_ns is None:
+            return None
         if t_ns >= self.worn_since_ns:
             return self.worn_since_ns
-        worn = [one.from_ns for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
-        return worn[-1] if worn else 0
+        worn = self._worn_at(t_ns)
+        return worn.from_ns if worn else 0
+
+    def _worn_at(self, t_ns: int) -> FormerWearer | None:
+        worn = [one for one in self.worn_before if one.from_ns <= t_ns < one.until_ns]
+        return worn[-1] if worn else None
 
     def end_wearing(self, t_ns: int) -> None:
         """Whoever wears it does so no more."""

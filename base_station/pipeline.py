@@ -14,7 +14,7 @@ from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
 from base_station.assessment.trust import note_trust
-from base_station.boot_state import captured_ns
+from base_station.boot_state import told_ns
 from base_station.checkpoint import Checkpoint
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
@@ -259,7 +259,7 @@ class StationPipeline:
 
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
         now_ns = self.state.t_ns  # an answer may have waited in the unit's journal
-        said_ns = captured_ns(unit.boots, reply.header, now_ns) or now_ns
+        said_ns = told_ns(unit.boots, reply.header, now_ns) or now_ns
         command = command_book.note_reply(self.state, unit, reply, said_ns)
         if command is not None and reply.state is CommandState.ACKNOWLEDGED:
             by = command.deliveries[unit.unit_id].acknowledged_by

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.boot_state import captured_ns
+from base_station.boot_state import told_ns
 from base_station.live_state import Fault, UnitState
 from base_station.thermal import dose_of
 from shared.clock import NS_PER_S
@@ -54,15 +54,15 @@ def _note_status(unit: UnitState, status: Status, t_ns: int) -> None:
     unit.status, unit.status_ns = status, t_ns
     if status.mayday == _is_pressed(unit):
         return
-    said_ns = _said_ns(unit, status.header, t_ns)
+    said_ns = _told_ns(unit, status.header, t_ns) or t_ns
     if status.mayday and said_ns > unit.mayday_cancelled_said_ns:  # the press itself may be lost
         _press(unit, t_ns, said_ns)
     elif not status.mayday and said_ns > unit.mayday_said_ns:
         unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns
 
 
-def _press(unit: UnitState, t_ns: int, said_ns: int) -> None:
-    unit.mayday_ns, unit.mayday_said_ns = t_ns, said_ns
+def _press(unit: UnitState, t_ns: int, said_ns: int, is_dated: bool = True) -> None:
+    unit.mayday_ns, unit.mayday_said_ns, unit.mayday_is_dated = t_ns, said_ns, is_dated
     unit.mayday_cancelled_ns = None
 
 
@@ -84,7 +84,8 @@ def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> N
 
 
 def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
-    said_ns = _said_ns(unit, event.header, t_ns)
+    told_ns = _told_ns(unit, event.header, t_ns)
+    is_dated, said_ns = told_ns is not None, told_ns or t_ns
     match event.kind:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
@@ -92,12 +93,12 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
                 unit.mayday_said_ns
             )
             if not stands or said_ns > unit.mayday_said_ns:
-                _press(unit, t_ns, said_ns)
+                _press(unit, t_ns, said_ns, is_dated)
         case EventKind.MAYDAY_CANCELLED:
             if said_ns >= unit.mayday_said_ns:  # else it was pressed again since
                 unit.mayday_cancelled_ns, unit.mayday_cancelled_said_ns = t_ns, said_ns
         case EventKind.FALL:
-            unit.fall_ns, unit.fall_said_ns = t_ns, said_ns
+            unit.fall_ns, unit.fall_said_ns, unit.fall_is_dated = t_ns, said_ns, is_dated
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
             said = event.detail or event.kind.name.lower().replace("_", " ")
             unit.fault = Fault(t_ns, said)
@@ -108,11 +109,11 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
             pass
 
 
-def _said_ns(unit: UnitState, header: Header, t_ns: int) -> int:
-    """When it or its tracking agent said a message; one that cannot be placed is of now."""
+def _told_ns(unit: UnitState, header: Header, t_ns: int) -> int | None:
+    """When it or its tracking agent said a message; None: nobody can tell."""
     agent = unit.tracker
     sender = agent if agent is not None and agent.unit_id == header.unit_id else unit
-    return captured_ns(sender.boots, header, t_ns) or t_ns
+    return told_ns(sender.boots, header, t_ns)
 
 
 def _is_last_word(unit: UnitState, header: Header) -> bool:

@@ -21,12 +21,13 @@ class Fall:
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         if unit.fall_ns is None:
             return None
+        said_ns = unit.fall_said_ns if unit.fall_is_dated else None
         return Finding(
             "fall",
             IMMEDIATE,
-            f"{unit.name_at(unit.fall_said_ns)} may have fallen",
+            f"{unit.name_at(said_ns)} may have fallen",
             seen_ns=unit.fall_ns,
             onset_ns=unit.fall_ns,
             latched=True,
-            worn_from_ns=unit.worn_from_ns(unit.fall_said_ns),
+            worn_from_ns=unit.worn_from_ns(said_ns),
         )

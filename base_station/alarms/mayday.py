@@ -23,12 +23,13 @@ class Mayday:
             return None
         if unit.mayday_cancelled_ns is not None:
             return Clear(unit.mayday_cancelled_ns, "cancelled by the wearer")
+        said_ns = unit.mayday_said_ns if unit.mayday_is_dated else None
         return Finding(
             "mayday",
             IMMEDIATE,
-            f"Mayday from {unit.name_at(unit.mayday_said_ns)}",
+            f"Mayday from {unit.name_at(said_ns)}",
             seen_ns=unit.mayday_ns,
             onset_ns=unit.mayday_ns,
             latched=True,
-            worn_from_ns=unit.worn_from_ns(unit.mayday_said_ns),
+            worn_from_ns=unit.worn_from_ns(said_ns),
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import msgspec
 import pytest
 
 from base_station.alarms import ALARMS
@@ -138,6 +139,45 @@ def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
     told["Cem"] = script.alarms[-1].text
     text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
     assert told == {name: text.format(name or f"unit {U}") for name in told}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("knew_time", [False, True])
+def test_what_a_run_said_of_which_nothing_came_live_is_of_who_wore_the_unit_as_far_as_is_known(
+    script: Script, kind: EventKind, knew_time: bool
+) -> None:
+    """Its monotonic clock says nothing; where it knew the station's time, that does."""
+    texts = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3)
+        script.boot_ids[U] = 6
+        header = script.header(U)
+        script.boot_ids[U] = 7
+        if knew_time:
+            header = msgspec.structs.replace(header, t_utc_ns=script.t_ns, utc_std_s=0.1)
+        if name == "Ana":
+            of_ana = encode(UnitEvent(header, kind))
+        script.wait(3, lambda: script.status(U))
+    script.record(backfilled_key(U, EVENT.suffix), of_ana)
+    texts.append(script.alarms[-1].text)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    script.wait(1)
+    script.event(U, kind)
+    texts.append(script.alarms[-1].text)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    of_whom = "Ana" if knew_time else "Bo or, before, Ana"
+    assert texts == [text.format(of_whom), text.format("Bo")]
+
+
+def test_who_alone_has_worn_a_unit_is_who_pressed_whenever_that_was(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.boot_ids[U] = 6
+    script.record(
+        backfilled_key(U, EVENT.suffix), encode(UnitEvent(script.header(U), EventKind.MAYDAY))
+    )
+    assert script.alarms[-1].text == "Mayday from Ana"
 
 
 def open_texts(script: Script) -> set[str]:
