@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from base_station.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
 from shared.mcap_log import SegmentReader, segment_paths
 
+_log = logging.getLogger(__name__)
 Announce = Callable[[str], None]
 
 
@@ -72,7 +74,9 @@ def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], No
 
     def write(projection: Projection) -> None:
         with store.write() as session:
-            project_into(session, (projection,))
+            left_out = project_into(session, (projection,))
+        if left_out:
+            _log.warning("%d places of units are no numbers and are left out", left_out)
 
     count = project_log(
         LogFeed(log).records(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -53,8 +54,8 @@ _NEW_UNIT = {
 }
 
 
-def project_into(session: Session, projections: Sequence[Projection]) -> None:
-    """Write projections in their order.
+def project_into(session: Session, projections: Sequence[Projection]) -> int:
+    """Write projections in their order; gives how many places no table can hold.
 
     Where units were and when they were heard makes up nearly all of it and depends on nothing
     else, so that goes in at the end, in one go.
@@ -72,8 +73,9 @@ def project_into(session: Session, projections: Sequence[Projection]) -> None:
             _unit(session, description.header.unit_id, **_described(description))
         tracks += projection.tracks
         heard.update(projection.heard)
-    _tracks(session, tracks)
+    left_out = _tracks(session, tracks)
     _heard(session, heard)
+    return left_out
 
 
 def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
@@ -156,8 +158,9 @@ def _alarm(session: Session, change: AlarmChange) -> None:
     )  # fmt: skip
 
 
-def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> None:
-    rows = [
+def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> int:
+    """Without what is no number, which no column takes; gives how many that were."""
+    all_rows = [
         {
             "unit_id": fused.unit_id,
             "t_s": fused.t_meas_ns // NS_PER_S,
@@ -174,8 +177,14 @@ def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> None:
         }
         for fused in tracks
     ]
+    rows = [
+        row
+        for row in all_rows
+        if not any(isinstance(value, float) and math.isnan(value) for value in row.values())
+    ]
     if rows:
         _execute_many(session, insert(TrackPoint).on_conflict_do_nothing(), rows)
+    return len(all_rows) - len(rows)
 
 
 def _heard(session: Session, heard: Mapping[str, int]) -> None:

@@ -22,6 +22,8 @@ PERIOD_S = 0.5
 BATCH = 2_000
 MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
 
+_NO_NUMBER = "where somebody was is no number"
+
 logger = logging.getLogger(__name__)
 
 
@@ -105,10 +107,10 @@ class SqlProjection:
 
     def _write(self, batch: Sequence[Projection]) -> bool:
         """False where the store does not take it now, and may later."""
-        given_up = ""
+        given_up, left_out = "", 0
         try:
             with self._store.write() as session:
-                project_into(session, batch)
+                left_out = project_into(session, batch)
         except Exception as error:
             if isinstance(error, StoreError) and not _is_impossible(error):
                 self._note_failure(error)
@@ -117,7 +119,9 @@ class SqlProjection:
                 return all(self._write([one]) for one in batch)
             logger.exception("a projection cannot be written")
             given_up = f"a mistake of this program, please report it: {error!r}"
-        self._settle(batch, given_up)
+        if left_out:
+            logger.error("%d places of units are no numbers", left_out)
+        self._settle(batch, given_up, left_out)
         return True
 
     def _note_failure(self, error: StoreError) -> None:
@@ -126,11 +130,12 @@ class SqlProjection:
             self._failed_tries += 1
             self._changed.notify_all()
 
-    def _settle(self, batch: Sequence[Projection], given_up: str = "") -> None:
-        """Done with the batch: written, or given up for a reason."""
+    def _settle(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
+        """Done with the batch: written, or given up for a reason; ``left_out``: places in it."""
         with self._changed:
             self._failure = ""
-            self._drop_reason = given_up or self._drop_reason
+            self._dropped += left_out
+            self._drop_reason = given_up or (_NO_NUMBER if left_out else self._drop_reason)
             # The oldest may have been dropped meanwhile.
             settled = {id(projection) for projection in batch}
             while self._pending and id(self._pending[0]) in settled:

@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from alembic import command
 from sqlalchemy import inspect, text
@@ -19,6 +20,7 @@ from base_station.db.accounts import Accounts
 from base_station.db.migrate import alembic_config
 from base_station.db.models import Base, Person
 from base_station.db.principals import Principal, Role
+from base_station.db.projecting import project_into
 from base_station.db.projection import SqlProjection
 from base_station.db.records import FOREVER_NS, Records, Window
 from base_station.db.roster import Roster
@@ -340,6 +342,18 @@ def test_a_change_that_no_table_can_hold_costs_itself_and_nothing_that_waits_bes
     assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
     assert [point.north_m for point in Records(store, clock).track("FF-01", ALL)] == [1.0, 2.0]
     projection.close()
+
+
+def test_a_place_that_is_no_number_costs_nothing_else_of_its_projection(
+    store: Store, clock: ManualClock
+) -> None:
+    """The tables made again from the log have ten seconds in one."""
+    tracks = (fused(5.2, math.nan), fused(6.2, 1.0), fused(7.2, math.nan))
+    story = msgspec.structs.replace(acted(5.0, OpenIncident("i-9", "Mill Lane")), tracks=tracks)
+    with store.write() as session:
+        assert project_into(session, (story,)) == 2
+    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-9"]
+    assert [point.north_m for point in Records(store, clock).track("FF-01", ALL)] == [1.0]
 
 
 def _break(*_: object) -> None:
