@@ -8,6 +8,7 @@ import msgspec
 from playwright.sync_api import Locator, Page, Request, expect
 
 from tests.e2e import scenes
+from tests.e2e.console_page import on_plan
 from tests.e2e.stage import Stage
 
 PIN = msgspec.structs.replace(
@@ -45,3 +46,35 @@ def test_a_form_says_only_what_stands_in_it(stage: Stage) -> None:
     panel.get_by_label("When").select_option("now")
     now = as_it_is | {"north_m": 3.2, "t_ms": None}
     assert moved(page, panel) == now | {"note": "A"}, "it is now, and not when it was before"
+
+
+def test_who_moves_the_plan_moves_no_pin_along(stage: Stage) -> None:
+    """Only one that was chosen is drawn to another place, and the plan else stays."""
+    at = scenes.position(0)
+    pin = msgspec.structs.replace(PIN, north_m=at.north_m, east_m=at.east_m)
+    page, station = stage.open(msgspec.structs.replace(scenes.quiet(), pins=(pin,)))
+    page.locator(".card").first.get_by_role("button").first.click()
+    page.wait_for_timeout(600)  # the person, where the pin is, has come to the middle
+
+    def draw(right_px: int, down_px: int) -> None:
+        page.mouse.move(*on_plan(page, 0, 0))
+        page.mouse.down()
+        page.mouse.move(*on_plan(page, right_px, down_px), steps=8)
+        page.mouse.up()
+        page.wait_for_timeout(350)  # it is no double click
+
+    draw(60, 40)
+    assert station.changes() == []
+    page.mouse.move(*on_plan(page, 60, 40))
+    page.mouse.down()
+    page.mouse.move(*on_plan(page, 0, 0), steps=8)
+    page.mouse.up()
+    panel = pin_panel(page)
+    page.wait_for_timeout(350)  # the plan has taken the size that the panel leaves it
+    with page.expect_request(is_move) as asked:
+        draw(60, 40)
+    said = dict(asked.value.post_data_json or {})
+    assert sorted(said) == ["east_m", "north_m", "unit_id"], "the rest stays as it is"
+    assert said["east_m"] > at.east_m + 1.0
+    assert said["north_m"] < at.north_m - 1.0
+    expect(panel).to_have_count(1)

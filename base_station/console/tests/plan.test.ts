@@ -3,8 +3,9 @@ import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
 import { labelStyle, type Mark } from "../src/plan/marks";
+import { pinLabelStyle } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
-import type { Plan, TrailPoint } from "../src/wire";
+import type { PinView, Plan, TrailPoint } from "../src/wire";
 import { alarm, position, unit } from "./fixtures";
 
 const PLAN: Plan = {
@@ -136,6 +137,18 @@ describe("the name of somebody on the plan", () => {
     const long = { name: "W".repeat(80), floor: "floor 1", old: true };
     expect(nameOf(long)?.getText()).toBe(`${"W".repeat(23)}…, floor 1, 1 min old`);
     expect(nameOf({ name: "Wolfeschlegel von Bergen" })?.getText()).toBe("Wolfeschlegel von Bergen");
+  });
+});
+
+describe("the name at a pin", () => {
+  const colours = { text: "#000000", halo: "#ffffff" } as Colours;
+  const text = (chosen: boolean) =>
+    pinLabelStyle({ t_ms: 0 } as PinView, "W".repeat(80), chosen, colours).getText();
+
+  it("is no person's: it says that it is a pin, and gives way unless it was chosen", () => {
+    expect(text(false)?.getText()).toBe(`Pin: ${"W".repeat(23)}…, start`);
+    expect(text(false)?.getDeclutterMode()).toBe("declutter");
+    expect(text(true)?.getDeclutterMode()).toBe("obstacle");
   });
 });
 

@@ -70,6 +70,7 @@ export class PlanMap {
         this.ground,
         this.building.layer,
         this.past.layer,
+        this.pins.labelLayer,
         ...this.crowd.layers,
         this.pins.layer,
       ],
@@ -115,11 +116,11 @@ export class PlanMap {
     return found ?? null;
   }
 
-  /** Pins and beacons can be drawn to another place. */
+  /** The pin or beacon that was chosen can be drawn to another place. */
   private dragging(): Translate {
     const translate = new Translate({
       layers: [this.pins.layer],
-      filter: (feature) => feature instanceof Feature && this.pins.standing(feature) !== null,
+      filter: (feature) => feature instanceof Feature && this.pins.isDraggable(feature),
       hitTolerance: TAP_PX / 2,
     });
     translate.on("translateend", (event) => {

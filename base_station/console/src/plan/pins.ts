@@ -35,10 +35,16 @@ const HEAD_PX = 7;
 
 export class PinLayer {
   private readonly source = new VectorSource<Feature>();
+  private readonly labels = new VectorSource<Feature>();
+  private chosen: string | null = null;
   readonly layer = new VectorLayer({ source: this.source });
+  /** Below those of people, which they keep clear of. */
+  readonly labelLayer = new VectorLayer({ source: this.labels, declutter: true });
 
   show(scene: PinScene): void {
     this.source.clear(true);
+    this.labels.clear(true);
+    this.chosen = scene.chosen;
     for (const beacon of scene.beacons) {
       if (isOn(beacon.floor, scene.floor)) this.addBeacon(beacon, scene);
     }
@@ -50,29 +56,36 @@ export class PinLayer {
     scene.clicked.forEach((place, i) => this.addClick(place, i, scene));
   }
 
-  /** Whether a feature of the map is one that can be dragged. */
+  /** Whether a feature of the map is one that can be chosen. */
   standing(feature: Feature): Standing | null {
     return (feature.get("standing") as Standing | undefined) ?? null;
+  }
+
+  /** Only what was chosen can be dragged: who moves the plan moves no pin along. */
+  isDraggable(feature: Feature): boolean {
+    const standing = this.standing(feature);
+    return standing !== null && standing.id === this.chosen;
   }
 
   private addPin(pin: PinView, at: Place, scene: PinScene): void {
     const chosen = scene.chosen === pin.pin_id;
     const colour = pinColour(pin, scene.colours);
     this.addRegion(at, RADIUS_95 * pin.std_m, colour, chosen);
-    const name = scene.names.get(pin.unit_id) ?? pin.unit_id;
-    const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
-    const label = chosen || pin.state === "conflict" ? `${onPlan(name)}, ${when}` : "";
     const mark = new Feature({ geometry: new Point(siteCoordinate(at)) });
     mark.set("standing", { kind: "pin", id: pin.pin_id } satisfies Standing);
-    mark.setStyle([
+    mark.setStyle(
       new Style({
         zIndex: chosen ? 3 : 1,
         renderer: (where, state) =>
           drawPin(where as number[], state, pin.state, colour, scene.colours.halo),
       }),
-      textStyle(label, -STEM_PX - 2 * HEAD_PX - 4, scene.colours),
-    ]);
+    );
     this.source.addFeature(mark);
+    if (!chosen && pin.state !== "conflict") return;
+    const label = new Feature({ geometry: new Point(siteCoordinate(at)) });
+    const name = scene.names.get(pin.unit_id) ?? pin.unit_id;
+    label.setStyle(pinLabelStyle(pin, name, chosen, scene.colours));
+    this.labels.addFeature(label);
   }
 
   private addBeacon(beacon: BeaconView, scene: PinScene): void {
@@ -125,11 +138,25 @@ function pinColour(pin: PinView, colours: Colours): string {
   return pin.state === "waiting" ? colours.quiet : colours.chosen;
 }
 
-function textStyle(text: string, offsetY: number, colours: Colours): Style {
+/** Nobody is there now: it says that it is a pin, and gives way to who is, unless it was chosen. */
+export function pinLabelStyle(pin: PinView, name: string, chosen: boolean, colours: Colours): Style {
+  const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
+  const above = -STEM_PX - 2 * HEAD_PX - 4;
+  const mode = chosen ? "obstacle" : "declutter";
+  return textStyle(`Pin: ${onPlan(name)}, ${when}`, above, colours, mode);
+}
+
+function textStyle(
+  text: string,
+  offsetY: number,
+  colours: Colours,
+  declutterMode: "declutter" | "obstacle" | "none" = "none",
+): Style {
   return new Style({
     zIndex: 4,
     text: new Text({
       text,
+      declutterMode,
       font: "600 13px system-ui, sans-serif",
       offsetY,
       fill: new Fill({ color: colours.text }),

@@ -8,7 +8,7 @@ import { follow } from "../plan/follow";
 import { PlanMap, type PlanEvents } from "../plan/map";
 import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
-import { click, take, tool, wantsPlaces, type Place } from "../plan/tools";
+import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
 import { Floors } from "./Floors";
 import { PlanTools, ToolPanel } from "./PlanTools";
 
@@ -85,6 +85,7 @@ function eventsOf(picture: Picture): PlanEvents {
 async function move(picture: Picture, standing: Standing, place: Place): Promise<void> {
   const done = mayAct.peek() ? await attempt(moved(picture, standing, place)) : null;
   if (done === null) picture.pins.value = [...picture.pins.peek()];
+  else clicked.value = []; // a place that was clicked before is not where it stands now
 }
 
 function moved(picture: Picture, standing: Standing, place: Place): Promise<object | null> {
