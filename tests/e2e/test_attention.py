@@ -110,6 +110,16 @@ def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
     expect(page.locator(".card.chosen")).to_contain_text("Jonas Bergman")
 
 
+def test_a_button_that_does_nothing_yet_looks_so(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    site = menu(page, "Site")
+    idle, ready = (
+        site.get_by_role("button", name=name).evaluate("one => getComputedStyle(one).background")
+        for name in ("Set base map", "Set place")
+    )
+    assert idle != ready
+
+
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())
