@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
-import { labelStyle, type Mark } from "../src/plan/marks";
+import { colourOf, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
 import { pinLabelStyle } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
 import type { PinView, Plan, TrailPoint } from "../src/wire";
@@ -121,6 +121,18 @@ describe("the name of somebody on the plan", () => {
   } as const;
   const colours = { text: "#000000", halo: "#ffffff" } as Colours;
   const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours).getText();
+
+  it("shows danger also where the place is old", () => {
+    const looks = { quiet: "grey", immediate: "red", soon: "amber" } as Colours;
+    const seen = (change: Partial<Mark>) => {
+      const one = { ...mark, initials: "AB", ...change };
+      return `${colourOf(one, looks)} ${lettersOf(one)}`;
+    };
+    expect(seen({ urgency: "immediate" })).toBe("red !");
+    expect(seen({ urgency: "immediate", old: true })).toBe("red !?");
+    expect(seen({ urgency: "soon", old: true })).toBe("grey ?");
+    expect(seen({ urgency: "soon" })).toBe("amber AB");
+  });
 
   it("gives way to others, but not where somebody is in danger or chosen", () => {
     expect(nameOf({})?.getDeclutterMode()).toBe("declutter");

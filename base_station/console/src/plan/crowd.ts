@@ -83,7 +83,7 @@ export class Crowd {
     const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
     trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
     const ellipse = regionAt(position, scene.silentMs);
-    const border = isMissed(unit) ? outline(centre, position, scene.silentMs) : [];
+    const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
     region.getGeometry()?.setCoordinates([border]);
     mark.getGeometry()?.setCoordinates(centre);
     label.getGeometry()?.setCoordinates(centre);
@@ -134,9 +134,9 @@ function isHere({ floor }: PositionView, scene: Scene): boolean {
 }
 
 /** Where somebody can have got to since is asked of who is looked for, and grows over the whole plan:
- * not of a unit that was switched off in order. */
-function isMissed(unit: UnitView): boolean {
-  return unit.link === "live" || !unit.switched_off;
+ * not of a unit that was switched off in order while its wearer was well. */
+function isMissed(unit: UnitView, { urgency }: Mark): boolean {
+  return unit.link === "live" || !unit.switched_off || urgency === "immediate";
 }
 
 /** In a crowd trails would hide the plan: those of whom somebody looks for remain. */

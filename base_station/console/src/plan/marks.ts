@@ -35,9 +35,20 @@ export function trailStyle(mark: Mark, colours: Colours): Style {
   });
 }
 
+/** What is old is pale, but not where somebody is in danger: that is looked for first. */
+export function colourOf({ old, urgency }: Mark, colours: Colours): string {
+  return old && urgency !== "immediate" ? colours.quiet : colours[urgency];
+}
+
+/** In the mark: "!" is danger, "?" an old place. */
+export function lettersOf({ old, urgency, initials }: Mark): string {
+  const danger = urgency === "immediate" ? "!" : "";
+  return danger + (old ? "?" : "") || initials;
+}
+
 /** The larger a region, the fainter its filling: many large ones must not hide the plan. */
 export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Style {
-  const colour = mark.old ? colours.quiet : colours[mark.urgency];
+  const colour = colourOf(mark, colours);
   const filling = Math.min(MOST_FILLING, MOST_FILLING / Math.max(radiusM / FULL_RADIUS_M, 0.1));
   return new Style({
     fill: new Fill({ color: mark.old ? hatching(colour) : faint(colour, filling) }),
@@ -80,7 +91,7 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.save();
   context.translate(at[0] ?? 0, at[1] ?? 0);
   context.scale(pixelRatio, pixelRatio);
-  const colour = mark.old ? colours.quiet : colours[mark.urgency];
+  const colour = colourOf(mark, colours);
   if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, colour, colours.halo);
   context.beginPath();
   context.arc(0, 0, RADIUS_PX, 0, 2 * Math.PI);
@@ -94,7 +105,7 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.font = "700 12px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "middle";
-  context.fillText(mark.old ? "?" : mark.urgency === "immediate" ? "!" : mark.initials, 0, 0.5);
+  context.fillText(lettersOf(mark), 0, 0.5);
   context.restore();
 }
 
