@@ -49,11 +49,8 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
         unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
         until(lambda: snapshot(browser)["alarms"], "mayday is raised")
         (alarm,) = snapshot(browser)["alarms"]
-        browser.call(
-            "POST",
-            f"/alarms/{alarm['alarm_id']}/acknowledge",
-            {"last_raised_ms": alarm["last_raised_ms"]},
-        )
+        seen = {"last_raised_ms": alarm["last_raised_ms"]}
+        browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge", json=seen)
         before, trail_before = snapshot(browser), trail(browser)
     station.kill()  # at once: what was acknowledged is on the disk
 
