@@ -97,6 +97,13 @@ _FIND = """
       box.bottom <= map.top + 1 || box.top >= map.bottom - 1;
     if (!apart) found.push(`lies over the plan: ${said(one)}`);
   }
+  const onMap = [...document.querySelectorAll(".plan :is(.zoom, .north, .ol-scale-line)")];
+  for (const [i, one] of onMap.filter(isShown).entries())
+    for (const other of onMap.filter(isShown).slice(i + 1)) {
+      const [a, b] = [one.getBoundingClientRect(), other.getBoundingClientRect()];
+      if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom)
+        found.push(`${said(one)} lies over ${said(other)}`);
+    }
   return [...new Set(found)];
 }
 """
