@@ -48,6 +48,9 @@ class ReplaySession:
         """It plays from the window's beginning.  Raises UserError for an impossible speed."""
         self._window = window
         self._clock = clock
+        self._archive = archive
+        self._was_changed = archive.watch()
+        self._looked_ns = clock.monotonic_ns()
         self._playback = Playback(archive)
         self._picture = Picture(self._playback.pipeline, sink, photo_urls)
         self._whole_ns = clock.monotonic_ns()
@@ -133,6 +136,7 @@ class ReplaySession:
 
     def _go_on(self) -> None:
         while not self._closed.is_set():
+            self._follow_changes()
             self._follow_seek()
             self._move()
             if self._seek_ns is not None:
@@ -140,6 +144,20 @@ class ReplaySession:
             self._answer()
             self._news.wait(DELTA_S if self._playing else PAUSED_S)
             self._news.clear()
+
+    def _follow_changes(self) -> None:
+        """Where somebody was forgotten since, it shows the past as the log has it now."""
+        now_ns = self._clock.monotonic_ns()
+        if now_ns - self._looked_ns < WHOLE_NS:
+            return
+        self._looked_ns = now_ns
+        if not self._was_changed():
+            return
+        self._was_changed = self._archive.watch()
+        self._playback = Playback(self._archive)
+        with self._lock:
+            if self._seek_ns is None:
+                self._seek_ns = self._at_ns
 
     def _follow_seek(self) -> None:
         with self._lock:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import count
 from pathlib import Path
 
@@ -330,6 +330,43 @@ def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> Non
         archive([], tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
     )
     assert picture(session).units == ()
+    session.close()
+
+
+@pytest.mark.parametrize("playing", [False, True])
+def test_who_is_forgotten_meanwhile_is_shown_no_more(
+    tmp_path: Path, screen: Screen, playing: bool
+) -> None:
+    """It stands where it stood, on the log as that is now."""
+    log = list(walk_with_mayday())
+    changes = count()
+    changed = [next(changes)]
+
+    def watch() -> Callable[[], bool]:
+        now = changed[0]
+        return lambda: changed[0] != now
+
+    source = Archive(lambda t_ns: (one for one in log if one[0] >= t_ns), Checkpoints(tmp_path),
+                     make_pipeline, watch)  # fmt: skip
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    clock = ManualClock()
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session.seek(START_NS + 100 * NS_PER_S)
+    if not playing:
+        session.pause()
+    assert [alarm.text for alarm in picture(session).alarms] == ["Mayday from Ada"]
+    clock.advance(2.0)
+    assert picture(session).alarms != (), "what stays as it was is not read again"
+    began = len(screen.resets)
+    log[:] = [(t_ns, key, payload.replace(b"Ada", b"Eve")) for t_ns, key, payload in log]
+    changed[0] = next(changes)
+    clock.advance(2.0)
+    until(lambda: len(screen.resets) > began, "everybody begins anew")
+    shown = picture(session)
+    assert [alarm.text for alarm in shown.alarms] == ["Mayday from Eve"]
+    assert at_s(session) >= 100.0 if playing else at_s(session) == 100.0
+    clock.advance(2.0)
+    assert len(screen.resets) == began + 1
     session.close()
 
 
