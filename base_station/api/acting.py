@@ -29,21 +29,19 @@ _Key = Annotated[
 
 
 class Acting:
-    """One request of one person."""
+    """One request of one person, for one action or one row of a table."""
 
     def __init__(self, station: Services, by: str, key: str, asked: bytes) -> None:
         self.by = by
         self._station = station
         self._key = key  # empty: the client gave none
         self._asked = asked
-        self._actions = 0
 
     def __call__(self, action: Action) -> ActionDone:
         """What became of it, now or when it was asked for before (``Services.act``)."""
         if not self._key:
             return self._station.act(self.by, action)
-        self._actions += 1
-        action_id = once_id(self.by, f"{self._key} {self._actions}", self._asked, uuid.uuid4().hex)
+        action_id = once_id(self.by, self._key, self._asked, uuid.uuid4().hex)
         done = self._station.act(self.by, action, action_id)
         if not asks_the_same(action_id, done.action_id):
             raise _used_before()

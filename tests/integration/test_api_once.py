@@ -102,6 +102,20 @@ async def test_a_person_is_added_once(station: DeskStation, commander: httpx.Asy
     assert [one["action"] for one in entries].count("AddedPerson") == 2
 
 
+async def test_a_person_is_called_in_the_picture_as_in_the_roster_whatever_is_sent_again(
+    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    """To change is to say how it is to be: again is no second time, and may be later."""
+    (ada,) = (await commander.get("/people")).json()
+    path = f"/people/{ada['person_id']}"
+    for name, headers in (("Bea", KEY), ("Cem", {}), ("Bea", KEY)):
+        clock.advance(1.0)
+        assert (await commander.put(path, json={"name": name}, headers=headers)).is_success
+    (unit,) = station.drive.picture().units
+    assert unit.person is not None
+    assert (await commander.get(path)).json()["name"] == unit.person.name == "Bea"
+
+
 async def test_a_key_is_its_persons_own(station: DeskStation, commander: httpx.AsyncClient) -> None:
     mine = (await commander.post("/commands", json=EVACUATE, headers=KEY)).json()
     async with station.client(Role.ADMINISTRATOR) as another:

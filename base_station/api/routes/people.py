@@ -60,14 +60,14 @@ def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
 
 
 @router.put("/people/{person_id}")
-def change_person(person_id: Id, form: PersonForm, station: Station, act: Act) -> PersonView:
+def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> PersonView:
     """Whoever wears a unit is shown with the new name at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        act(Assign(unit_id, person_id, form.name, form.crew, form.role))
-    station.records.audit(act.by, "ChangedPerson", f"{person_id} {form.name}")
+        station.act(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
+    station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
     return _person(person, station)
 
 
@@ -83,7 +83,7 @@ def set_photo(
     person_id: Id,
     photo: Annotated[bytes, Body(media_type="image/jpeg")],
     station: Station,
-    act: Act,
+    who: Commander,
 ) -> None:
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
     if station.roster.person(person_id) is None:
@@ -94,8 +94,8 @@ def set_photo(
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        act(Assign(unit_id, person_id, person.name, person.crew, person.role))
-    station.records.audit(act.by, "SetPhoto", person_id)
+        station.act(who.username, Assign(unit_id, person_id, person.name, person.crew, person.role))
+    station.records.audit(who.username, "SetPhoto", person_id)
 
 
 @router.get("/people/{person_id}/photo", response_class=Response)
