@@ -49,10 +49,20 @@ describe("what is to be heard", () => {
   });
 
   it("is what has become immediate without waiting, and nothing for what has eased", () => {
-    const critical = alarm("heat", { priority: 1 });
+    const critical = alarm("heat", { priority: 1, last_raised_ms: 100 });
+    const eased = alarm("heat", { priority: 2, last_raised_ms: 100 });
     expect(
-      after({ alarms: [HEAT] }, { alarms: [critical], nowMs: 100 }, { alarms: [HEAT], nowMs: 200 }),
+      after(
+        { alarms: [HEAT] },
+        { alarms: [critical], nowMs: 100 },
+        { alarms: [eased], nowMs: 200 },
+      ),
     ).toEqual(["soon", "immediate", null]);
+  });
+
+  it("is what was raised anew before anybody took it, such as another fault", () => {
+    const other = alarm("heat", { priority: 2, last_raised_ms: 100 });
+    expect(after({ alarms: [HEAT] }, { alarms: [other], nowMs: 100 })).toEqual(["soon", "soon"]);
   });
 
   it("is an alarm of the second priority once, and information never", () => {

@@ -135,6 +135,12 @@ describe("handedTo", () => {
     expect(handedTo(mayday, unit("1", { person: { ...wearer, name: "Ana" } }))).toBe("");
     expect(handedTo(mayday, unit("1", { person: wearer }))).toBe("Bo wears this unit now");
     expect(handedTo(mayday, unit("1"))).toBe("nobody wears this unit now");
+    const bob = alarm("fall", { text: "Bob (2.) may have fallen" });
+    expect(handedTo(bob, unit("1", { person: wearer }))).toBe("Bo wears this unit now");
+    expect(handedTo(bob, unit("1", { person: { ...wearer, name: "Bob (2.)" } }))).toBe("");
+    const zoe = alarm("fault", { text: "Zoë's unit: storage fault" });
+    expect(handedTo(zoe, unit("1", { person: { ...wearer, name: "Zoë" } }))).toBe("");
+    expect(handedTo(zoe, unit("1", { person: { ...wearer, name: "Zo" } }))).not.toBe("");
     expect(handedTo(alarm("battery", { text: "The battery of 1's unit" }), unit("1"))).toBe("");
   });
 });

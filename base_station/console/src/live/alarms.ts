@@ -33,9 +33,15 @@ export function sinceMs({ state, raised_ms, last_raised_ms }: AlarmView): number
   return state === "raised" ? last_raised_ms : raised_ms;
 }
 
+/** Of Bo, Bob is not named. */
+function wholeWord(name: string): RegExp {
+  const letters = name.replace(/[\\^$.*+?()[\]{}|/]/g, "\\$&");
+  return new RegExp(`(?<![\\p{L}\\p{N}])${letters}(?![\\p{L}\\p{N}])`, "u");
+}
+
 /** Who has the unit now, where an alarm was raised while somebody else did; else empty. */
 export function handedTo({ text }: AlarmView, unit: UnitView): string {
   const name = displayName(unit);
-  if (text.includes(name)) return "";
+  if (wholeWord(name).test(text)) return "";
   return unit.person === null ? "nobody wears this unit now" : `${name} wears this unit now`;
 }

@@ -5,11 +5,11 @@ export type Tone = "immediate" | "soon" | "link";
 
 /** What has been sounded already. */
 export interface Sounded {
-  priorities: ReadonlyMap<string, number>; // of alarms
+  raisedMs: ReadonlyMap<string, number>; // of alarms, when they were raised last
   lastMs: number;
 }
 
-export const NOTHING_YET: Sounded = { priorities: new Map(), lastMs: -Infinity };
+export const NOTHING_YET: Sounded = { raisedMs: new Map(), lastMs: -Infinity };
 /** Between two tones for the same, until somebody acknowledges it. */
 export const AGAIN_MS = 10_000;
 
@@ -26,12 +26,12 @@ export function toneOf(
   const raised = alarms.filter((alarm) => alarm.state === "raised" && alarm.priority <= 2);
   const urgent = raised.filter((alarm) => alarm.priority === 1);
   const isNew = (alarm: AlarmView) =>
-    alarm.priority < (before.priorities.get(alarm.alarm_id) ?? Infinity);
+    alarm.last_raised_ms > (before.raisedMs.get(alarm.alarm_id) ?? -Infinity);
   const again = nowMs - before.lastMs >= AGAIN_MS;
   let tone: Tone | null = null;
   if (urgent.some(isNew) || (urgent.length > 0 && again)) tone = "immediate";
   else if (linkLost && again) tone = "link";
   else if (raised.some(isNew)) tone = "soon";
-  const priorities = new Map(raised.map((alarm) => [alarm.alarm_id, alarm.priority]));
-  return { tone, sounded: { priorities, lastMs: tone === null ? before.lastMs : nowMs } };
+  const raisedMs = new Map(raised.map((alarm) => [alarm.alarm_id, alarm.last_raised_ms]));
+  return { tone, sounded: { raisedMs, lastMs: tone === null ? before.lastMs : nowMs } };
 }
