@@ -50,7 +50,7 @@ def station(
 @pytest.fixture(scope="module")
 def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
     """The console, logged in through its form."""
-    page = chromium.new_page(viewport={"width": 1280, "height": 800})
+    page = chromium.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     log_in(page, station)
     yield page
     page.close()

@@ -79,9 +79,16 @@ def on_plan(page: Page, right_px: int, down_px: int) -> tuple[float, float]:
     return box["x"] + box["width"] / 2 + right_px, box["y"] + box["height"] / 2 + down_px
 
 
+def drawn(page: Page) -> None:
+    """Wait until the plan stands as it will: in the size that panels leave it, however slowly."""
+    frame = "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))"
+    for _ in range(3):
+        page.evaluate(frame)
+
+
 def click_plan(page: Page, right_px: int, down_px: int) -> None:
     """And wait until the plan knows that it is no double click."""
-    page.wait_for_timeout(100)  # the plan has taken the size that a panel leaves it
+    drawn(page)
     page.mouse.click(*on_plan(page, right_px, down_px))
     page.wait_for_timeout(350)
 

@@ -6,6 +6,7 @@ One story in several tests: they run in the order in which they stand here.
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -19,11 +20,13 @@ from tests.e2e.console_page import (
     click_plan,
     confirm,
     drag,
+    drawn,
     menu,
     painted,
     pins,
 )
 from tests.e2e.enlisting import NAME
+from tests.waiting import until
 
 
 def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:
@@ -40,7 +43,7 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     expect(page.get_by_text("Pins 1")).to_be_visible()
     page.get_by_role("button", name="Pins 1").click()
     page.get_by_role("button", name=f"{NAME} here").click()
-    page.wait_for_timeout(350)  # the plan has taken the size that the panel leaves it
+    drawn(page)
     moved = drag(page, (-150, -80), (-90, -40))
     kept = ("pin_id", "unit_id", "t_ms", "std_m", "floor", "note")
     assert {name: moved[name] for name in kept} == {name: pin[name] for name in kept}
@@ -53,9 +56,17 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     assert pins(page) == []
 
 
+def draws(page: Page, colour: str, than: int) -> bool:
+    return painted(page, colour) > than + 50
+
+
+def draws_no_more(page: Page, colour: str, than: int) -> bool:
+    return not draws(page, colour, than)
+
+
 def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()
-    page.wait_for_timeout(600)  # the plan has come to rest
+    drawn(page)
     page.get_by_role("button", name="Trails").click()
     kinds = page.get_by_role("region", name="Trails")
     kinds.get_by_label("As shown at the time").uncheck()  # it lies above the others
@@ -69,11 +80,9 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
         (trail,) = said.value.json()["trails"]
         assert (trail["unit_id"], len(trail["points"]) > 1) == (UNIT, True)
         expect(kinds).not_to_contain_text("is worked out")
-        page.wait_for_timeout(300)
-        assert painted(page, colour) > before + 50, kind
+        until(partial(draws, page, colour, before), kind)
         kinds.get_by_label(word).uncheck()
-        page.wait_for_timeout(300)
-        assert painted(page, colour) < before + 50, kind
+        until(partial(draws_no_more, page, colour, before), f"no {kind}")
     kinds.get_by_label("As shown at the time").check()
     kinds.get_by_role("button", name="Close").click()
 

@@ -25,6 +25,8 @@ const LOWER_MARGIN_PX = 60; // names and the scale
 const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
 const AROUND_M = 2;
+/** Nobody alone fills the screen with the few metres about them. */
+const FITTED_M_PER_PX = 0.02;
 const EDGE_PX = 25; // nearer to it a mark or its name is cut
 
 /** What a person does on the plan. */
@@ -170,6 +172,7 @@ export class PlanMap {
     this.chosen = false;
     this.view.fit(buffer(all, AROUND_M), {
       padding: [MARGIN_PX, RIGHT_MARGIN_PX, LOWER_MARGIN_PX, MARGIN_PX],
+      minResolution: FITTED_M_PER_PX,
       ...(smoothly ? moving() : {}),
     });
     return true;
