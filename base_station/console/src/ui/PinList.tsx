@@ -1,12 +1,13 @@
+import type { ComponentChildren } from "preact";
 import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
-import { take } from "../plan/tools";
+import { take, type Tool } from "../plan/tools";
 import type { PinView } from "../wire";
-import { clockTime } from "../words";
+import { clockTime, floorName } from "../words";
 import { Ends } from "./Ends";
 
-/** All pins in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
+/** All pins and beacons in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
 export function PinList({ picture }: { picture: Picture }) {
   return (
     <section class="tool-panel pin-list" aria-label="Pins">
@@ -14,7 +15,18 @@ export function PinList({ picture }: { picture: Picture }) {
       <ul>
         {picture.pins.value.map((pin) => (
           <li key={pin.pin_id} class={pin.state}>
-            <PinWords pin={pin} picture={picture} />
+            <Words edit={{ kind: "edit-pin", pinId: pin.pin_id }}>
+              {said(pin, picture)}
+              <small> {WORDS[pin.state] ?? pin.state}</small>
+            </Words>
+          </li>
+        ))}
+        {picture.beacons.value.map(({ beacon_id, label, floor }) => (
+          <li key={`beacon ${beacon_id}`}>
+            <Words edit={{ kind: "edit-beacon", beaconId: beacon_id }}>
+              Beacon {label || beacon_id}
+              <small> {floorName(floor)}</small>
+            </Words>
           </li>
         ))}
       </ul>
@@ -24,17 +36,11 @@ export function PinList({ picture }: { picture: Picture }) {
 }
 
 /** A button for who may change it. */
-function PinWords({ pin, picture }: { pin: PinView; picture: Picture }) {
-  const words = (
-    <>
-      {said(pin, picture)}
-      <small> {WORDS[pin.state] ?? pin.state}</small>
-    </>
-  );
-  if (!mayAct.value) return <span>{words}</span>;
+function Words({ edit, children }: { edit: Tool; children: ComponentChildren }) {
+  if (!mayAct.value) return <span>{children}</span>;
   return (
-    <button type="button" onClick={() => take({ kind: "edit-pin", pinId: pin.pin_id })}>
-      {words}
+    <button type="button" onClick={() => take(edit)}>
+      {children}
     </button>
   );
 }

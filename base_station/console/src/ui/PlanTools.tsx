@@ -13,6 +13,7 @@ import { TrailsPanel } from "./TrailsPanel";
 /** Above the plan: what can be done on it and what can be seen of it. */
 export function PlanTools({ picture }: { picture: Picture }) {
   const pins = picture.pins.value;
+  const beacons = picture.beacons.value.length;
   const conflicts = pins.filter((pin) => pin.state === "conflict").length;
   return (
     <div class="plan-tools" role="group" aria-label="On the plan">
@@ -23,10 +24,11 @@ export function PlanTools({ picture }: { picture: Picture }) {
         </>
       )}
       <ToolButton tool={{ kind: "trails" }}>Trails</ToolButton>
-      {pins.length > 0 && (
+      {pins.length + beacons > 0 && (
         <ToolButton tool={{ kind: "pins" }} alarmed={conflicts > 0}>
           Pins {pins.length}
           {conflicts > 0 && `, ${conflicts} in conflict`}
+          {beacons > 0 && `, beacons ${beacons}`}
         </ToolButton>
       )}
       {picture.ready.value && picture.plan.value === null && (
