@@ -9,6 +9,7 @@ const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_
 const ZEROS = new Map([
   ["t_ns", "where the path begins"],
   ["after_t_ns", ""],
+  ["last_raised_ms", ""],
   ["par_interval_s", ""],
   ["work_limit_s", ""],
   ["position_rate_hz", ""],
@@ -61,12 +62,14 @@ function thresholds(values: Record<string, number>): string {
 
 /** A number with the unit that its name ends with. */
 function quantity(name: string, value: number): string {
-  const [, what = name, unit = ""] = /^(.*)_(m|s|ns|deg|degc|rad|hz|days)$/.exec(name) ?? [];
+  const [, what = name, unit = ""] = /^(.*)_(m|s|ms|ns|deg|degc|rad|hz|days)$/.exec(name) ?? [];
   switch (unit) {
     case "m":
       return `${spaced(what)} ${rounded(value)} m`;
     case "s":
       return `${spaced(what)} ${duration(1000 * value)}`;
+    case "ms":
+      return `${spaced(what)} ${dateAndTime(value)}`;
     case "ns":
       return `${spaced(what)} ${dateAndTime(value / 1e6)}`;
     case "deg":

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { actionWord, detailWords } from "../src/audit";
+import { dateAndTime } from "../src/words";
 
 const NAMES = new Map([["26ab024f9849922c", "Elena Rossi"]]);
 
@@ -56,6 +57,11 @@ describe("the audit log", () => {
       "no-motion alarm 25 s, heat caution 80 °C, battery low 0.2",
     ],
     [{ thresholds: {} }, "all as usual"],
+    [{ alarm_id: "fall:1:2", note: "", last_raised_ms: 0 }, "alarm id: fall:1:2"],
+    [
+      { alarm_id: "fall:1:2", last_raised_ms: 1_700_000_000_000 },
+      `alarm id: fall:1:2, last raised ${dateAndTime(1_700_000_000_000)}`,
+    ],
   ])("says %o in words", (detail, text) => {
     expect(words(detail)).toBe(text);
   });
