@@ -181,3 +181,25 @@ def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
         worn.select_option("p3")
         worn.press("Tab")
     assert asked.value.post_data_json == {"unit_id": "FF-01", "person_id": "p3"}
+
+
+def test_who_has_keys_only_goes_on_in_what_was_opened_and_back(stage: Stage) -> None:
+    """The panel stands behind forty cards; back at the top everything begins again."""
+    page, _ = stage.open(scenes.crowd())
+    page.locator(".card").first.get_by_role("button").first.press("Enter")
+    pin = page.get_by_role("button", name="Pin on the plan")
+    pin.press("Enter")
+    page.keyboard.press("Tab")
+    north = page.get_by_role("form", name="Pin: ").get_by_label("North, m")
+    expect(north).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(north).to_have_count(0)
+    expect(pin).to_be_focused()
+    pins = page.get_by_role("group", name="On the plan").get_by_role("button", name="Pins 2")
+    pins.press("Enter")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    expect(north).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(pins).to_be_focused()

@@ -44,6 +44,7 @@ function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
       <span class="floor-name">
         <span class="spoken">{choice === "all" ? "Floors: " : "Floor "}</span>
         {name}
+        <span class="spoken">,</span>
       </span>
       <span class="floor-people">
         <Icon name={alarmed ? "alarm" : "people"} />

@@ -72,7 +72,23 @@ export function ToolPanel({ picture }: { picture: Picture }) {
     document.addEventListener("keydown", leave);
     return () => document.removeEventListener("keydown", leave);
   }, [now, held]);
+  useFocus(held ? now : null);
   return panel;
+}
+
+/** Keys go on in the panel, which stands far behind the button that opened it, and afterwards there. */
+function useFocus(now: Tool | null): void {
+  useLayoutEffect(() => {
+    const before = document.activeElement;
+    const panel = document.querySelector<HTMLElement>(".tool-panel");
+    if (now === null || panel === null) return undefined;
+    panel.tabIndex = -1;
+    panel.focus({ preventScroll: true });
+    return () => {
+      const isLost = document.activeElement === document.body;
+      if (isLost && before instanceof HTMLElement) before.focus({ preventScroll: true });
+    };
+  }, [now]);
 }
 
 /** Null where there is nothing to do with it. */
