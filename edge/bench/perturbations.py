@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
 
@@ -20,7 +21,6 @@ CUT_S = 3.0
 BIAS_RADPS = np.radians(0.5)
 ACCEL_SCALE = 0.03
 CLIPPED_AT = 0.7  # of the recording's largest reading
-LOST = 0.01
 SPIKES = 0.001  # of the samples
 LEAST_FULL_SCALE_MPS2 = 2.0 * 9.81  # of accelerometers that are made
 HOLE_AT_S = 10.0
@@ -129,9 +129,14 @@ def accel_of_2_g_untold(
     return untold, _with(imu, clipped, imu.gyro_radps)
 
 
-def samples_lost(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
-    kept = rng.random(len(imu)) >= LOST
-    return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+def samples_lost(share: float) -> Change:
+    """Here and there one."""
+
+    def change(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+        kept = rng.random(len(imu)) >= share
+        return description, _only(imu, kept)
+
+    return change
 
 
 def hole(lasts_s: float) -> Change:
@@ -139,8 +144,17 @@ def hole(lasts_s: float) -> Change:
 
     def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
         since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
-        kept = np.abs(since_s - HOLE_AT_S) > lasts_s / 2.0
-        return description, ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
+        return description, _only(imu, np.abs(since_s - HOLE_AT_S) > lasts_s / 2.0)
+
+    return change
+
+
+def holes(lasts_s: float, every_s: float) -> Change:
+    """All samples of so long are lost, again and again."""
+
+    def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
+        since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+        return description, _only(imu, (since_s + 0.5 * every_s) % every_s >= lasts_s)
 
     return change
 
@@ -210,7 +224,9 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("accelerometer clips at 70 %", accel_clipped),
     Perturbation("accelerometer so, untold", accel_clipped_untold),
     Perturbation("accelerometer of 2 g, untold", accel_of_2_g_untold),
-    Perturbation("1 % of samples lost", samples_lost),
+    Perturbation("1 % of samples lost", samples_lost(0.01)),
+    Perturbation("10 % of samples lost", samples_lost(0.1)),
+    Perturbation("0.05 s lost every 2 s", holes(0.05, 2.0)),
     Perturbation("0.15 s lost at once", hole(0.15)),
     Perturbation("0.4 s lost at once", hole(0.4)),
     Perturbation("0.1 % of rates are spikes", gyro_spikes),
@@ -222,6 +238,10 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("66 Hz, filtered", slower(66.0, filtered=True)),
     Perturbation("66 Hz, unfiltered", slower(66.0, filtered=False)),
 )
+
+
+def _only(imu: ImuBatch, kept: NDArray[np.bool_]) -> ImuBatch:
+    return ImuBatch(imu.t_ns[kept], imu.accel_mps2[kept], imu.gyro_radps[kept])
 
 
 def _with(imu: ImuBatch, accel_mps2: Floats, gyro_radps: Floats) -> ImuBatch:

@@ -37,7 +37,8 @@ CLIPPED_S = 0.4  # longer than any swing clips
 SWINGS_RAD2PS2 = 1.0  # square of a rate; a foot that turns so feels something on every axis
 SWINGS_M2PS4 = (64.0, 144.0)  # squares of forces; so does one that feels less or more
 GIVE_UP_S = 0.35  # of bad samples: no hole as long is bridged, and no good one is waited for
-PERIOD_WEIGHT = 0.005  # of one interval in the mean period
+PERIOD_WEIGHT = 0.005  # of one interval in the mean periods
+ALIKE = 0.5  # of a period, within which intervals are, and of all intervals, that then are most
 
 _NO_VALUES: Floats = np.zeros(0)
 _NO_VECTORS: Floats = np.zeros((0, 3))
@@ -46,7 +47,11 @@ GATE = np.dtype(
     [
         ("last_ns", np.int64),
         ("arrival_s", np.float64),
-        ("period_s", np.float64),  # mean time between samples
+        ("told_period_s", np.float64),  # as described
+        ("period_s", np.float64),  # from one sample that the sensor took to the next
+        ("mean_interval_s", np.float64),  # of all intervals between stamps
+        ("alike_interval_s", np.float64),  # ... and of those that are like most
+        ("alike_share", np.float64),
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
         ("bad_run", np.int64),  # bad samples in a row
@@ -88,7 +93,9 @@ def new_gate(description: SensorDescription, saturation_ratio: float) -> NDArray
             "second; give its rate"
         )
     gate = np.zeros(1, GATE)
-    gate["period_s"] = 1.0 / description.rate_hz
+    for name in ("told_period_s", "period_s", "mean_interval_s", "alike_interval_s"):
+        gate[name] = 1.0 / description.rate_hz
+    gate["alike_share"] = 1.0
     accel_mps2 = description.accel_full_scale_mps2 or np.inf
     gyro_radps = description.gyro_full_scale_radps or np.inf
     know_full_scale(gate["accel_scale"], saturation_ratio * accel_mps2, forces=True)
@@ -297,8 +304,27 @@ def _time_flags(gate: NDArray[Any], t_ns: int, gap_s: float) -> int:
     gate[0].arrival_s += step_s
     if step_s > gap_s:
         return SAMPLE_GAP
-    gate[0].period_s += PERIOD_WEIGHT * (step_s - gate[0].period_s)
+    _learn_period(gate[0], step_s)
     return flags
+
+
+@njit()
+def _learn_period(gate: Any, interval_s: float) -> None:
+    """Take an interval between two stamps.
+
+    Late or coarse stamps make most intervals wrong, and leave the mean as it is.  Samples that get
+    lost make the mean too long, and leave most intervals as they are: nearer to what was told.
+    """
+    gate.mean_interval_s += PERIOD_WEIGHT * (interval_s - gate.mean_interval_s)
+    alike = abs(interval_s - gate.alike_interval_s) < ALIKE * gate.alike_interval_s
+    gate.alike_share += PERIOD_WEIGHT * ((1.0 if alike else 0.0) - gate.alike_share)
+    if gate.alike_share < ALIKE:
+        gate.alike_interval_s = gate.mean_interval_s
+    elif alike:
+        gate.alike_interval_s += PERIOD_WEIGHT * (interval_s - gate.alike_interval_s)
+    between_s = 0.5 * (gate.mean_interval_s + gate.alike_interval_s)
+    lost = gate.alike_interval_s < between_s and gate.told_period_s < between_s
+    gate.period_s = gate.alike_interval_s if lost else gate.mean_interval_s
 
 
 @njit()

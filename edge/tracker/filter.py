@@ -9,7 +9,7 @@ from numba import njit
 from edge.tracker.alignment import level
 from edge.tracker.barometric_height import heed_pressure
 from edge.tracker.clipping import bridge_clipping, bridge_force
-from edge.tracker.conditioning import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.conditioning import BAD_SAMPLES
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import (
     ACCEL_BIAS,
@@ -24,7 +24,7 @@ from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
 from edge.tracker.gaps import begins_anew, doubt_hole, open_hole_s, stand_over
-from edge.tracker.intervals import mean_readings
+from edge.tracker.intervals import lacks_samples, mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measurement_update import turn_walk
@@ -127,7 +127,6 @@ def _predict(
     before = (k - 1) & mask
     dt_s = ring[slot].t_s - ring[before].t_s
     ring[slot].interval_s = 0.0
-    hole = ring[slot].flags & SAMPLE_GAP != 0
     if begins_anew(ring, k, config):
         ring[slot].interval_s = -1.0
         stand_over(ring, progress, state, k, dt_s, config)
@@ -154,7 +153,8 @@ def _predict(
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     _add_noise(ring, progress, state, k, dt_s, config)
-    if hole:
+    if lacks_samples(ring, slot, dt_s):
+        state.faulty_stride = True
         doubt_hole(ring, progress, state, k, dt_s, config)
     ring[slot].interval_s = dt_s
     for i in range(3):

@@ -1,8 +1,9 @@
 """A hole in the samples: what the foot may have done meanwhile.
 
-In a hole shorter than most of a swing the motion goes on: rate and force are taken for straight
-lines from its one end to the other, and doubted by what they vary by in the strides around, about
-and along the same axes.  What is missed of a swing is mostly a turn about the axis on which a foot
+Where one or two samples are missing the cubic through those around goes on (see intervals).  In a
+longer hole that is shorter than most of a swing rate and force are taken for straight lines from
+its one end to the other, and doubted by what they vary by in the strides around, about and along
+the same axes.  What is missed of a swing is mostly a turn about the axis on which a foot
 rolls: the next stance puts it right, and the heading knows little of it.  After a longer one
 the walk begins anew, where the samples ceased: what follows is levelled by the next stance, and
 may be anywhere near.

@@ -2,9 +2,9 @@
 
 A foot turns by several degrees within an interval of a slow sensor.  Two effects
 count there: readings bend between samples (so the means are taken over the cubic
-through two samples before and two after) and the axis of rotation moves (coning and
-sculling, for readings that change evenly; Savage, "Strapdown inertial navigation
-integration algorithm design", 1998).
+through two samples before and two after, though one or two be missing between any of them) and
+the axis of rotation moves (coning and sculling, for readings that change evenly; Savage,
+"Strapdown inertial navigation integration algorithm design", 1998).
 
 What the cubic adds to the straight line says how much the foot may have turned unseen between
 the samples.  Of the force it is what a quintic through three samples before and three after would
@@ -20,7 +20,9 @@ from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.state import FilterState, Progress, Ring
 
-BEND = 1.0 / 12.0  # of the cubic through four evenly spaced samples
+EVEN = (0.7, 1.4)  # spacings so alike are the same, for stamps jitter more than sensors do
+BRIDGED = 3.5  # periods; what more than two missing samples hid is no cubic
+LEAST = 0.6  # periods; stamps that are nearer are wrong
 UNSEEN = 11.0 / 1440.0  # of the quintic through six
 
 
@@ -36,20 +38,22 @@ def mean_readings(
     mask = len(ring) - 1
     last, first = k & mask, (k - 1) & mask
     dt_s = ring[last].t_s - ring[first].t_s
-    bend = _bend(ring, progress, k, dt_s)
+    rise, turn, fall = _bend(ring, progress, k, dt_s)
     scale = _scale(ring[last].rest_norm_mps2, config)
     before, after = (k - 2) & mask, (k + 1) & mask
     state.gyro_bend_var = 0.0
-    state.force_unseen_var = _force_unseen_var(ring, progress, k) if bend > 0.0 else 0.0
+    even = rise > 0.0 and turn == 0.0
+    state.force_unseen_var = _force_unseen_var(ring, progress, k) if even else 0.0
     for i in range(3):
-        mean = 0.5 * (ring[first].gyro_radps[i] + ring[last].gyro_radps[i])
-        outer = 0.5 * (ring[before].gyro_radps[i] + ring[after].gyro_radps[i])
-        added = bend * (mean - outer)
+        f0, f1 = ring[before].gyro_radps[i], ring[first].gyro_radps[i]
+        f2, f3 = ring[last].gyro_radps[i], ring[after].gyro_radps[i]
+        added = rise * (f1 - f0) + turn * (f2 - f1) - fall * (f3 - f2)
         state.gyro_bend_var += added * added
-        state.gyro_radps[i] = mean + added - state.gyro_bias_radps[i]
-        mean = 0.5 * (ring[first].accel_mps2[i] + ring[last].accel_mps2[i])
-        outer = 0.5 * (ring[before].accel_mps2[i] + ring[after].accel_mps2[i])
-        state.accel_mps2[i] = scale * (mean + bend * (mean - outer)) - state.accel_bias_mps2[i]
+        state.gyro_radps[i] = 0.5 * (f1 + f2) + added - state.gyro_bias_radps[i]
+        f0, f1 = ring[before].accel_mps2[i], ring[first].accel_mps2[i]
+        f2, f3 = ring[last].accel_mps2[i], ring[after].accel_mps2[i]
+        added = rise * (f1 - f0) + turn * (f2 - f1) - fall * (f3 - f2)
+        state.accel_mps2[i] = scale * (0.5 * (f1 + f2) + added) - state.accel_bias_mps2[i]
     rate, rate_after = ring[first].gyro_radps, ring[last].gyro_radps
     force, force_after = ring[first].accel_mps2, ring[last].accel_mps2
     _add_cross(state.gyro_radps, rate, rate_after, dt_s / 12.0)
@@ -68,15 +72,34 @@ def _scale(rest_norm_mps2: float, config: EskfConfig) -> float:
 
 
 @njit()
-def _bend(ring: Ring, progress: Progress, k: int, dt_s: float) -> float:
-    """Return the weight of the outer samples; 0 where they are missing or unevenly spaced."""
+def lacks_samples(ring: Ring, slot: int, dt_s: float) -> bool:
+    """Whether so many samples are missing before the one in ``slot`` that no cubic spans them."""
+    return bool(dt_s > BRIDGED * ring[slot].period_s)
+
+
+@njit()
+def _bend(ring: Ring, progress: Progress, k: int, dt_s: float) -> tuple[float, float, float]:
+    """Return what the cubic's mean adds to the straight line's for each unit of three differences.
+
+    Those are of the readings before, across and (subtracted) after the interval.  All are 0 where
+    the outer samples are missing, or too far away.
+    """
     if k < 2 or k + 1 >= progress.measured:
-        return 0.0
+        return 0.0, 0.0, 0.0
     mask = len(ring) - 1
     before_s = ring[(k - 1) & mask].t_s - ring[(k - 2) & mask].t_s
     after_s = ring[(k + 1) & mask].t_s - ring[k & mask].t_s
-    even = 0.7 * dt_s < before_s < 1.4 * dt_s and 0.7 * dt_s < after_s < 1.4 * dt_s
-    return BEND if even else 0.0
+    shortest_s, longest_s = min(before_s, after_s), max(before_s, after_s)
+    if EVEN[0] * dt_s < shortest_s and longest_s < EVEN[1] * dt_s:
+        return 1.0 / 24.0, 0.0, 1.0 / 24.0
+    too_near = min(shortest_s, dt_s) < LEAST * ring[k & mask].period_s
+    if too_near or lacks_samples(ring, k & mask, max(longest_s, dt_s)):
+        return 0.0, 0.0, 0.0
+    # Half of the interval squared by twelve, times the cubic's second derivative in its middle.
+    whole_s = before_s + dt_s + after_s
+    early = dt_s**2 / 6.0 * (after_s + 0.5 * dt_s) / (whole_s * (before_s + dt_s))
+    late = dt_s**2 / 6.0 * (before_s + 0.5 * dt_s) / (whole_s * (dt_s + after_s))
+    return early / before_s, (late - early) / dt_s, late / after_s
 
 
 @njit()

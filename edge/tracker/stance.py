@@ -14,6 +14,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import GYRO_BIAS, VELOCITY
+from edge.tracker.intervals import lacks_samples
 from edge.tracker.measurement_update import begin_updates, end_updates, measure, measure_with_lever
 from edge.tracker.state import FilterState, Ring, Step
 from edge.tracker.strapdown import dot
@@ -25,7 +26,7 @@ MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 def stand(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
     """Use the pseudo-measurements of one still sample."""
     interval_s = max(ring[slot].interval_s, MIN_INTERVAL_S)
-    if interval_s > config.gap_s:
+    if lacks_samples(ring, slot, interval_s):
         interval_s = ring[slot].period_s  # it tells of its own moment, not of the hole
     motion = ring[slot].motion_m2ps4
     for i in range(3):

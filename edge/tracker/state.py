@@ -34,7 +34,7 @@ RING = np.dtype(
     [
         ("t_ns", np.int64),  # as recorded
         ("arrival_s", np.float64),  # the same since the first sample, never backward
-        ("period_s", np.float64),  # mean time between samples up to this one
+        ("period_s", np.float64),  # from one sample taken to the next, as known so far
         ("t_s", np.float64),  # regular
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),

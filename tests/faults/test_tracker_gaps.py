@@ -71,6 +71,41 @@ def test_a_hole_shorter_than_a_swing_is_bridged(begin_s):
     assert off_m < 3.0 * np.sqrt(variances_m2.sum())
 
 
+def test_a_hole_too_short_to_be_flagged_is_doubted():
+    t_ns, accel, gyro = copy()
+    first, stop = index(IN_SWING), index(IN_SWING + 0.09)
+    keep = np.r_[0:first, stop : len(t_ns)]
+    rows = run(t_ns[keep], accel[keep], gyro[keep])
+    whole = run(*copy())
+    assert not flagged(rows, Reason.SAMPLE_GAP).any()
+    later = 30  # samples; the foot still swings
+    assert not rows.stationary[first : first + later].any()
+    variance_m2 = np.trace(rows.position_cov_m2[first + later])
+    assert variance_m2 > 1.1 * np.trace(whole.position_cov_m2[stop + later])
+
+
+@pytest.mark.parametrize(("lasts_s", "faulty"), [(0.05, True), (0.01, False)])
+def test_a_stride_with_a_hole_is_stated_in_full(lasts_s, faulty):
+    t_ns, accel, gyro = copy()
+    first, stop = index(IN_SWING), index(IN_SWING + lasts_s)
+    keep = np.r_[0:first, stop : stop + 5]
+    tracker = EskfTracker(WALK.description)
+    tracker.push(ImuBatch(t_ns[keep], accel[keep], gyro[keep]))
+    tracker.finish()
+    assert tracker._state[0]["faulty_stride"] == faulty
+
+
+def test_samples_that_get_lost_here_and_there_cost_a_centimetre():
+    whole = run(*copy())
+    squares_m2 = []
+    for seed in range(6):
+        t_ns, accel, gyro = copy()
+        keep = np.random.default_rng(seed).random(len(t_ns)) >= 0.2
+        rows = run(t_ns[keep], accel[keep], gyro[keep])
+        squares_m2.append(np.sum((rows.position_n_m[-1] - whole.position_n_m[-1]) ** 2))
+    assert np.sqrt(np.mean(squares_m2)) < 0.012
+
+
 def test_a_gap_makes_no_heading_surer():
     t_ns, accel, gyro = copy()
     description = SensorDescription("clipping", 200.0, gyro_full_scale_radps=0.4)  # much doubt

@@ -26,7 +26,7 @@ def test_every_perturbation_gives_a_recording_and_the_same_each_time(perturbatio
     assert np.isfinite(imu.accel_mps2).all()
     assert (np.diff(imu.t_ns) >= 0).all()
     lasts_s = 1e-9 * (imu.t_ns[-1] - imu.t_ns[0])
-    assert len(imu) == pytest.approx(lasts_s * description.rate_hz, rel=0.02)
+    assert len(imu) == pytest.approx(lasts_s * description.rate_hz, rel=0.12)
     assert np.array_equal(imu.gyro_radps, again.gyro_radps)
     assert np.array_equal(WALK.imu.gyro_radps, before)
 

@@ -14,6 +14,7 @@ from edge.tracker.state import RING, new_filter_state, new_progress
 def state_at(t_s, gyro, accel, k):
     ring = np.zeros(8, RING)
     ring["t_s"][: len(t_s)] = t_s
+    ring["period_s"] = 0.1
     ring["rest_norm_mps2"] = EskfConfig().gravity_mps2
     ring["gyro_radps"][: len(t_s)] = gyro
     ring["accel_mps2"][: len(t_s)] = accel
@@ -58,11 +59,36 @@ def test_only_what_bends_more_than_a_cubic_is_unseen():
     assert unseen_var(strike, k=2) == 0.0
 
 
-def test_uneven_or_missing_neighbours_leave_the_trapezoid():
-    t_s = np.array([0.0, 0.1, 0.2, 0.5])
+@pytest.mark.parametrize(
+    "t_s",
+    [(0.0, 0.1, 0.3, 0.4), (0.0, 0.3, 0.4, 0.5), (0.0, 0.1, 0.44, 0.64), (0.0, 0.1, 0.2, 0.5)],
+)
+def test_a_cubic_is_averaged_exactly_where_one_or_two_samples_are_missing(t_s):
+    cubic = np.poly1d([40.0, -9.0, 3.0, 1.0])
+    readings = np.column_stack((cubic(t_s), np.zeros(4), np.zeros(4)))
+    state = state_at(np.array(t_s), readings, readings, 2)
+    expected = (cubic.integ()(t_s[2]) - cubic.integ()(t_s[1])) / (t_s[2] - t_s[1])
+    assert state["gyro_radps"][0] == pytest.approx(expected)
+    assert state["accel_mps2"][0] == pytest.approx(expected)
+    by_line = 0.5 * (cubic(t_s[1]) + cubic(t_s[2]))
+    assert state["gyro_bend_var"] == pytest.approx((expected - by_line) ** 2)
+
+
+@pytest.mark.parametrize(
+    "t_s",
+    [
+        (0.0, 0.1, 0.46, 0.56),  # three samples are missing
+        (0.0, 0.36, 0.46, 0.56),
+        (0.0, 0.1, 0.2, 0.56),
+        (0.0, 0.05, 0.15, 0.25),  # a stamp is wrong
+        (0.0, 0.1, 0.2, 0.25),
+        (0.0, 0.1, 0.15, 0.25),
+    ],
+)
+def test_neighbours_too_far_or_too_near_or_none_leave_the_trapezoid(t_s):
     readings = np.column_stack(([1.0, 2.0, 5.0, 9.0], np.zeros(4), np.zeros(4)))
     for count in (4, 3):
-        gyro, _ = means_of(t_s[:count], readings[:count], readings[:count], 2)
+        gyro, _ = means_of(np.array(t_s[:count]), readings[:count], readings[:count], 2)
         assert gyro[0] == pytest.approx(3.5)
 
 
