@@ -101,14 +101,14 @@ def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
 
 
 def note_answer(
-    state: StationState, unit: UnitState, command: SentCommand, by: str, answered_ns: int
+    state: StationState, unit: UnitState, command: SentCommand, by: str, answered_ns: int | None
 ) -> list[UnitState]:
-    """A person answered a command, at some time since it was given; who has heard of an evacuation
-    is not out by that.
+    """A person answered a command, at some time since it was given, where nobody can tell when as
+    long ago as that; who has heard of an evacuation is not out by that.
     """
     if command.kind is not CommandKind.PAR_REQUEST or unit.duty is None:
         return []
-    vouch(state, unit, by, max(answered_ns, command.issued_ns))
+    vouch(state, unit, by, max(answered_ns or 0, command.issued_ns))
     return [unit]
 
 

@@ -49,7 +49,6 @@ def note_done(state: StationState, done: OperatorAction, refused: str) -> None:
     key = _key_of(done.action_id)
     if not key:
         return
-    state.done_once.pop(key, None)
     while len(state.done_once) >= KEPT:
         del state.done_once[next(iter(state.done_once))]
     made_id = made_by(done.action)

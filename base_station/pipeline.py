@@ -258,8 +258,7 @@ class StationPipeline:
         return self._repin(changed) if changed else []
 
     def _note_reply(self, unit: UnitState, reply: CommandReply) -> list[Output]:
-        now_ns = self.state.t_ns  # an answer may have waited in the unit's journal
-        said_ns = told_ns(unit.boots, reply.header, now_ns) or now_ns
+        said_ns = told_ns(unit.boots, reply.header, self.state.t_ns)  # it may come of a journal
         command = command_book.note_reply(self.state, unit, reply, said_ns)
         if command is not None and reply.state is CommandState.ACKNOWLEDGED:
             by = command.deliveries[unit.unit_id].acknowledged_by

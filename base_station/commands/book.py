@@ -82,9 +82,11 @@ def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand |
 
 
 def note_reply(
-    state: StationState, unit: UnitState, reply: CommandReply, said_ns: int
+    state: StationState, unit: UnitState, reply: CommandReply, said_ns: int | None
 ) -> SentCommand | None:
-    """What a unit answered at ``said_ns``; None where that changes nothing."""
+    """What a unit answered at ``said_ns``, None: nobody can tell when.  None where that changes
+    nothing.
+    """
     found = _delivery(state, unit.unit_id, reply.command_id)
     if found is None:
         return None

@@ -17,6 +17,7 @@ from shared.messages import (
 )
 from shared.messages.station import (
     AcknowledgeAlarm,
+    Assign,
     CheckIn,
     ConfirmCommand,
     ResolveAlarm,
@@ -139,16 +140,33 @@ def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
     assert left_s(script) == pytest.approx(INTERVAL_S)
 
 
-def test_an_answer_of_a_run_whose_clock_nobody_knows_counts_from_when_it_comes(
+def test_an_answer_of_a_run_whose_clock_nobody_knows_counts_from_when_it_was_asked_for(
     script: Script,
 ) -> None:
-    """The unit started anew before the station heard it; its journal brings the press."""
+    """The unit started anew before the station heard it; its journal brings the press, which may
+    have been as long ago as that.
+    """
+    script.wait(10)
     order(script, CommandKind.PAR_REQUEST)
     script.wait(20)
     pressed = CommandReply(Header("FF-01", 99, 5, 1), "c1", CommandState.ACKNOWLEDGED, "")
     script.record(backfilled_key("FF-01", REPLY.suffix), encode(pressed))
     assert duty(script).asked_ns is None
-    assert left_s(script) == INTERVAL_S
+    assert left_s(script) == INTERVAL_S - 20.0
+
+
+def test_an_answer_of_whom_nobody_knows_vouches_for_nobody_who_had_the_unit_later(
+    script: Script,
+) -> None:
+    order(script, CommandKind.PAR_REQUEST)
+    script.wait(20)
+    script.act(Assign("FF-01", "p9", "Bo", "", ""))
+    script.wait(10)
+    pressed = CommandReply(Header("FF-01", 99, 5, 1), "c1", CommandState.ACKNOWLEDGED, "")
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(pressed))
+    assert left_s(script) == INTERVAL_S - 10.0
+    command = script.pipeline.state.commands["c1"]
+    assert command.deliveries["FF-01"].acknowledged_by == "Bo or, before, Person 1"
 
 
 def test_an_answer_that_comes_after_a_newer_word_changes_nothing(script: Script) -> None:
