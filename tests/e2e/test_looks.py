@@ -71,6 +71,31 @@ def test_dialogs_fit_every_screen(stage: Stage) -> None:
         page.set_viewport_size({"width": 1280, "height": 800})
 
 
+def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
+    """Long names among them: no name runs into what stands beside it, no button beyond the edge."""
+    page, _ = stage.open(scenes.crowd())
+    page.locator(".par-clock").click()
+    names = page.locator(".roll-crew strong")
+    expect(names.first).to_be_visible()
+    cut = (
+        "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).map(one => one.innerText)"
+    )
+    assert on_every_screen(page, lambda _: names.evaluate_all(cut)) == {}
+    page.set_viewport_size({"width": 1366, "height": 768})
+    close(page.get_by_role("dialog"))
+    dialog = menu(page, "Units")
+    dialog.get_by_role("row").nth(40).wait_for()
+    assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
+    close(dialog)
+    page.get_by_role("button", name="All start here").click()
+    start = page.get_by_role("form", name="All start here")
+    expect(start.get_by_label("North, m")).to_be_in_viewport()
+    names = start.get_by_role("group").filter(has_text="All 41 who are on duty")
+    names.get_by_text("All 41").click()
+    expect(names).to_have_attribute("open", "")
+    expect(names).to_contain_text("Mira Okafor 2")
+
+
 def test_nothing_of_a_dialog_lies_beside_a_phone(stage: Stage) -> None:
     """Who has one hand does not look for a button to the right of the screen."""
     page, _ = stage.open(scenes.bad_minute(), "phone")

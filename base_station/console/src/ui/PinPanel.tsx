@@ -109,7 +109,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
   return (
     <form class="tool-panel" aria-label="All start here" onSubmit={send}>
       <h3>All were here</h3>
-      <p>{units.map(displayName).join(", ") || "Nobody wears a unit yet."}</p>
+      <Everybody names={units.map(displayName)} />
       <PlaceFields />
       <WithinField startM={4} />
       <WhenField set={0} />
@@ -127,6 +127,20 @@ export function StartPanel({ picture }: { picture: Picture }) {
       <FloorField picture={picture} start={undefined} />
       <Ends label="Set start" />
     </form>
+  );
+}
+
+const MANY = 6;
+
+/** Forty names would push what is to be said out of sight. */
+function Everybody({ names }: { names: readonly string[] }) {
+  const all = names.join(", ") || "Nobody wears a unit yet.";
+  if (names.length <= MANY) return <p>{all}</p>;
+  return (
+    <details class="everybody">
+      <summary>All {names.length} who are on duty</summary>
+      {all}
+    </details>
   );
 }
 
