@@ -55,7 +55,7 @@ def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
         expect(card).to_contain_text("Switched off")
         expect(card).to_contain_text("10 min old")
         expect(card).not_to_contain_text("trust")
-    page.get_by_role("button", name="All 5").click()
+    page.get_by_role("button", name="Floors: All").click()
     page.wait_for_timeout(600)  # the plan has come to rest
     assert painted(page, "--quiet") < 4000, "the plan is not hatched for them"
 
