@@ -190,7 +190,7 @@ def _of_the_same(state: StationState, key: str, newest: Alarm, finding: Finding)
         same = (alarm.rule, alarm.unit_id, alarm.worn_from_ns) == (
             newest.rule, newest.unit_id, finding.worn_from_ns
         )  # fmt: skip
-        if same and alarm.is_open:
+        if same:
             state.alarms[key] = state.alarms.pop(beside)
             return alarm
     return None

@@ -13,6 +13,7 @@ from base_station.api import services
 from base_station.db.principals import Role
 from base_station.live.sinks import ActionDone
 from shared.clock import ManualClock
+from shared.messages.station import ReportProblem
 from tests.station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
@@ -84,6 +85,20 @@ async def test_a_key_that_came_with_another_request_is_refused(
     assert other.status_code == 422
     assert "was not done: give every request a key of its own" in other.json()["detail"]
     assert len((await commander.get("/commands")).json()) == 1
+
+
+async def test_the_same_said_of_another_thing_is_another_request(
+    station: DeskStation, commander: httpx.AsyncClient
+) -> None:
+    station.drive.submit("station", ReportProblem("log", "It fails"))
+    station.projection.flush()
+    (alarm,) = (await commander.get("/alarms")).json()
+    seen = {"last_raised_ms": alarm["last_raised_ms"]}
+    path = f"/alarms/{alarm['alarm_id']}"
+    for what, status in (("acknowledge", 204), ("resolve", 422), ("acknowledge", 204)):
+        answer = await commander.post(f"{path}/{what}", json=seen, headers=KEY)
+        assert answer.status_code == status
+    assert (await commander.get(path)).json()["state"] == "acknowledged"
 
 
 async def test_a_person_is_added_once(station: DeskStation, commander: httpx.AsyncClient) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.boot_state import BootState
+from base_station.boot_state import told_ns as when_told_ns
 from shared.clock import NS_PER_S
 from shared.messages import Header
 
@@ -121,3 +122,18 @@ def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
         unit.heard(100.0 + second / 10, slower_s=slower_s)
     assert (unit.placed_s(0.0) > 50.0) is is_taken
     assert unit.placed_s(0.0) == pytest.approx(slower_s if is_taken else 0.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("utc_error_s", "std_s", "told_s"),
+    [(0.0, 0.1, -30.0), (40.0, 0.1, 0.0), (0.0, 0.0, None)],
+    ids=["it knew the time", "it is ahead", "it knew no time"],
+)
+@pytest.mark.parametrize("boots", [(), (BootState(6),), (BootState(7),)])
+def test_of_a_run_of_which_nothing_came_live_the_unit_itself_tells_when(
+    boots: tuple[BootState, ...], utc_error_s: float, std_s: float, told_s: float | None
+) -> None:
+    """Thirty seconds ago by the station's clock; nothing is said later than it comes."""
+    header = Header("FF-01", 7, 1, UPTIME_NS, STATION_NS + ns(utc_error_s - 30.0), std_s)
+    told_ns = None if told_s is None else STATION_NS + ns(told_s)
+    assert when_told_ns(boots, header, STATION_NS) == told_ns
