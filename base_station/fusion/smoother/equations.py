@@ -93,16 +93,16 @@ class NormalEquations:
 
     def spread_of(self, rows: csr_matrix) -> Floats:
         """Covariance of ``rows @ x``, (m, m)."""
-        columns = rows.T.toarray()
-        spread: Floats = columns.T @ self._solve(columns)
+        spread: Floats = rows @ self._solve(rows.T.toarray())
         return 0.5 * (spread + spread.T)
 
     def _solve(self, right: Floats) -> Floats:
         x = np.zeros_like(right)
         shared = right[self._first :].copy()
         for name, own in self._chains.items():
-            if right[own].any():
-                x[own] = self._of_chain(name, right[own])
+            here = right[own].any(axis=0)  # the right sides that say anything of this chain
+            if here.any():
+                x[own, here] = self._of_chain(name, right[own, here])
                 shared -= self._beside[name].T @ x[own]
         x[self._first :] = shared = cho_solve(self._whole, shared)
         for name, own in self._chains.items():

@@ -103,14 +103,21 @@ class Pieces:
             on = np.flatnonzero(self.floor == floor)
             middles = place_m[self.piece[on]]
             met = self.grid.met_moved(floor, from_m[on], to_m[on], middles)
-            np.add.at(logs, self.piece[on], math.log(THROUGH_WALL) * (met == WALL))
-            np.add.at(room, self.piece[on], math.log(BESIDE_WALL) * (met == BESIDE))
+            logs += math.log(THROUGH_WALL) * self._steps_of(on, met == WALL)
+            room += math.log(BESIDE_WALL) * self._steps_of(on, met == BESIDE)
             up = on[self.climbs[on]]
             if len(up) and self.grid.has_stairs(floor):
                 ends = (place_m[self.piece[up]] + to_m[up][:, None]).reshape(-1, 2)
                 off = ~self.grid.on_stairs(floor, ends).reshape(len(up), -1)
-                np.add.at(logs, self.piece[up], math.log(OFF_STAIRS) * off)
+                logs += math.log(OFF_STAIRS) * self._steps_of(up, off)
         return logs, room
+
+    def _steps_of(self, steps: Ints, flags: NDArray[np.bool_]) -> Floats:
+        """How many of each piece's ``steps`` (n,) have their flags (n, g) set: (p, g)."""
+        pieces, first = np.unique(self.piece[steps], return_index=True)
+        counts = np.zeros((len(self), flags.shape[1]))
+        counts[pieces] = np.add.reduceat(flags, first, axis=0, dtype=np.float64)
+        return counts
 
 
 class Words:
@@ -130,15 +137,15 @@ class Words:
         spread = np.linalg.inv(rest)
         place = _times(spread, told)
         looks, weights = _looks()
-        apart = np.einsum("pij,gj->pgi", np.linalg.cholesky(spread), looks)
+        apart = looks @ np.linalg.cholesky(spread).transpose(0, 2, 1)
         logs, room = self.pieces.logs_at(belief, place[:, None] + apart)
         likely = weights * np.exp(logs)
         passed = likely.sum(axis=1)
         likely *= np.exp(room)
         likely /= likely.sum(axis=1)[:, None]
-        shift = np.einsum("pg,pgi->pi", likely, apart)
+        shift = (likely[:, None] @ apart)[:, 0]
         off = apart - shift[:, None]
-        left = np.einsum("pg,pgi,pgj->pij", likely, off, off) + SHARPEST_M**2 * np.eye(2)
+        left = (likely[:, :, None] * off).transpose(0, 2, 1) @ off + SHARPEST_M**2 * np.eye(2)
         information = _at_least_nothing(np.linalg.inv(left) - rest)
         now = _times(rest + information, place + shift) - told
         self._information += DAMPED * (information - self._information)
