@@ -43,7 +43,7 @@ class PinResidual(Answer, frozen=True):
     shown_m: float | None
     trail_m: float
     sigmas: float
-    floor_right: bool | None  # was the floor shown the pin's?
+    floor_right: bool | None  # was the floor shown the pin's?  None: one of them is not known
 
 
 class TrustReport(Answer, frozen=True):
@@ -201,7 +201,7 @@ def _pin_residuals(
             apart_m = math.hypot(shown.north_m - place.north_m, shown.east_m - place.east_m)
             shown_m = round(apart_m, 2)
         floor_right = None
-        if shown is not None and place.floor is not None:
+        if shown is not None and shown.floor is not None and place.floor is not None:
             floor_right = shown.floor == place.floor
         found.append(
             PinResidual(

@@ -63,6 +63,12 @@ def test_a_pin_of_a_time_at_which_nothing_was_shown_tells_nothing_of_it() -> Non
         assert (residual.shown_m, residual.floor_right) == (None, None)
 
 
+def test_a_floor_that_was_not_shown_was_not_wrong() -> None:
+    live = [msgspec.structs.replace(shown(10.0), floor=None)]
+    (residual,) = assessed(live, (), pin(10.0, 0.0)).pin_residuals
+    assert (residual.shown_m, residual.floor_right) == (0.0, None)
+
+
 def test_a_pin_at_the_start_is_held_against_what_was_shown_first() -> None:
     (residual,) = assessed([shown(100.0, 7.0), shown(101.0, 8.0)], (), pin(0.0, 7.0)).pin_residuals
     assert residual.shown_m == 0.0
