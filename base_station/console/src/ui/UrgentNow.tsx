@@ -1,4 +1,4 @@
-import { besideLive, isPast, live, stopReplay } from "../sessions";
+import { isPast, live, stopReplay } from "../sessions";
 import { dialog, find } from "../view";
 import { Icon } from "./Icon";
 
@@ -6,7 +6,8 @@ import { Icon } from "./Icon";
  * replay they are of what is live, and lead there; of the past there are none. */
 export function UrgentNow() {
   const overPast = isPast.value;
-  const picture = overPast && !besideLive.value ? undefined : live.value?.picture;
+  const watched = live.value?.picture;
+  const picture = watched?.replay.value === null ? watched : undefined;
   const urgent = (picture?.openAlarms.value ?? []).filter(
     (alarm) => alarm.priority === 1 && alarm.state === "raised",
   );
