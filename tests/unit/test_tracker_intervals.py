@@ -59,6 +59,14 @@ def test_only_what_bends_more_than_a_cubic_is_unseen():
     assert unseen_var(strike, k=2) == 0.0
 
 
+@pytest.mark.parametrize("t_s", [(0.0, 0.08, 0.19, 0.28), (0.0, 0.11, 0.2, 0.32)])
+def test_stamps_that_jitter_are_of_even_samples(t_s):
+    readings = np.column_stack(([1.0, 2.0, 5.0, 9.0], np.zeros(4), np.zeros(4)))
+    jittering, _ = means_of(np.array(t_s), readings, readings, 2)
+    even, _ = means_of(0.1 * np.arange(4), readings, readings, 2)
+    assert jittering[0] == even[0]
+
+
 @pytest.mark.parametrize(
     "t_s",
     [(0.0, 0.1, 0.3, 0.4), (0.0, 0.3, 0.4, 0.5), (0.0, 0.1, 0.44, 0.64), (0.0, 0.1, 0.2, 0.5)],
