@@ -13,7 +13,7 @@ from playwright.sync_api import Locator, Page, expect
 from base_station.api.wire import UnitView
 from tests.e2e import scenes
 from tests.e2e.console_page import close, menu
-from tests.e2e.stage import Stage
+from tests.e2e.stage import ANSWERS, Stage
 
 
 def stop_time(page: Page) -> None:
@@ -85,6 +85,26 @@ def test_two_presses_order_once(stage: Stage, order: str, sends: str) -> None:
     let_time_go_on(page)
     button.click()
     assert station.changes() == ["/commands"] * 2
+
+
+@pytest.mark.parametrize("order", ["Message", "Evacuate"])
+def test_what_is_sent_next_is_for_the_same_and_not_for_everyone(stage: Stage, order: str) -> None:
+    """Who presses again because nobody answers must not call all others out."""
+    sent = {"POST /commands": {"command_id": "c9"}}
+    page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, **sent})
+    page.get_by_role("group", name="Commands").get_by_role("button", name=order).click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("combobox").select_option("crew:Engine 1")
+    button = dialog.get_by_role("button", name=re.compile("Send|Evacuate now"))
+    for words in ("Come out", "By the north stairs"):
+        if order == "Message":
+            text = dialog.get_by_label("Message", exact=True)
+            expect(text).to_have_value("")
+            text.fill(words)
+        page.wait_for_timeout(600)  # no haste
+        with page.expect_request(re.compile("/commands$")) as asked:
+            button.click()
+        assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
 
 
 def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:

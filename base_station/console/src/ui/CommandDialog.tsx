@@ -47,7 +47,7 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
         const { target = "everyone", text = "" } = fields(event);
         once(() =>
           attempt(api.sendCommand(kind, targetOf(target), text)).then(
-            (command) => command && form.reset(),
+            (command) => command && clearText(form),
           ),
         );
       }}
@@ -70,7 +70,7 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
         </select>
       </label>
       {kind === "text" && (
-        <label>
+        <label class="long">
           Message
           <input name="text" required maxLength={120} />
         </label>
@@ -80,6 +80,12 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       </button>
     </form>
   );
+}
+
+/** What is sent next is for the same people: reset as a whole, the form would be for everyone. */
+function clearText(form: HTMLFormElement): void {
+  const text = form.elements.namedItem("text");
+  if (text instanceof HTMLInputElement) text.value = "";
 }
 
 function targetOf(value: string): Target {
