@@ -35,8 +35,8 @@ def row_id(by: str, key: str, asked: bytes) -> str:
 
 
 def asks_the_same(action_id: str, before: str) -> bool:
-    """Whether two actions with one key are one request."""
-    return action_id.rpartition(".")[0] == before.rpartition(".")[0]
+    """Whether two actions with one key are one request; without a key nothing was before."""
+    return not _key_of(action_id) or action_id.rpartition(".")[0] == before.rpartition(".")[0]
 
 
 def done_before(state: StationState, action_id: str) -> DoneOnce | None:

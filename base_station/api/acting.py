@@ -8,11 +8,10 @@ from typing import Annotated
 from fastapi import Depends, Header, Request
 
 from base_station.api.forms import IDEMPOTENCY_KEY
-from base_station.api.problems import Problem
 from base_station.api.security import Commander
-from base_station.api.services import Services, Station
+from base_station.api.services import Services, Station, key_used_before
 from base_station.live.sinks import ActionDone
-from base_station.once import asks_the_same, once_id, row_id
+from base_station.once import once_id, row_id
 from shared.messages.station import Action
 
 _Key = Annotated[
@@ -42,10 +41,7 @@ class Acting:
         if not self._key:
             return self._station.act(self.by, action)
         action_id = once_id(self.by, self._key, self._asked, uuid.uuid4().hex)
-        done = self._station.act(self.by, action, action_id)
-        if not asks_the_same(action_id, done.action_id):
-            raise _used_before()
-        return done
+        return self._station.act(self.by, action, action_id)
 
     @property
     def row_id(self) -> str:
@@ -55,15 +51,7 @@ class Acting:
     def require_row(self, found_id: str) -> None:
         """``found_id``: of the row that was added with this key, now or before."""
         if self._key and found_id != self.row_id:
-            raise _used_before()
-
-
-def _used_before() -> Problem:
-    return Problem(
-        422,
-        "This Idempotency-Key came with another request before, and this one was not done: give "
-        "every request a key of its own.",
-    )
+            raise key_used_before()
 
 
 async def _acting(

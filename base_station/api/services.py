@@ -13,6 +13,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from base_station.api.hub import Hub
+from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.api.standing import Standing
 from base_station.api.wire import Snapshot
@@ -23,6 +24,7 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.live.sinks import ActionDone, OperatorGate
+from base_station.once import asks_the_same
 from base_station.past.hindsight import Hindsight
 from base_station.recordings.desk import RecordingDesk
 from shared.clock import Clock
@@ -59,7 +61,7 @@ class Services:
         """Have the drive take a person's action, and wait until it can be read everywhere.
 
         Raises UserError with the reason where the action had no effect.  ``action_id``: as of
-        ``OperatorGate``.
+        ``OperatorGate``; Problem 422 where the client's key came with another request before.
         """
         try:
             done = self.gate.submit(by, action, action_id).result(ACTION_TIMEOUT_S)
@@ -72,6 +74,8 @@ class Services:
             raise StoreError(
                 f"the station is busy and has not done this yet; it may still do it: {again}"
             ) from None
+        if not asks_the_same(action_id, done.action_id):
+            raise key_used_before()
         if done.refused is not None:
             raise UserError(done.refused.reason)
         self.settle()
@@ -83,6 +87,14 @@ class Services:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             raise StoreError("the station is too busy to say this now; try again") from None
+
+
+def key_used_before() -> Problem:
+    return Problem(
+        422,
+        "This Idempotency-Key came with another request before, and this one was not done: give "
+        "every request a key of its own.",
+    )
 
 
 def services_of(connection: HTTPConnection) -> Services:

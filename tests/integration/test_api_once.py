@@ -65,6 +65,8 @@ async def test_what_was_refused_is_refused_again_whatever_has_happened_since(
     again = await commander.put("/units/FF-01/rest", json=rest, headers=KEY)
     assert (first.status_code, again.status_code) == (409, 409)
     assert again.json() == first.json()
+    other = await commander.put("/units/FF-01/rest", json={"resting": False}, headers=KEY)
+    assert other.status_code == 422, "it is told of itself, not of what was refused"
     anew = await commander.put("/units/FF-01/rest", json=rest, headers={"Idempotency-Key": "b"})
     assert anew.status_code == 204
     assert (await commander.put("/units/FF-01/rest", json=rest)).status_code == 409
