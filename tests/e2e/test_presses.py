@@ -107,6 +107,21 @@ def test_what_is_sent_next_is_for_the_same_and_not_for_everyone(stage: Stage, or
         assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
 
 
+def test_an_order_to_a_crew_that_is_gone_is_not_one_to_everyone(stage: Stage) -> None:
+    quiet = scenes.quiet()
+    page, station = stage.open(quiet)
+    page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()
+    dialog = page.get_by_role("dialog")
+    to = dialog.get_by_role("combobox")
+    to.select_option("crew:Engine 1")
+    station.change(units=(msgspec.structs.replace(quiet.units[0], person=None),))
+    expect(page.locator(".card", has_text="nobody assigned")).to_have_count(1)
+    expect(to).to_have_value("crew:Engine 1")
+    with page.expect_request(re.compile("/commands$")) as asked:
+        dialog.get_by_role("button", name="Evacuate now").click()
+    assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
+
+
 def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     people = menu(page, "People")

@@ -1,3 +1,4 @@
+import { useSignal } from "@preact/signals";
 import { attempt, live, mayAct } from "../sessions";
 import { dialogUnit } from "../view";
 import * as api from "../api";
@@ -18,6 +19,8 @@ const SAYS: Record<api.CommandKind, string> = {
   locate: "The unit makes itself heard and seen.",
 };
 
+const EVERYONE = "everyone";
+
 /** Asks whom it is for before anything is sent, and shows what became of it. */
 export function CommandDialog({ kind }: { kind: api.CommandKind }) {
   const picture = live.value?.picture;
@@ -33,20 +36,28 @@ export function CommandDialog({ kind }: { kind: api.CommandKind }) {
 }
 
 function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Picture }) {
-  const about = dialogUnit.value;
+  const about = dialogUnit.peek();
+  const to = useSignal(about === null ? EVERYONE : `unit:${about}`);
   const once = useOnce();
   const units = picture.unitIds.value
     .map((unitId) => picture.unit(unitId)?.value)
     .filter((unit) => unit !== undefined)
     .filter((unit) => unit.registered);
+  const targets = new Map([
+    [EVERYONE, "Everyone"],
+    ...crewsOf(units).map((crew) => [`crew:${crew}`, crew] as const),
+    ...units.map((unit) => [`unit:${unit.unit_id}`, nameAmong(unit, units)] as const),
+  ]);
+  // Else the list would turn to its first entry, which is everyone.
+  if (!targets.has(to.value)) targets.set(to.value, `${nameIn(to.value)} (nobody now)`);
   return (
     <form
       class="row command-form"
       onSubmit={(event) => {
         const form = event.currentTarget;
-        const { target = "everyone", text = "" } = fields(event);
+        const { text = "" } = fields(event);
         once(() =>
-          attempt(api.sendCommand(kind, targetOf(target), text)).then(
+          attempt(api.sendCommand(kind, targetOf(to.peek()), text)).then(
             (command) => command && clearText(form),
           ),
         );
@@ -55,16 +66,10 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       <p>{SAYS[kind]}</p>
       <label>
         To
-        <select name="target" defaultValue={about === null ? "everyone" : `unit:${about}`}>
-          <option value="everyone">Everyone</option>
-          {crewsOf(units).map((crew) => (
-            <option key={crew} value={`crew:${crew}`}>
-              {crew}
-            </option>
-          ))}
-          {units.map((unit) => (
-            <option key={unit.unit_id} value={`unit:${unit.unit_id}`}>
-              {nameAmong(unit, units)}
+        <select value={to.value} onChange={(event) => (to.value = event.currentTarget.value)}>
+          {[...targets].map(([target, name]) => (
+            <option key={target} value={target}>
+              {name}
             </option>
           ))}
         </select>
@@ -82,16 +87,19 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
   );
 }
 
-/** What is sent next is for the same people: reset as a whole, the form would be for everyone. */
 function clearText(form: HTMLFormElement): void {
   const text = form.elements.namedItem("text");
   if (text instanceof HTMLInputElement) text.value = "";
 }
 
 function targetOf(value: string): Target {
-  const name = value.slice(value.indexOf(":") + 1);
+  const name = nameIn(value);
   if (value.startsWith("crew:")) return { crew: name };
   return value.startsWith("unit:") ? { unit_id: name } : { everyone: true };
+}
+
+function nameIn(target: string): string {
+  return target.slice(target.indexOf(":") + 1);
 }
 
 function Deliveries({ command, picture }: { command: CommandView; picture: Picture }) {
