@@ -122,6 +122,20 @@ def test_an_order_to_a_crew_that_is_gone_is_not_one_to_everyone(stage: Stage) ->
     assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
 
 
+def test_who_was_met_is_no_other_once_nobody_wears_that_unit(stage: Stage) -> None:
+    quiet = scenes.quiet()
+    page, station = stage.open(quiet)
+    page.locator("[data-unit='FF-01']").get_by_role("button").first.click()
+    page.get_by_role("button", name="Met …").click()
+    panel = page.get_by_role("form", name="They met")
+    panel.get_by_label("Whom").select_option("FF-03")
+    station.change(units=(msgspec.structs.replace(quiet.units[2], person=None),))
+    expect(page.locator(".card", has_text="nobody assigned")).to_have_count(1)
+    with page.expect_request(re.compile("/pins/meeting$")) as asked:
+        panel.get_by_role("button", name="They met").click()
+    assert (asked.value.post_data_json or {})["other_unit_id"] == "FF-03"
+
+
 def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     people = menu(page, "People")

@@ -1,3 +1,4 @@
+import { useSignal } from "@preact/signals";
 import { attempt } from "../sessions";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
@@ -157,7 +158,12 @@ const COMPASS: readonly [string, number][] = [
 
 /** Two people were at the same place; nobody has to say where. */
 export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: string }) {
-  const others = onDuty(picture).filter((unit) => unit.unit_id !== unitId);
+  const first = onDuty(picture).find((unit) => unit.unit_id !== unitId);
+  const whom = useSignal(first?.unit_id ?? "");
+  // Whoever was chosen stays there, else the list would turn to its first entry.
+  const others = registered(picture).filter(
+    (unit) => unit.unit_id !== unitId && (unit.person !== null || unit.unit_id === whom.value),
+  );
   const once = useOnce();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
@@ -175,7 +181,12 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
       <h3>{nameOf(picture, unitId)} met</h3>
       <label>
         Whom
-        <select name="other" required>
+        <select
+          name="other"
+          required
+          value={whom.value}
+          onChange={(event) => (whom.value = event.currentTarget.value)}
+        >
           {others.map((unit) => (
             <option key={unit.unit_id} value={unit.unit_id}>
               {nameAmong(unit, others)}
@@ -219,8 +230,12 @@ function timeOf(given: Record<string, string>, picture: Picture): number | null 
 }
 
 function onDuty(picture: Picture): UnitView[] {
+  return registered(picture).filter((unit) => unit.person !== null);
+}
+
+function registered(picture: Picture): UnitView[] {
   void picture.unitsChanged.value;
-  return picture.allUnits().filter((unit) => unit.registered && unit.person !== null);
+  return picture.allUnits().filter((unit) => unit.registered);
 }
 
 function nameOf(picture: Picture, unitId: string): string {
