@@ -32,6 +32,16 @@ def test_what_hangs_mid_swing_is_noticed(accel_axes, gyro_axes):
     assert off_m < 2.5 * np.sqrt(np.trace(rows.position_cov_m2[-1, :2, :2]))
 
 
+def test_who_is_not_heard_of_is_not_known_to_stand():
+    """The filter's own time stands still meanwhile."""
+    t_ns, accel, gyro = copy()
+    first = index(IN_SWING)
+    accel[first:] = np.nan
+    rows = run(t_ns, accel, gyro)
+    assert not flagged(rows, Reason.NO_STANCE)[: index(IN_SWING + 2.0)].any()
+    assert flagged(rows, Reason.NO_STANCE)[index(IN_SWING + 3.1) :].all()
+
+
 @pytest.mark.parametrize("value", [0.5, 1.0, np.nan])  # of the highest reading before
 @pytest.mark.parametrize("axis", range(6))
 def test_an_axis_that_fails_for_good_is_doubted_more_and_more(axis, value):

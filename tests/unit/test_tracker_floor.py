@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.eskf import EskfTracker
+from edge.tracker.floor import DOWN, settle
 from edge.tracker.rows import join_rows
+from edge.tracker.state import RING, STEP, new_filter_state, new_progress
 from tests.walking import walk
 
 
@@ -36,3 +39,14 @@ def test_ramps_keep_their_height(slope):
     assert risen == pytest.approx(25 * slope * 1.3, abs=0.12)
     short, _ = risen_m(strides=25, stride_m=0.9, rise_m=slope * 0.9)
     assert short == pytest.approx(25 * slope * 0.9, abs=0.12)
+
+
+def test_a_floor_is_no_better_known_than_when_it_was_entered():
+    ring, step = np.zeros(8, RING), np.zeros(1, STEP)[0]
+    ring["t_s"] = 10.0
+    progress, state = new_progress()[0], new_filter_state()[0]
+    progress["on_floor"] = True
+    progress["level_variance_m2"] = progress["footfall_variance_m2"] = 0.04
+    state["covariance"][DOWN, DOWN] = 0.0401
+    settle(ring, step, progress, state, 0, config_record(EskfConfig())[0])
+    assert state["covariance"][DOWN, DOWN] == 0.04
