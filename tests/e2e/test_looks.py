@@ -62,6 +62,16 @@ def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapsho
     assert barriers(page) == []
 
 
+@pytest.mark.parametrize("letters_px", [20, 24])  # browsers set 16 where nobody says otherwise
+def test_letters_are_as_large_as_somebody_has_set_them(stage: Stage, letters_px: int) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    devtools = page.context.new_cdp_session(page)
+    devtools.send("Page.setFontSizes", {"fontSizes": {"standard": letters_px}})
+    shown_px = "parseFloat(getComputedStyle(document.body).fontSize)"
+    assert page.evaluate(shown_px) == pytest.approx(letters_px * 15 / 16)
+    assert flaws(page) == []
+
+
 def test_dialogs_fit_every_screen(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     for name in ("Incidents", "Units", "People", "Site", "Account"):
