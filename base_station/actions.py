@@ -50,9 +50,8 @@ from shared.messages.station import (
     Unassign,
 )
 
-Effect = (
-    Alarm | UnitState | SentCommand | PinsTouched | TrailFilled | NamesForgotten
-)  # what an action changed
+# What an action changed.
+Effect = Alarm | UnitState | SentCommand | PinsTouched | TrailFilled | NamesForgotten
 
 
 class Actions:

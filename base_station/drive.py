@@ -211,9 +211,8 @@ class StationDrive:
         for _ in range(len(self._inbox)):
             by, action, action_id, future = self._inbox.popleft()
             if isinstance(action, ForgetWearers) and self._saving.is_under_way:
-                self._inbox.append(
-                    (by, action, action_id, future)
-                )  # what is being saved has them in it
+                # What is being saved has them in it.
+                self._inbox.append((by, action, action_id, future))
                 continue
             done = self._done_before(action_id) or self._do(by, action, action_id)
             self._settle()
