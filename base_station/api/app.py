@@ -7,11 +7,12 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
 from fastapi import Depends, FastAPI
+from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
 from base_station.api.console_files import serve_console
 from base_station.api.forms import MOST_BYTES
 from base_station.api.headers import SecurityHeaders
-from base_station.api.problems import Mistakes, ProblemDocument, handle_problems
+from base_station.api.problems import Mistakes, ProblemDocument, TooLarge, handle_problems
 from base_station.api.routes import ROUTERS
 from base_station.api.security import LoginThrottle, check_origin, check_standing
 from base_station.api.services import Services
@@ -45,13 +46,15 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         docs_url=None,  # its pages would load from elsewhere
         redoc_url=None,
         dependencies=[Depends(check_origin), Depends(check_standing)],
-        max_body_size=MOST_BYTES,
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
     )
     app.state.services = services
     app.state.login_throttle = LoginThrottle()
     standing = services.standing
     app.add_middleware(Mistakes)
+    # The framework's own limit stands outside of what answers like a problem, with its headers.
+    app.add_middleware(RequestBodyLimitMiddleware, max_body_size=MOST_BYTES)
+    app.add_middleware(TooLarge)
     app.add_middleware(  # the last one is the outer one
         SecurityHeaders,
         secure=services.secure,

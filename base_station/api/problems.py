@@ -14,9 +14,14 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from base_station.api.field_errors import sentence_of
+from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
 from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
 
 _log = logging.getLogger(__name__)
+_TOO_LARGE = (
+    f"This is too large: a picture, a plan or a map may have {MOST_UPLOADED_BYTES // 10**6} MB, "
+    f"anything else {MOST_BYTES // 10**3} kB."
+)
 
 
 class ProblemDocument(BaseModel):
@@ -98,6 +103,28 @@ class Mistakes:
             _log.error("%s %s failed", scope["method"], scope["path"], exc_info=error)
             answer = problem_response(500, "The station made a mistake; its log says which.")
             await answer(scope, receive, send)
+
+
+class TooLarge:
+    """ASGI middleware: a body that is larger than a route takes is answered like every problem,
+    whatever the limiter below says of it.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        refused = False
+
+        async def saying_so(message: Message) -> None:
+            nonlocal refused
+            if message["type"] == "http.response.start" and message["status"] == 413:
+                refused = True
+                await problem_response(413, _TOO_LARGE)(scope, receive, send)
+            elif not refused:
+                await send(message)
+
+        await self._app(scope, receive, saying_so)
 
 
 def _status_of(error: MusterError) -> int:

@@ -129,7 +129,7 @@ def test_a_recorder_on_a_full_disk_is_behind_until_there_is_room(tmp_path: Path)
 
 def north_of_one_m(station: LiveStation) -> float | None:
     (shown,) = station.snapshot().units
-    return shown.position and shown.position.north_m
+    return None if shown.position is None else shown.position.north_m
 
 
 def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_when_there_is_room(

@@ -36,10 +36,13 @@ async def test_a_body_without_end_is_refused(
     commander: httpx.AsyncClient, method: str, path: str, most: int
 ) -> None:
     length = {"content-type": "application/json"}
-    answer = await commander.request(method, path, content=b"x" * (most + 1), headers=length)
-    assert answer.status_code == 413
-    unsaid = await commander.request(method, path, content=chunks(most // 100_000 + 1))
-    assert unsaid.status_code == 413
+    told = await commander.request(method, path, content=b"x" * (most + 1), headers=length)
+    untold = await commander.request(method, path, content=chunks(most // 100_000 + 1))
+    for answer in (told, untold):
+        assert (answer.status_code, answer.json()["status"]) == (413, 413)
+        assert answer.json()["detail"].startswith("This is too large: a picture, a plan or a map")
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert "default-src 'self'" in answer.headers["content-security-policy"]
 
 
 @pytest.mark.parametrize("path", ["/site/plan", "/people/x/photo", "/site/base-map?world=1"])

@@ -71,9 +71,8 @@ async function answer(path: string, init: RequestInit): Promise<Response> {
   return response;
 }
 
-/** The sentence of a problem document (RFC 9457); what is too large is refused without one. */
+/** The sentence of a problem document (RFC 9457). */
 async function reason(response: Response): Promise<string> {
-  if (response.status === 413) return "This is too large: a picture or a plan may have 12 MB.";
   const body: unknown = await response.json().catch(() => null);
   const detail = (body as { detail?: unknown } | null)?.detail;
   return typeof detail === "string" ? detail : `The station answered ${response.status}.`;

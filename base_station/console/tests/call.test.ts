@@ -71,11 +71,6 @@ describe("what the station is to do", () => {
   });
 });
 
-it("says of what is too large that it is, which no problem document does", async () => {
-  sent.mockImplementation(() => Promise.resolve(new Response("Content Too Large", { status: 413 })));
-  await expect(call("PUT", "/site/plan", {})).rejects.toThrow("too large: a picture or a plan");
-});
-
 it("asks for anything else once, and without a key", async () => {
   sent.mockImplementation(() => Promise.reject(new TypeError("failed")));
   await expect(call("POST", "/replays", {})).rejects.toThrow("cannot be reached");
