@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Request
 
-from base_station.api.forms import IDEMPOTENCY_KEY
+from base_station.api.forms import IdempotencyKeyText
 from base_station.api.security import Commander
 from base_station.api.services import Services, Station, key_used_before
 from base_station.live.sinks import ActionDone
@@ -15,10 +15,9 @@ from base_station.once import once_id, row_id
 from shared.messages.station import Action
 
 _Key = Annotated[
-    str | None,
+    IdempotencyKeyText | None,
     Header(
         alias="Idempotency-Key",
-        pattern=IDEMPOTENCY_KEY,
         description="Of the client's choice, another one for every request. Who has had no answer "
         "sends the same again with the same key: it is done once, and answered as at first. "
         "With another request the key is refused (422). The last 1000 keys hold, also after a "

@@ -68,7 +68,7 @@ def test_a_wrong_field_is_named_with_what_to_do(
 
 def test_every_pattern_of_a_form_is_said_in_words() -> None:
     ids = (forms.UnitIdText, forms.UnitIdOrNone, forms.Id, forms.AlarmId)
-    kinds = (forms.Name, forms.Word, forms.Note, *ids)
+    kinds = (forms.Name, forms.Word, forms.Note, forms.IdempotencyKeyText, *ids)
     patterns = {TypeAdapter(kind).json_schema()["pattern"] for kind in kinds}
     assert patterns == set(forms.FITTING)
 
