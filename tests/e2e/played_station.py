@@ -21,6 +21,9 @@ from tests.e2e.console_files import DIST
 ADDRESS = "http://station.test"
 API = "/api/v1"
 
+# Of these lists a delta has only what has changed.
+_ID_OF = {"units": "unit_id", "alarms": "alarm_id", "commands": "command_id"}
+
 Answers = Mapping[str, object]
 
 
@@ -49,9 +52,18 @@ class PlayedStation:
         """Something happens: a delta goes out."""
         said = {"seq": self._picture.seq + 1, "now_ms": self._picture.now_ms, **what}
         delta = Delta(**said)  # type: ignore[arg-type]
-        self._picture = msgspec.structs.replace(self._picture, **said)
+        whole = {name: self._whole(name, said[name]) for name in _ID_OF.keys() & said.keys()}
+        self._picture = msgspec.structs.replace(self._picture, **said | whole)
         for socket in self._sockets:
             socket.send(msgspec.json.encode(delta).decode())
+
+    def _whole(self, name: str, changed: object) -> tuple[object, ...]:
+        """A list of the picture with what has changed in it: a page may ask for all again."""
+        assert isinstance(changed, tuple)
+        by_id = {
+            getattr(one, _ID_OF[name]): one for one in (*getattr(self._picture, name), *changed)
+        }
+        return tuple(by_id.values())
 
     def hang(self) -> None:
         """It says no more, and its connections stay."""
