@@ -38,7 +38,8 @@ class ThroughputReport:
     per_core_hz: float
     times_real: float  # how much faster than time goes by, on this machine now
     memory_mb: tuple[float, ...]  # once a minute of the station's time, the first at the start
-    memory_slope_mb_per_minute: float  # over the last third: by then trails are full
+    # Over the last third: by then trails are full; None: the run was too short to tell.
+    memory_slope_mb_per_minute: float | None
     console_messages: int
 
 
@@ -104,11 +105,11 @@ def _memory_mb() -> float:
     return float(psutil.Process().memory_info().rss) / 1e6
 
 
-def _slope(memory_mb: list[float]) -> float:
+def _slope(memory_mb: list[float]) -> float | None:
     """Of the last third, by least squares; a run of a few minutes tells nothing."""
     late = memory_mb[2 * len(memory_mb) // 3 :]
     if len(late) < 3:
-        return float("nan")
+        return None
     return float(np.polyfit(np.arange(len(late)), late, 1)[0])
 
 
@@ -120,6 +121,7 @@ def _table(report: ThroughputReport) -> Table:
     )
     for title in ("", "measured", "to reach"):
         table.add_column(title, justify="left" if title == "" else "right")
+    slope = report.memory_slope_mb_per_minute
     rows = [("messages", f"{report.messages:,}", "")]
     rows += [(part, f"{cost_us:.1f} us a message", "") for part, cost_us in report.cpu_us.items()]
     rows += [
@@ -129,7 +131,7 @@ def _table(report: ThroughputReport) -> Table:
         ("memory at first, most, at last", _extremes(report.memory_mb), ""),
         (
             "memory grows, last third",
-            f"{report.memory_slope_mb_per_minute:.2f} MB/min",
+            "told by a longer run" if slope is None else f"{slope:.2f} MB/min",
             f"{_FLAT_MB_PER_MINUTE:.2f} MB/min",
         ),
     ]

@@ -33,3 +33,4 @@ def test_a_short_run_tells_each_parts_share() -> None:
     assert set(report.cpu_us) == {"decode, step, tell", "log", "database", "consoles"}
     assert report.cpu_us["decode, step, tell"] > 0.0
     assert report.per_core_hz > 0.0
+    assert report.memory_slope_mb_per_minute is None  # which only a long one tells
