@@ -214,21 +214,14 @@ class StationDrive:
                 # What is being saved has them in it.
                 self._inbox.append((by, action, action_id, future))
                 continue
-            done = self._done_before(action_id) or self._do(by, action, action_id)
+            before = ActionDone.before(self._pipeline.state, action_id)
+            done = before or self._do(by, action, action_id)
             self._settle()
             if isinstance(action, SendCommand):
                 self._ports.say(command_book.unanswered(self._pipeline.state))
             if future.set_running_or_notify_cancel():
                 future.set_result(done)
             self._due.delta_ns = 0  # who did something sees it at once
-
-    def _done_before(self, action_id: str) -> ActionDone | None:
-        """Its client asks again."""
-        before = once.done_before(self._pipeline.state, action_id)
-        if before is None:
-            return None
-        refused = Refused(before.action_id, before.refused) if before.refused else None
-        return ActionDone(before.action_id, before.t_ns, refused, before.made_id)
 
     def _do(self, by: str, action: Action, action_id: str = "") -> ActionDone:
         header = self._stamper.header()

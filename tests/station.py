@@ -95,15 +95,9 @@ class DeskDrive:
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         done: Future[ActionDone] = Future()
-        done.set_result(self._done_before(action_id) or self._do(by, action, action_id))
+        before = ActionDone.before(self._pipeline.state, action_id)
+        done.set_result(before or self._do(by, action, action_id))
         return done
-
-    def _done_before(self, action_id: str) -> ActionDone | None:
-        before = once.done_before(self._pipeline.state, action_id)
-        if before is None:
-            return None
-        refused = Refused(before.action_id, before.refused) if before.refused else None
-        return ActionDone(before.action_id, before.t_ns, refused, before.made_id)
 
     def _do(self, by: str, action: Action, action_id: str) -> ActionDone:
         header = self._stamper.header()

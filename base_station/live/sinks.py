@@ -13,8 +13,10 @@ from typing import Protocol
 
 import msgspec
 
+from base_station import once
 from base_station.api.wire import Delta, Snapshot
 from base_station.events import Refused
+from base_station.live_state import StationState
 from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
 from shared.messages.station import Action
 
@@ -78,6 +80,15 @@ class ActionDone(msgspec.Struct, frozen=True):
     t_ns: int  # station time
     refused: Refused | None  # why it had no effect
     made_id: str = ""  # of the command, pin or incident; empty: it makes none
+
+    @staticmethod
+    def before(state: StationState, action_id: str) -> ActionDone | None:
+        """What became of it when its client asked first; None: nothing is known of that."""
+        first = once.done_before(state, action_id)
+        if first is None:
+            return None
+        refused = Refused(first.action_id, first.refused) if first.refused else None
+        return ActionDone(first.action_id, first.t_ns, refused, first.made_id)
 
 
 class OperatorGate(Protocol):

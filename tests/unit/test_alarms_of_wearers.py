@@ -1,0 +1,190 @@
+"""Whom alarms are about: who wore the unit when it was said, however late it comes."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.bench.rig import said
+from shared.channels import EVENT, NO_TRACKER, backfilled_key, tracker_id
+from shared.codec import encode
+from shared.messages import AlarmState, EventKind, UnitEvent
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    ForgetWearers,
+    ResolveAlarm,
+    Unassign,
+)
+from tests.station_script import Script
+
+U = "FF-01"
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    return script
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("way", ["journal", "live"])
+def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
+    script: Script, kind: EventKind, way: str
+) -> None:
+    events = {}
+    for name in ("Ana", "Bo", ""):
+        script.act(Assign(U, name, name, "", "") if name else Unassign(U))
+        script.wait(3, lambda: script.status(U))
+        events[name] = UnitEvent(script.header(U), kind)
+        script.wait(3, lambda: script.status(U))
+    script.act(Assign(U, "cem", "Cem", "", ""))
+    script.wait(3)
+    key = EVENT.key(U) if way == "live" else backfilled_key(U, EVENT.suffix)
+    told = {}
+    for name, event in events.items():
+        script.record(key, encode(event))
+        told[name] = script.alarms[-1].text
+        script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+        script.wait(1)
+    script.event(U, kind)
+    told["Cem"] = script.alarms[-1].text
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    assert told == {name: text.format(name or f"unit {U}") for name in told}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("knew_time", [False, True])
+def test_what_a_run_said_of_which_nothing_came_live_is_of_who_wore_the_unit_as_far_as_is_known(
+    script: Script, kind: EventKind, knew_time: bool
+) -> None:
+    """Its monotonic clock says nothing; where it knew the station's time, that does."""
+    texts = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3)
+        script.boot_ids[U] = 6
+        header = script.header(U)
+        script.boot_ids[U] = 7
+        if knew_time:
+            header = msgspec.structs.replace(header, t_utc_ns=script.t_ns, utc_std_s=0.1)
+        if name == "Ana":
+            of_ana = encode(UnitEvent(header, kind))
+        script.wait(3, lambda: script.status(U))
+    script.record(backfilled_key(U, EVENT.suffix), of_ana)
+    texts.append(script.alarms[-1].text)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    script.wait(1)
+    script.event(U, kind)
+    texts.append(script.alarms[-1].text)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    of_whom = "Ana" if knew_time else "Bo or, before, Ana"
+    assert texts == [text.format(of_whom), text.format("Bo")]
+
+
+def test_who_alone_has_worn_a_unit_is_who_pressed_whenever_that_was(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.boot_ids[U] = 6
+    script.record(
+        backfilled_key(U, EVENT.suffix), encode(UnitEvent(script.header(U), EventKind.MAYDAY))
+    )
+    assert script.alarms[-1].text == "Mayday from Ana"
+
+
+def open_texts(script: Script) -> set[str]:
+    return {one.text for one in script.pipeline.state.alarms.values() if one.is_open}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("late", [False, True])
+def test_two_wearers_of_one_unit_are_two_people_in_need(
+    script: Script, kind: EventKind, late: bool
+) -> None:
+    """Whichever of the two is told last."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    of_ana = UnitEvent(script.header(U), kind)
+    if not late:
+        script.record(EVENT.key(U), encode(of_ana))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, kind)
+    if late:
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+        script.record(backfilled_key(U, EVENT.suffix), encode(of_ana))
+    script.wait(3)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    ana, bo = (text.format(name) for name in ("Ana", "Bo"))
+    assert open_texts(script) == {ana, bo}
+    assert [one.text for one in script.alarms if one.state is AlarmState.RAISED] == (
+        [bo, ana] if late else [ana, bo]
+    )
+    of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
+    script.act(ResolveAlarm(of_bo, "helped"))
+    script.wait(3)
+    assert open_texts(script) == {ana}
+    script.act(ResolveAlarm(next(one.alarm_id for one in script.alarms if one.text == ana), ""))
+    script.wait(3)
+    assert open_texts(script) == set()
+    assert len(script.pipeline.state.alarms) == 1, "of each rule and unit the newest is kept"
+
+
+def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_comes_again(
+    script: Script,
+) -> None:
+    maydays = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3, lambda: script.status(U))
+        maydays.append(UnitEvent(script.header(U), EventKind.MAYDAY))
+        script.wait(3)
+    ana, bo = maydays
+    for late in (bo, ana):
+        script.record(backfilled_key(U, EVENT.suffix), encode(late))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+    raised = len(script.alarms)
+    script.event(U, EventKind.MAYDAY)
+    (again,) = script.alarms[raised:]
+    assert (again.text, again.alarm_id) == ("Mayday from Bo", script.alarms[0].alarm_id)
+    assert len(script.pipeline.state.alarms) == 2
+
+
+def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, EventKind.MAYDAY)
+    script.act(Assign(U, "ana", "Ana B.", "", ""))
+    script.wait(3)
+    assert len(script.alarms) == 1
+
+
+def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    fell = UnitEvent(script.header(U), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.act(ForgetWearers(U))
+    assert b"Ana" not in script.pipeline.checkpoint()
+    script.record(backfilled_key(U, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "(forgotten) may have fallen"
+
+
+def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
+    agent = tracker_id(U)
+    script.boot_ids[agent] = 8
+    script.say(said.description(script.header(U), tracker=NO_TRACKER))
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(agent))
+    fell = UnitEvent(script.header(agent), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3)
+    script.record(backfilled_key(agent, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "Ana may have fallen"
