@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from base_station import interpreter
+from base_station.accounts.cli import users
+from base_station.program import interpreter
 from base_station.recordings.command import fetch_recording
-from base_station.user_commands import users
 from shared.out_file import writable
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def backup(
     """Copy log, database and certificates, also while the station runs; again: what is new."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station.backup import back_up  # noqa: PLC0415
+    from base_station.storage.backup import back_up  # noqa: PLC0415
 
     os.umask(0o077)
     with Progress(transient=True) as progress:
@@ -208,7 +208,7 @@ def assess(
 @log.command("recover")
 def recover(data: Path = Path("muster-data")) -> None:
     """End torn segments in order; a station does this by itself when it starts."""
-    from base_station.data_folder import DataFolder  # noqa: PLC0415
+    from base_station.storage.data_folder import DataFolder  # noqa: PLC0415
     from shared.mcap_log import recover_log  # noqa: PLC0415
 
     folder = DataFolder(data)
@@ -228,7 +228,7 @@ def list_segments(data: Path = Path("muster-data")) -> None:
     """The segments with their times and sizes; open is the one that a station writes."""
     from datetime import UTC, datetime  # noqa: PLC0415
 
-    from base_station.data_folder import DataFolder  # noqa: PLC0415
+    from base_station.storage.data_folder import DataFolder  # noqa: PLC0415
     from shared.clock import NS_PER_S  # noqa: PLC0415
 
     folder = DataFolder(data)

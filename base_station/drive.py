@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import msgspec
 
 from base_station import once
-from base_station.api.wire import Snapshot
 from base_station.commands import book as command_book
 from base_station.events import Refused
 from base_station.journals.backfill import Report
@@ -32,6 +31,7 @@ from base_station.live.self_watch import SelfWatch
 from base_station.live.sinks import ActionDone, Trails
 from base_station.live.write_ahead import WriteAhead
 from base_station.pipeline import StationPipeline
+from base_station.views.wire import Snapshot
 from shared.channels import OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode

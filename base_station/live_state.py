@@ -9,7 +9,6 @@ from __future__ import annotations
 import msgspec
 
 from base_station.assessment.tally import TrustTally
-from base_station.boot_state import BootState
 from base_station.commands.state import SentCommand
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.learnt.building import LearntBuilding
@@ -17,11 +16,12 @@ from base_station.fusion.path.history import PathHistory
 from base_station.fusion.vertical.weather import Barometers
 from base_station.pins.late_history import Late
 from base_station.pins.pin import Beacon, Pin, PinVerdict
-from base_station.sender import STALE_AFTER_S, Link, Sender
 from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
 from base_station.site.storeys import Storey
-from base_station.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
+from base_station.units.boot_state import BootState
+from base_station.units.sender import STALE_AFTER_S, Link, Sender
+from base_station.units.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
 from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import NS_PER_S

@@ -14,7 +14,6 @@ from base_station.actions import Actions
 from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule
 from base_station.assessment.trust import note_trust
-from base_station.boot_state import told_ns
 from base_station.checkpoint import Checkpoint
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
@@ -37,8 +36,9 @@ from base_station.live_state import Alarm, StationState, UnitState
 from base_station.pins.late_history import note_late, take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
-from base_station.sender import News, Sender
-from base_station.unit_updates import note
+from base_station.units.boot_state import told_ns
+from base_station.units.sender import News, Sender
+from base_station.units.updates import note
 from shared.channels import Channel, Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S
 from shared.errors import UserError

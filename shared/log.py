@@ -18,7 +18,7 @@ _FILES_KEPT = 3
 
 
 class OneLineFormatter(logging.Formatter):
-    """``2026-03-01T10:00:00.123Z WARNING base_station.recorder  text``; a traceback follows."""
+    """``2026-03-01T10:00:00.123Z WARNING base_station.drive  text``; a traceback follows."""
 
     converter = staticmethod(time.gmtime)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
-from base_station.data_folder import DataFolder
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.past.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
 from shared.clock import SystemClock
 from shared.errors import StoreError
 from shared.mcap_log import (

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Self
 
 from base_station.alarms import ALARMS
-from base_station.api.wire import Delta, Snapshot
 from base_station.checkpoint import Checkpoint
+from base_station.clocks.steady import SteadyClock
 from base_station.commands.downlink import Downlink
 from base_station.drive import StationDrive
 from base_station.feed import LiveFeed, LogFeed
@@ -19,9 +19,9 @@ from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
 from base_station.pipeline import StationPipeline
-from base_station.recorder import Recorder
-from base_station.steady_clock import SteadyClock
-from base_station.views import StationFacts
+from base_station.storage.recorder import Recorder
+from base_station.views.station import StationFacts
+from base_station.views.wire import Delta, Snapshot
 from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of
 from shared.clock import Clock, SystemClock

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from base_station.api.wire import ReplayView, Snapshot
 from base_station.live.sinks import Trails
+from base_station.views.wire import ReplayView, Snapshot
 
 
 class NotedReplay:

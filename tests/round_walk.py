@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from base_station.trail import TrailStep
+from base_station.units.trail import TrailStep
 from shared.messages.pins import SetPin
 from shared.messages.station import OpenIncident, SetStart
 from tests.station_script import Script

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from base_station.feed import LogFeed
-from base_station.recorder import Recorder
 from base_station.standby.shared_log import SharedLog
+from base_station.storage.recorder import Recorder
 from shared.channels import FUSED, TICK
 from shared.messages import STATION_ID
 

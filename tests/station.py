@@ -15,16 +15,15 @@ from pwdlib import PasswordHash
 from pwdlib.hashers.argon2 import Argon2Hasher
 
 from base_station import once
+from base_station.accounts.principals import Role
 from base_station.alarms import ALARMS
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
-from base_station.api.wire import Delta, Snapshot
 from base_station.db.accounts import Accounts
 from base_station.db.base_maps import BaseMaps
 from base_station.db.models import Incident
-from base_station.db.principals import Role
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster
@@ -37,7 +36,8 @@ from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
 from base_station.recordings.desk import RecordingDesk
-from base_station.views import StationFacts, snapshot
+from base_station.views.station import StationFacts, snapshot
+from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
 from shared.envelope import Stamper
 from shared.errors import UserError

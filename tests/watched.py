@@ -6,13 +6,13 @@ import math
 
 import msgspec
 
-from base_station.api.wire import BeaconView, Delta, PinView, Snapshot, TrailPoint, UnitView
 from base_station.bench.rig import said
 from base_station.checkpoint import read_checkpoint
 from base_station.events import Output
 from base_station.live.picture import Picture
 from base_station.live.sinks import Trails
 from base_station.pipeline import StationPipeline
+from base_station.views.wire import BeaconView, Delta, PinView, Snapshot, TrailPoint, UnitView
 from shared.channels import POSITION, TICK, backfilled_key
 from shared.codec import encode
 from shared.messages import STATION_ID, Position

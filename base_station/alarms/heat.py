@@ -1,6 +1,6 @@
 """The air around the equipment is hot.
 
-Thermal classes and the dose: ``base_station.thermal``.
+Thermal classes and the dose: ``base_station.units.thermal``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Annotated
 
 from base_station.alarms.port import IMMEDIATE, INFORMATION, SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
-from base_station.thermal import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
+from base_station.units.thermal import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.messages import Message, Temperature

@@ -1,6 +1,6 @@
 """The equipment has been hot for so long in this incident that it may fail, however cool it is now.
 
-Thermal classes and the dose: ``base_station.thermal``.
+Thermal classes and the dose: ``base_station.units.thermal``.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from base_station.alarms.port import SOON, Clear, Finding, Verdict
 from base_station.live_state import UnitState
-from base_station.sender import LOST_AFTER_S, STALE_AFTER_S
+from base_station.units.sender import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
 from shared.messages import Message
 

@@ -1,1 +1,1 @@
-"""The console's API: REST under ``/api/v1``, the live WebSocket, and the console's own files."""
+"""The console's API (REST under ``/api/v1``, the live WebSocket), its files, and its server."""

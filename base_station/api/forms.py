@@ -11,7 +11,7 @@ from typing import Annotated
 from fastapi import Path, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from base_station.db.principals import BARRED
+from base_station.accounts.principals import BARRED
 from base_station.db.records import FOREVER_NS, Window
 from shared.clock import NS_PER_MS
 

@@ -15,8 +15,8 @@ from concurrent.futures import Future
 
 import msgspec
 
-from base_station.api.wire import Delta, HealthView, Snapshot, Trail
 from base_station.live.sinks import LiveSource, Trails
+from base_station.views.wire import Delta, HealthView, Snapshot, Trail
 from shared.errors import StoreError
 
 QUEUE = 64  # messages a client may be behind, some three seconds

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from base_station.api.hub import Hub
-from base_station.api.wire import ReplayView
 from base_station.db.models import Incident
 from base_station.live.sinks import LiveSource
+from base_station.views.wire import ReplayView
 from shared.errors import UserError
 
 MOST_REPLAYS = 8

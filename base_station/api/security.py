@@ -20,11 +20,11 @@ from fastapi.security import APIKeyCookie, HTTPBearer
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
+from base_station.accounts.principals import Principal, Role
+from base_station.api.networks import network_of
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station, services_of
 from base_station.api.tries import Tries
-from base_station.db.principals import Principal, Role
-from base_station.networks import network_of
 
 COOKIE = "muster_session"
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

@@ -16,7 +16,6 @@ from base_station.api.hub import Hub
 from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.api.standing import Standing
-from base_station.api.wire import Snapshot
 from base_station.config import AccountabilityConfig
 from base_station.db.accounts import Accounts
 from base_station.db.base_maps import BaseMaps
@@ -27,6 +26,7 @@ from base_station.live.sinks import ActionDone, OperatorGate
 from base_station.once import asks_the_same
 from base_station.past.hindsight import Hindsight
 from base_station.recordings.desk import RecordingDesk
+from base_station.views.wire import Snapshot
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
 from shared.messages.station import Action

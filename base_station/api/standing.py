@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from base_station.api.wire import StandbyView
+from base_station.views.wire import StandbyView
 
 
 class Standing(Protocol):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base_station.app.parts import Announce, past_pipeline, project_whole_log
-from base_station.data_folder import DataFolder
+from base_station.clocks.steady import SteadyClock
 from base_station.db.accounts import Accounts
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
@@ -20,12 +20,12 @@ from base_station.feed import LogFeed
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
 from base_station.forgetting.forgetter import Act, Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
-from base_station.log_check import LogCheck
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
-from base_station.recorder import Recorder
-from base_station.steady_clock import SteadyClock
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.log_check import LogCheck
+from base_station.storage.recorder import Recorder
 from shared.clock import Clock, SystemClock
 from shared.errors import StoreError
 

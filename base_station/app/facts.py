@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from base_station.app.resources import Resources
+from base_station.clocks.steady import SteadyClock
 from base_station.standby.side import Side
-from base_station.steady_clock import SteadyClock
-from base_station.views import StationFacts
+from base_station.views.station import StationFacts
 
 
 class Troubled(Protocol):

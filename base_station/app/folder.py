@@ -9,7 +9,6 @@ from pathlib import Path
 
 from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.assessment.wearers import wearers
-from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
 from base_station.db.models import Incident
 from base_station.db.records import Records
@@ -26,6 +25,7 @@ from base_station.past.playback import Archive
 from base_station.recordings.desk import RecordingDesk
 from base_station.standby.places import Place
 from base_station.standby.setting_aside import set_aside
+from base_station.storage.data_folder import DataFolder
 from shared.clock import SystemClock
 from shared.errors import UserError
 from shared.mcap_log import recover_log

@@ -10,11 +10,11 @@ from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
 from typing import NamedTuple
 
-from base_station import interpreter
 from base_station.alarms import ALARMS
 from base_station.alarms.thresholds import Thresholds, thresholds_of
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
+from base_station.api.server import ConsoleServer, allow_many_files, serve_until_stopped
 from base_station.api.services import Services
 from base_station.app.early_console import early_console
 from base_station.app.facts import facts_of
@@ -26,17 +26,15 @@ from base_station.app.parts import (
 )
 from base_station.app.resources import Resources, open_station
 from base_station.app.start_drive import start_drive
-from base_station.clock_server import ClockServer
+from base_station.clocks.server import ClockServer
 from base_station.commands.downlink import Downlink
 from base_station.config import StationConfig
-from base_station.data_folder import DataFolder
 from base_station.db.base_maps import BaseMaps
 from base_station.db.replicated_tables import ReplicatedTables
-from base_station.ended_threads import EndedThreads
-from base_station.fair_share import FairShare
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
 from base_station.live.drive_ports import DrivePorts
+from base_station.live.fair_share import FairShare
 from base_station.live.recovering import Watch, recovering
 from base_station.live.sinks import ActionDone
 from base_station.live_state import StationState
@@ -44,12 +42,14 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.looking_back import LookingBack
 from base_station.pki.members import EnrolledUnits
-from base_station.segment_index import SegmentIndex
-from base_station.server import ConsoleServer, allow_many_files, serve_until_stopped
+from base_station.program import interpreter
+from base_station.program.ended_threads import EndedThreads
 from base_station.standby.places import Place
 from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
 from base_station.standby.stale_picture import StalePicture
-from base_station.views import StationFacts
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.segment_index import SegmentIndex
+from base_station.views.station import StationFacts
 from shared.channels import ROOT, clock_key
 from shared.envelope import Stamper
 from shared.messages import STATION_ID

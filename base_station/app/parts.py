@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
+from base_station.accounts.first_login import USERNAME, ensure_administrator
 from base_station.alarms import ALARMS
 from base_station.api.hub import Hub
 from base_station.api.replays import StartReplay
@@ -17,7 +18,6 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.feed import LogFeed
-from base_station.first_login import USERNAME, ensure_administrator
 from base_station.fusion import FUSERS
 from base_station.live.sinks import Projection
 from base_station.past.past_pipeline import PastPipeline
@@ -25,7 +25,7 @@ from base_station.past.playback import Archive
 from base_station.past.rebuild import project_log
 from base_station.past.replay import ReplaySession, Window
 from base_station.pipeline import StationPipeline
-from base_station.segment_index import SegmentIndex
+from base_station.storage.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
 from shared.mcap_log import SegmentReader, segment_paths
 

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
+from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 from base_station.api.services import Services
 from base_station.app.parts import (
     Announce,
@@ -20,7 +21,6 @@ from base_station.app.parts import (
     replay_starter,
 )
 from base_station.config import StationConfig, host_and_port
-from base_station.data_folder import DataFolder
 from base_station.db.accounts import Accounts
 from base_station.db.base_maps import BaseMaps
 from base_station.db.records import Records
@@ -33,7 +33,7 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.past.read_only import ReadOnlyGate
-from base_station.server import ConsoleServer, bind, serve_until_stopped
+from base_station.storage.data_folder import DataFolder
 from shared.clock import SystemClock
 
 

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from socket import socket
 
 from base_station.api.hub import Hub
+from base_station.api.server import bind
 from base_station.app.disk import Disk, open_disk
 from base_station.app.parts import Announce
 from base_station.config import StationConfig, host_and_port
-from base_station.data_folder import DataFolder
 from base_station.feed import LiveFeed
 from base_station.pki.expiry import ExpiryWatch
 from base_station.pki.folder import PkiFolder
 from base_station.pki.renewal import Renewal
-from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import ask_over
 from base_station.router.process import RouterProcess
 from base_station.router.router import station_endpoint
-from base_station.server import bind
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
 from shared.bus import Bus
 from shared.bus_zenoh import ZenohBus
 from shared.clock import Clock, SystemClock

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from base_station.answer import Answer
 from base_station.db.records import TrackSample
+from base_station.views.answer import Answer
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,6 @@ from itertools import pairwise
 import msgspec
 import numpy as np
 
-from base_station.answer import Answer
 from base_station.assessment.figures import (
     Figures,
     errors_against,
@@ -23,6 +22,7 @@ from base_station.db.records import TrackSample
 from base_station.fusion.smoother.port import Verdict
 from base_station.live_state import StationState
 from base_station.pins.evidence import at_of
+from base_station.views.answer import Answer
 from shared.clock import NS_PER_S
 
 AWAY_M = 15.0  # somebody who was so far from the beginning

@@ -15,12 +15,12 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station import interpreter
 from base_station.bench.rig.console import Console, watching
 from base_station.bench.rig.latency import Latency, latencies_ms, latency_of
 from base_station.bench.rig.station import Membership, PlainTcp, StationProcess, station_process
 from base_station.bench.rig.units import BenchUnit, Wearer, speak_in_turn, unit_names
 from base_station.bench.rig.waiting import wait_until
+from base_station.program import interpreter
 from shared.bench_figures import FiguresFile, write_figures
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import CHANNELS, POSITION, ROOT, Direction, Qos, backfilled_key, channel_of

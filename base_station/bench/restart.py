@@ -19,8 +19,8 @@ from base_station.bench.rig.compressed import compressed_station
 from base_station.bench.rig.console import Console
 from base_station.bench.rig.station import free_port, station_process
 from base_station.bench.rig.units import unit_names
-from base_station.data_folder import DataFolder
 from base_station.drive import CHECKPOINT_NS
+from base_station.storage.data_folder import DataFolder
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import StoreError
 from shared.mcap_log import SegmentReader, segment_paths

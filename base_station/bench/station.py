@@ -17,9 +17,9 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station import interpreter
 from base_station.bench.rig.compressed import CompressedStation, compressed_station
 from base_station.bench.rig.units import unit_names
+from base_station.program import interpreter
 from shared.bench_figures import FiguresFile, write_figures
 
 _TO_REACH_HZ = 20_000.0  # messages a second and core

@@ -18,10 +18,10 @@ from pwdlib import PasswordHash
 from sqlalchemy import ColumnElement, and_, delete, func, select
 from sqlalchemy.orm import Session
 
-from base_station.db.let_in import LetIn
+from base_station.accounts.let_in import LetIn
+from base_station.accounts.passwords import Passwords
+from base_station.accounts.principals import Principal, Role, require_username
 from base_station.db.models import ApiToken, HandOver, LoginSession, User
-from base_station.db.passwords import Passwords
-from base_station.db.principals import Principal, Role, require_username
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 
-from base_station.answer import to_ms
 from base_station.exporters.port import Exporter, IncidentTracks
+from base_station.views.answer import to_ms
 
 COLUMNS = (
     "unit_id", "person", "crew", "t_utc_s", "north_m", "east_m", "down_m",

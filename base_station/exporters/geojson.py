@@ -6,8 +6,8 @@ from typing import Any
 
 import msgspec
 
-from base_station.answer import to_ms
 from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from base_station.views.answer import to_ms
 from shared.geo import Anchor
 
 

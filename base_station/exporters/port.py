@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 
 import msgspec
 
-from base_station.answer import to_ms
 from base_station.db.records import TrackSample
+from base_station.views.answer import to_ms
 from shared.errors import UserError
 from shared.geo import Anchor
 

@@ -18,7 +18,7 @@ from threading import Event, Thread
 import msgspec
 
 from base_station.forgetting.forgetter import Forgetter, Forgotten, Progress, Tally
-from base_station.jobs import Jobs
+from base_station.storage.jobs import Jobs
 from shared.errors import MusterError, UserError
 
 _log = logging.getLogger(__name__)

@@ -20,7 +20,6 @@ from typing import Protocol
 
 import msgspec
 
-from base_station.data_folder import DataFolder
 from base_station.db.forgetting import forget_in, known_names
 from base_station.db.records import Records
 from base_station.db.store import Store
@@ -36,6 +35,7 @@ from base_station.forgetting.pending_erasure import PendingErasure
 from base_station.forgetting.redaction import Redactor
 from base_station.live.sinks import ActionDone
 from base_station.past.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
 from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
 from shared.clock import Clock
 from shared.errors import StoreError, UserError

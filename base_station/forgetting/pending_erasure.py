@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 
 from base_station.forgetting.erasure import Erasure
-from base_station.private_files import write_atomically
+from base_station.storage.private_files import write_atomically
 from shared.errors import StoreError
 
 

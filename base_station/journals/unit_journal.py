@@ -16,7 +16,7 @@ from typing import NamedTuple
 import msgspec
 
 from base_station.journals.pace import LEAST_BYTES, Pace
-from base_station.sender import BOOTS
+from base_station.units.sender import BOOTS
 from shared.clock import NS_PER_S
 from shared.errors import WireError
 from shared.messages import JournalChunk, JournalEntry, JournalIndex

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from base_station.api.wire import TrailPoint
 from base_station.live_state import UnitState
-from base_station.trail import TrailStep
+from base_station.units.trail import TrailStep
+from base_station.views.wire import TrailPoint
 from shared.clock import NS_PER_MS, NS_PER_S
 
 BEHIND_NS = 10 * NS_PER_S  # some points at once cost a tenth of the same ones one by one

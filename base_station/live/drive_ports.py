@@ -10,7 +10,7 @@ from base_station.commands.state import Order
 from base_station.journals.backfill import Report
 from base_station.live.sinks import LiveSink, PhotoUrls, ProjectionSink
 from base_station.past.checkpoints import Checkpoints
-from base_station.views import StationFacts
+from base_station.views.station import StationFacts
 from shared.clock import Clock
 
 Record = tuple[int, str, bytes]  # station time, key, payload

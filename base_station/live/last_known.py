@@ -14,8 +14,15 @@ from concurrent.futures import Future
 
 import msgspec
 
-from base_station.answer import to_ms, to_ms_or_none
-from base_station.api.wire import (
+from base_station.db import models
+from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
+from base_station.db.roster import Roster
+from base_station.live.sinks import ActionDone, LiveSink, Trails
+from base_station.program.recurring_trouble import RecurringTrouble
+from base_station.site.roaming import RADII_95, roamed_m
+from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.station import alarm_view, anchor_view
+from base_station.views.wire import (
     HealthView,
     IncidentView,
     PersonView,
@@ -26,13 +33,6 @@ from base_station.api.wire import (
     TrustView,
     UnitView,
 )
-from base_station.db import models
-from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
-from base_station.db.roster import Roster
-from base_station.live.sinks import ActionDone, LiveSink, Trails
-from base_station.site.roaming import RADII_95, roamed_m
-from base_station.trouble import Trouble
-from base_station.views import alarm_view, anchor_view
 from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
 from shared.messages.station import Action
@@ -55,7 +55,7 @@ class LastKnown:
         self._share = 0.0
         self._said_ns = 0
         self._stored: tuple[Snapshot, Trails] | None = None  # nothing new while the log is read
-        self._trouble = Trouble(_log, "what was last stored cannot be shown")
+        self._trouble = RecurringTrouble(_log, "what was last stored cannot be shown")
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         """Raises StoreError where the tables cannot be read."""

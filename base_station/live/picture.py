@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from base_station.api.wire import Delta, ReplayView, Snapshot
 from base_station.events import (
     CommandTouched,
     NamesForgotten,
@@ -20,8 +19,7 @@ from base_station.events import (
 from base_station.live.drawn_trails import DrawnTrails
 from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.pipeline import StationPipeline
-from base_station.unit_views import unit_views
-from base_station.views import (
+from base_station.views.station import (
     StationFacts,
     alarm_view,
     beacon_views,
@@ -30,6 +28,8 @@ from base_station.views import (
     pin_views,
     snapshot,
 )
+from base_station.views.units import unit_views
+from base_station.views.wire import Delta, ReplayView, Snapshot
 from shared.clock import NS_PER_MS
 from shared.messages import AlarmChange, FusedPosition
 

@@ -11,9 +11,9 @@ from threading import Event, Thread
 
 from starlette.types import ASGIApp
 
+from base_station.api.server import ConsoleServer
 from base_station.config import HttpConfig
 from base_station.live.drive_ports import Record
-from base_station.server import ConsoleServer
 from shared.mcap_log import SegmentInfo
 
 _SHOWN_AFTER_S = 1.0  # most starts are over before

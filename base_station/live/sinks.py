@@ -14,9 +14,9 @@ from typing import Protocol
 import msgspec
 
 from base_station import once
-from base_station.api.wire import Delta, Snapshot
 from base_station.events import Refused
 from base_station.live_state import StationState
+from base_station.views.wire import Delta, Snapshot
 from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
 from shared.messages.station import Action
 

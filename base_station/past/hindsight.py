@@ -26,8 +26,8 @@ from base_station.past.playback import Archive, Playback
 from base_station.pins.book import units_of
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pinning import floors_along
+from base_station.program.recurring_trouble import RecurringTrouble
 from base_station.site.floor_grid import FloorGrid
-from base_station.trouble import Trouble
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.quality import Quality
 
@@ -74,8 +74,12 @@ class Hindsight:
         self._working = threading.RLock()
         self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
         self._again_ns = 0  # not before then
-        self._keeping = Trouble(_log, "what is known of an incident afterwards cannot be kept")
-        self._catching_up = Trouble(_log, "an incident that closed cannot be looked back on")
+        self._keeping = RecurringTrouble(
+            _log, "what is known of an incident afterwards cannot be kept"
+        )
+        self._catching_up = RecurringTrouble(
+            _log, "an incident that closed cannot be looked back on"
+        )
 
     def smoothed(self, incident: Incident) -> Smoothed:
         """As it was made when the incident had closed; made now where it was not."""

@@ -10,7 +10,7 @@ from threading import Event, Thread
 
 from base_station.db.models import Incident
 from base_station.past.hindsight import Hindsight, Tracks
-from base_station.trouble import Trouble
+from base_station.program.recurring_trouble import RecurringTrouble
 
 EVERY_S = 5.0
 GRACE_S = 2.0  # whoever stops the station does not wait for what can be worked out again
@@ -41,7 +41,7 @@ class LookingBack:
         self._thread.join(GRACE_S)
 
     def _run(self) -> None:
-        trouble = Trouble(_log, "what closed lately cannot be looked up")
+        trouble = RecurringTrouble(_log, "what closed lately cannot be looked up")
         while not self._closed.wait(EVERY_S):
             with trouble:
                 self._hindsight.catch_up(self._incidents(), self._shown)

@@ -9,10 +9,10 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from base_station.api.wire import ReplayView, Snapshot
 from base_station.live.picture import Picture
 from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.past.playback import Archive, Playback
+from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import UserError
 

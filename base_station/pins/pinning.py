@@ -35,7 +35,7 @@ from base_station.pins.evidence import (
 from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
-from base_station.trail import TRAIL_POINTS, TrailStep
+from base_station.units.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from base_station.boot_state import captured_ns
 from base_station.live_state import StationState, UnitState
 from base_station.pins.book import MOST_PINS, drop, put, units_of
 from base_station.pins.pin import Pin, PinKind, reach_std_m
+from base_station.units.boot_state import captured_ns
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 

@@ -18,7 +18,7 @@ import msgspec
 from base_station.pki.certificates import Issued, issue, make_authority, read_issued
 from base_station.pki.registry import Entry, Registry, load_registry, save_registry
 from base_station.pki.station_enrolment import StationEnrolment
-from base_station.private_files import locked, new_folder, write_atomically, write_together
+from base_station.storage.private_files import locked, new_folder, write_atomically, write_together
 from shared.channels import validate_unit_id
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError

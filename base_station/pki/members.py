@@ -11,7 +11,7 @@ from base_station.db.records import Records
 from base_station.live.sinks import OperatorGate
 from base_station.pki.folder import PkiFolder
 from base_station.pki.registry import Entry, Registry
-from base_station.trouble import Trouble
+from base_station.program.recurring_trouble import RecurringTrouble
 from shared.enrolment import Holder
 from shared.messages import STATION_ID
 from shared.messages.station import RegisterUnit
@@ -37,7 +37,7 @@ class EnrolledUnits:
         self._gate = gate
         self._registered = registered
         self._records = records
-        self._trouble = Trouble(_log, "who is enrolled could not be taken up")
+        self._trouble = RecurringTrouble(_log, "who is enrolled could not be taken up")
         self._done: set[str] = set()
         self._audited: set[str] = set()
 

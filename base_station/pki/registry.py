@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 from cryptography.x509 import Certificate
 
-from base_station.private_files import write_atomically
+from base_station.storage.private_files import write_atomically
 from shared.channels import tracker_id
 from shared.enrolment import Holder
 from shared.errors import ConfigError

@@ -6,7 +6,7 @@ import msgspec
 
 from base_station.live_state import StationState
 from base_station.pins.book import reframe_pins
-from base_station.trail import TrailStep
+from base_station.units.trail import TrailStep
 from shared.geo import rotate
 
 

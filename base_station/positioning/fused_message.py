@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from base_station.boot_state import BootState
 from base_station.fusion.port import Estimate
 from base_station.live_state import StationState, UnitState
 from base_station.site.storeys import floor_at, sureness
+from base_station.units.boot_state import BootState
 from shared.messages import FusedPosition, Header
 from shared.quality import Quality
 

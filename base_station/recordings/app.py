@@ -8,14 +8,14 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
+from base_station.clocks.steady import SteadyClock
 from base_station.config import StationConfig
-from base_station.data_folder import DataFolder
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.recordings.fetch import Fetch, FetchState, Wanted, ask_over
 from base_station.router.router import station_endpoint
-from base_station.steady_clock import SteadyClock
+from base_station.storage.data_folder import DataFolder
 from shared.bus_zenoh import ZenohBus
 from shared.clock import SystemClock
 from shared.errors import UserError

@@ -9,9 +9,9 @@ from threading import Event, Thread
 
 import msgspec
 
-from base_station.api.wire import RecordingView
-from base_station.jobs import Jobs
 from base_station.recordings.fetch import Ask, Fetch, FetchState, Wanted
+from base_station.storage.jobs import Jobs
+from base_station.views.wire import RecordingView
 from shared.clock import Clock
 from shared.errors import MusterError, StoreError, UserError
 from shared.own_files import make_folder

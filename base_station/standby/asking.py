@@ -6,8 +6,8 @@ import logging
 from collections.abc import Callable, Iterable, Mapping
 from threading import Event, Thread
 
+from base_station.program.recurring_trouble import RecurringTrouble
 from base_station.standby.words import key_of
-from base_station.trouble import Trouble
 from shared.bus import Bus, QueryHandler
 
 logger = logging.getLogger(__name__)
@@ -46,7 +46,7 @@ class Rounds:
         self._every_s = every_s
         self._look = look
         self._failing = failing
-        self._trouble = Trouble(logger, failing)
+        self._trouble = RecurringTrouble(logger, failing)
         self._closing = Event()
         self._thread = Thread(target=self._run, name=name, daemon=True)
 

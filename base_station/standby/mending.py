@@ -15,11 +15,11 @@ from threading import Event
 from typing import Protocol
 
 from base_station.feed import LogFeed
-from base_station.log_check import LogCheck
 from base_station.standby.asking import Answers, ask
 from base_station.standby.places import BEGINNING, Place, Record, is_event
 from base_station.standby.shipping import DiskReader, place_of
 from base_station.standby.words import Batch, pack, unpack
+from base_station.storage.log_check import LogCheck
 from shared.bus import Bus
 from shared.errors import BusError, LogError
 from shared.mcap_log import SegmentReader, rewrite_segment, segment_paths

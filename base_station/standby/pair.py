@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Condition, Thread
 
-from base_station.api.wire import StandbyView
+from base_station.clocks.steady import SteadyClock
 from base_station.config import StandbyConfig
 from base_station.feed import LogFeed
 from base_station.router.neighbour import listens
@@ -25,7 +25,7 @@ from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.standby.words import PROTOCOL, Beat, key_of, pack
-from base_station.steady_clock import SteadyClock
+from base_station.views.wire import StandbyView
 from shared.bus import Bus
 from shared.channels import OPERATOR, Qos
 from shared.clock import NS_PER_S

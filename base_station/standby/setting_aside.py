@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from itertools import dropwhile
 from pathlib import Path
 
-from base_station.data_folder import DataFolder
 from base_station.standby.places import BEGINNING, Place, Record, events_behind, is_event
+from base_station.storage.data_folder import DataFolder
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
 from shared.mcap_log.durable_file import sync_folder

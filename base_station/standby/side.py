@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from base_station.api.standing import Standing
+from base_station.clocks.steady import SteadyClock
 from base_station.config import StandbyConfig
 from base_station.db.records import Records
 from base_station.db.replicated_tables import ReplicatedTables
@@ -16,7 +17,6 @@ from base_station.feed import LiveFeed, LogFeed
 from base_station.live.drive_ports import Feed, Log
 from base_station.live.sinks import OperatorGate
 from base_station.live_state import StationState
-from base_station.log_check import LogCheck
 from base_station.pki.folder import PkiFolder
 from base_station.standby.asking import Rounds
 from base_station.standby.confirming import LeadersGate
@@ -27,7 +27,7 @@ from base_station.standby.places import Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.standby.table_replication import TableReplication, TableServer
-from base_station.steady_clock import SteadyClock
+from base_station.storage.log_check import LogCheck
 from shared.bus import Bus
 from shared.messages import STATION_ID
 

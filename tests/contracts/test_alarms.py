@@ -12,8 +12,8 @@ from base_station.alarms.book import AlarmBook
 from base_station.alarms.port import AlarmRule, Clear, Finding
 from base_station.alarms.thresholds import limits_of
 from base_station.bench.rig import said
-from base_station.boot_state import BootState
 from base_station.live_state import Duty, Fault, GpsUse, StationState, UnitState
+from base_station.units.boot_state import BootState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (

@@ -14,7 +14,7 @@ import msgspec
 from playwright.sync_api import Page, Route, WebSocketRoute
 
 from base_station.api.routes.live import NOT_LOGGED_IN
-from base_station.api.wire import Delta, Snapshot
+from base_station.views.wire import Delta, Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_files import DIST
 

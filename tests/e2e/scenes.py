@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from base_station.api import wire
+from base_station.views import wire
 
 NOW_MS = 1_795_255_608_000
 MINUTE_MS = 60_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import Browser, Page
 
-from base_station.api.wire import Snapshot
+from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.played_station import Answers, PlayedStation, answers
 

@@ -12,7 +12,7 @@ import re
 import msgspec
 from playwright.sync_api import Page, expect
 
-from base_station.api.wire import Snapshot
+from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import close, menu
 from tests.e2e.stage import ANSWERS, Stage

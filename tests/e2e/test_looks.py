@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from base_station.api.wire import Snapshot
+from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, close, menu
 from tests.e2e.looks import flaws

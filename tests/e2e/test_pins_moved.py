@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 from playwright.sync_api import Locator, Page, Request, expect
 
-from base_station.api import wire
+from base_station.views import wire
 from tests.e2e import scenes
 from tests.e2e.console_page import on_plan
 from tests.e2e.stage import Stage

@@ -10,7 +10,7 @@ import msgspec
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from base_station.api.wire import UnitView
+from base_station.views.wire import UnitView
 from tests.e2e import scenes
 from tests.e2e.console_page import close, menu
 from tests.e2e.stage import ANSWERS, Stage

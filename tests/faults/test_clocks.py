@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from base_station.clock_server import ClockServer
-from base_station.steady_clock import SteadyClock
+from base_station.clocks.server import ClockServer
+from base_station.clocks.steady import SteadyClock
 from edge.clocks.offset import ClockOffset, Exchange
 from edge.clocks.station import StationClock
 from shared.bus import ReplyHandler

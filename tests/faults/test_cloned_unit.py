@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from base_station.unit_views import unit_views
+from base_station.views.units import unit_views
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, Header, Position
 from shared.messages.station import ResolveAlarm

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from base_station.past.checkpoints import Checkpoints
-from base_station.recorder import Recorder
+from base_station.storage.recorder import Recorder
 from shared.channels import POSITION, Qos, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode
@@ -202,7 +202,7 @@ def test_a_disk_that_was_nearly_full_before_is_told_to_be_full_in_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who was told that there is little room, and can wait with that, must hear of the rest."""
-    monkeypatch.setattr("base_station.recorder._LITTLE_FREE_BYTES", 1 << 62)
+    monkeypatch.setattr("base_station.storage.recorder._LITTLE_FREE_BYTES", 1 << 62)
     with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
 
         def told(words: str) -> bool:

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from base_station.api.wire import HealthView
 from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
 from base_station.live.drive_ports import Record
 from base_station.past.playback import compare
+from base_station.views.wire import HealthView
 from edge.clocks.station import StationClock
 from edge.commands import CommandDesk
 from edge.journal.server import JournalServer
@@ -141,7 +141,8 @@ def is_left_alone(key: str) -> bool:
 def test_the_station_keeps_counts_and_shows_whatever_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("base_station.sender.WILD_NS", 0)  # any boot id is as good as another here
+    # Any boot id is as good as another here.
+    monkeypatch.setattr("base_station.units.sender.WILD_NS", 0)
     clock, log, screen = ManualClock(), Written(), Screen()
     feed, pipeline = Said(clock, 4, COUNT), make_pipeline()
     drive = StationDrive(pipeline, ports_of(feed, log, screen, tmp_path, clock))

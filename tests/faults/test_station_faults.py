@@ -20,7 +20,7 @@ from base_station.live.picture import Picture
 from base_station.live.saving import Saving
 from base_station.live_state import UnitState
 from base_station.pipeline import StationPipeline
-from base_station.recorder import Recorder
+from base_station.storage.recorder import Recorder
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import LogRecord
 from shared.messages import Message, Position

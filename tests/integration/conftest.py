@@ -10,7 +10,7 @@ import pytest
 import pytest_asyncio
 
 from base_station.bench.rig.station import free_port
-from base_station.data_folder import DataFolder
+from base_station.storage.data_folder import DataFolder
 from shared.clock import ManualClock
 from tests.forgetting_folders import split_log
 from tests.forgetting_story import Story

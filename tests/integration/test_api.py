@@ -12,7 +12,7 @@ import pytest
 import pytest_asyncio
 from PIL import Image
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from base_station.exporters import EXPORTERS
 from shared.clock import NS_PER_MS, ManualClock
 from shared.envelope import Stamper

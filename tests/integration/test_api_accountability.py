@@ -7,8 +7,8 @@ import dataclasses
 import pytest
 from httpx import AsyncClient
 
+from base_station.accounts.principals import Role
 from base_station.config import AccountabilityConfig
-from base_station.db.principals import Role
 from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Tick
 from tests.station import DeskStation

@@ -7,7 +7,7 @@ import io
 import pytest
 from PIL import Image
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from base_station.site.base_map import corners_of
 from shared.errors import ConfigError
 from tests.station import DeskStation

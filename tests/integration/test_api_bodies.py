@@ -8,8 +8,8 @@ import httpx
 import pytest
 import pytest_asyncio
 
+from base_station.accounts.principals import Role
 from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
-from base_station.db.principals import Role
 from tests.station import DeskStation
 
 

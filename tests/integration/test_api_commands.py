@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from shared.clock import ManualClock
 from shared.messages import CommandReply, CommandState, Header
 from tests.station import DeskStation

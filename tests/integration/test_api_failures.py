@@ -8,8 +8,8 @@ from concurrent.futures import Future
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.api import services
-from base_station.db.principals import Role
 from base_station.db.records import Records
 from base_station.exporters import EXPORTERS
 from base_station.exporters.port import Exporter

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import pytest
 from pwdlib import PasswordHash
 
+from base_station.accounts.principals import Role
 from base_station.api.problems import Problem
 from base_station.api.security import LoginThrottle
 from base_station.api.tries import Tries
-from base_station.db.principals import Role
 from tests.station import ORIGIN, PASSWORD, DeskStation
 
 HERE = "192.0.2.1"

@@ -9,8 +9,8 @@ import httpx
 import pytest
 import pytest_asyncio
 
+from base_station.accounts.principals import Role
 from base_station.api import services
-from base_station.db.principals import Role
 from base_station.live.sinks import ActionDone
 from shared.clock import ManualClock
 from shared.messages.station import ReportProblem

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.db import models
-from base_station.db.principals import Role
 from base_station.db.store import Store
 from shared.clock import NS_PER_MS
 from tests.station import DeskStation

@@ -6,7 +6,7 @@ import httpx
 import msgspec
 import pytest
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.station import DeskStation

@@ -11,7 +11,7 @@ import httpx
 import pytest
 import pytest_asyncio
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from base_station.recordings.desk import RecordingDesk
 from shared.clock import ManualClock
 from shared.messages.station import RegisterUnit

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from tests.station import DeskStation
 
 PATH = "/reference-barometer"

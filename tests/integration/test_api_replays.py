@@ -7,10 +7,10 @@ import dataclasses
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.db.models import Incident
-from base_station.db.principals import Role
 from base_station.db.records import Window
 from tests.noted_replay import NotedReplay
 from tests.station import DeskStation

@@ -15,12 +15,12 @@ import pytest_asyncio
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from PIL import Image
 
+from base_station.accounts.principals import Role
 from base_station.api.routes import ROUTERS
 from base_station.api.security import Scope
-from base_station.api.wire import StandbyView
-from base_station.db.principals import Role
 from base_station.db.records import EVER, Window
 from base_station.recordings.desk import RecordingDesk
+from base_station.views.wire import StandbyView
 from shared.clock import NS_PER_MS, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from tests.station import ORIGIN, PASSWORD, DeskStation

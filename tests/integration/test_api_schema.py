@@ -19,9 +19,9 @@ from schemathesis.core.result import Ok
 from schemathesis.schemas import APIOperation
 from schemathesis.specs.openapi.checks import ignored_auth, positive_data_acceptance
 
+from base_station.accounts.principals import Role
 from base_station.api.forms import IDEMPOTENCY_KEY
-from base_station.db.principals import Role
-from base_station.server import ConsoleServer, bind
+from base_station.api.server import ConsoleServer, bind
 from shared.clock import ManualClock
 from tests.station import DeskStation
 

@@ -12,11 +12,11 @@ import httpx
 import pytest
 import pytest_asyncio
 
+from base_station.accounts.principals import Role
 from base_station.api.app import create_app
 from base_station.api.routes import ROUTERS
 from base_station.api.security import COOKIE, Scope
 from base_station.db.accounts import MOST_TOKENS, SESSION_S
-from base_station.db.principals import Role
 from base_station.db.records import EVER
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError

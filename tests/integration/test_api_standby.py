@@ -6,9 +6,9 @@ import dataclasses
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.api.headers import content_policy
-from base_station.api.wire import StandbyView
-from base_station.db.principals import Role
+from base_station.views.wire import StandbyView
 from tests.station import DeskStation
 
 HERE, THERE = "https://b:8443", "https://a:8443"

@@ -11,7 +11,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from base_station.db.smoothed import SmoothedTracks
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints

@@ -15,10 +15,10 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
 
-from base_station import server
-from base_station.networks import network_of
+from base_station.api import server
+from base_station.api.networks import network_of
+from base_station.api.server import ConsoleServer, allow_many_files, bind
 from base_station.pki.certificates import issue, make_authority
-from base_station.server import ConsoleServer, allow_many_files, bind
 from shared.enrolment import Holder
 from tests.waiting import PATIENCE_S
 

@@ -7,7 +7,7 @@ import asyncio
 import pytest
 from starlette.applications import Starlette
 
-from base_station.server import ConsoleServer, bind, serve_until_stopped
+from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 
 
 @pytest.mark.parametrize("after_s", [None, 0.0, 0.005, 0.01, 0.02, 0.05])

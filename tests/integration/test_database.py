@@ -15,11 +15,11 @@ import pytest
 from alembic import command
 from sqlalchemy import inspect, text
 
+from base_station.accounts.principals import Principal, Role
 from base_station.bench.rig import said
 from base_station.db.accounts import Accounts
 from base_station.db.migrate import alembic_config
 from base_station.db.models import Base, Person
-from base_station.db.principals import Principal, Role
 from base_station.db.projecting import project_into
 from base_station.db.projection import SqlProjection
 from base_station.db.records import FOREVER_NS, Records, Window

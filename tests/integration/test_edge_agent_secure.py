@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.clock_server import ClockServer
+from base_station.clocks.server import ClockServer
 from base_station.pki.access import access_control
 from base_station.pki.folder import PkiFolder
 from edge.warm_up import compile_trackers

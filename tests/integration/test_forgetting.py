@@ -15,8 +15,8 @@ from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.events import event_of
 from base_station.forgetting.desk import Forgetting, ForgettingState
-from base_station.jobs import Jobs
 from base_station.live_state import FORGOTTEN
+from base_station.storage.jobs import Jobs
 from shared.channels import STATUS, Direction, backfilled_key, channel_of
 from shared.clock import SystemClock
 from shared.codec import encode

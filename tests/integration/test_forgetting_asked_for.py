@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.db.principals import Role
+from base_station.accounts.principals import Role
 from shared.clock import ManualClock
 from shared.messages import CommandKind
 from shared.messages.station import (

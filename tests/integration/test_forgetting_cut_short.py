@@ -10,13 +10,13 @@ from typing import Any, cast
 import msgspec
 import pytest
 
-from base_station.data_folder import DataFolder
 from base_station.db.records import EVER, Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
 from base_station.forgetting import forgetter as forgetter_module
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import Tally
+from base_station.storage.data_folder import DataFolder
 from shared.clock import SystemClock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import (

@@ -12,7 +12,6 @@ import msgspec
 import pytest
 
 from base_station.app.disk import open_disk
-from base_station.data_folder import DataFolder
 from base_station.db.models import Incident
 from base_station.db.records import EVER, Records
 from base_station.db.store import Store
@@ -20,9 +19,10 @@ from base_station.forgetting import forgetter as forgetter_module
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.live.sinks import ActionDone
 from base_station.past.checkpoints import Checkpoints
-from base_station.recorder import Recorder
 from base_station.recordings.desk import RecordingDesk
 from base_station.recordings.fetch import FetchState, Wanted
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
 from shared.clock import SystemClock
 from shared.errors import StoreError
 from shared.mcap_log import (

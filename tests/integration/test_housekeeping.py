@@ -9,7 +9,7 @@ import signal
 import pytest
 from starlette.types import Receive, Scope, Send
 
-from base_station.server import ConsoleServer, bind, serve_until_stopped
+from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 from shared.errors import StoreError
 
 
@@ -20,8 +20,9 @@ async def nothing(_scope: Scope, _receive: Receive, _send: Send) -> None:
 async def test_a_failure_is_told_and_tried_again(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("base_station.server._HOUSEKEEPING_S", 0.01)
-    monkeypatch.setattr("base_station.interpreter.settle", lambda: None)  # this process goes on
+    monkeypatch.setattr("base_station.api.server._HOUSEKEEPING_S", 0.01)
+    # This process goes on.
+    monkeypatch.setattr("base_station.program.interpreter.settle", lambda: None)
     tries = 0
 
     def keep_house() -> None:

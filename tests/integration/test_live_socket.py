@@ -15,10 +15,10 @@ import pytest_asyncio
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from base_station.accounts.principals import Role
 from base_station.api.routes import live
 from base_station.api.security import COOKIE, Scope
-from base_station.db.principals import Role
-from base_station.server import ConsoleServer, bind
+from base_station.api.server import ConsoleServer, bind
 from shared.errors import StoreError
 from shared.messages.station import OpenIncident
 from tests.station import PASSWORD, DeskStation

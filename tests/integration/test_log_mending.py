@@ -11,10 +11,10 @@ from threading import Event
 import pytest
 
 from base_station.feed import LogFeed
-from base_station.log_check import LogCheck
-from base_station.recorder import Recorder
 from base_station.standby.mending import EventServer, Mending
 from base_station.standby.places import is_event
+from base_station.storage.log_check import LogCheck
+from base_station.storage.recorder import Recorder
 from shared.bus_memory import MemoryRouter
 from shared.channels import FUSED, POSITION
 from shared.clock import SystemClock

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from base_station.bench.rig.said import position
 from base_station.journals.backfill import Backfill
-from base_station.sender import STARTS
+from base_station.units.sender import STARTS
 from edge.journal.server import JournalServer
 from edge.journal.spool import Journaled, Spool
 from shared.channels import POSITION

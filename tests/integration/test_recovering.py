@@ -17,14 +17,13 @@ import pytest
 from starlette.types import Receive, Scope, Send
 from websockets.sync.client import connect
 
+from base_station.accounts.principals import Role
 from base_station.api.security import COOKIE
-from base_station.api.wire import Snapshot
+from base_station.api.server import bind
 from base_station.app.disk import Disk, open_disk
 from base_station.app.early_console import early_console
 from base_station.bench.rig import said as said_by_bench
 from base_station.config import HttpConfig, StationConfig
-from base_station.data_folder import DataFolder
-from base_station.db.principals import Role
 from base_station.live import last_known
 from base_station.live import recovering as module
 from base_station.live.drive_ports import Record
@@ -32,9 +31,10 @@ from base_station.live.last_known import LastKnown
 from base_station.live.recovering import recovering
 from base_station.live.sinks import Projection, Trails
 from base_station.pki.certificates import issue, make_authority
-from base_station.recorder import Recorder
-from base_station.server import bind
 from base_station.site.roaming import roamed_m
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
+from base_station.views.wire import Snapshot
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Holder
 from shared.envelope import Stamper

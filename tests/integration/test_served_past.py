@@ -12,8 +12,8 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection
 
+from base_station.accounts.principals import Role
 from base_station.db.accounts import Accounts
-from base_station.db.principals import Role
 from base_station.db.store import Store
 from shared.clock import NS_PER_MS, SystemClock
 from shared.mcap_log import SegmentWriter

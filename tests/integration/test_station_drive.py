@@ -10,7 +10,7 @@ import pytest
 
 from base_station.drive import MANY_STEPPED, REBUILT_NS, StationDrive
 from base_station.past.playback import compare
-from base_station.recorder import Recorder
+from base_station.storage.recorder import Recorder
 from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode

@@ -11,9 +11,9 @@ import pytest
 
 from base_station.app import folder as station_folder
 from base_station.app.disk import Disk, open_disk
-from base_station.data_folder import DataFolder
-from base_station.recorder import Recorder
 from base_station.standby.places import Place
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError
 from shared.messages.station import OpenIncident

@@ -9,9 +9,9 @@ from threading import Event
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts
 from base_station.db.base_maps import BaseMaps
-from base_station.db.principals import Role
 from base_station.db.records import EVER, Records
 from base_station.db.replicated_tables import ReplicatedTables
 from base_station.db.roster import Roster

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.api import wire
+from base_station.views import wire
 
 ROOT = Path(__file__).resolve().parents[2]
 WIRE_TS = (ROOT / "base_station/console/src/wire.ts").read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from base_station.live import drawn_trails
 from base_station.live.drawn_trails import BEHIND_NS, DrawnTrails
 from base_station.live_state import UnitState
-from base_station.trail import TRAIL_POINTS, TrailStep
+from base_station.units.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
 Change = tuple[str, int]

@@ -15,8 +15,8 @@ from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.tracker_degraded import TrackerDegraded
 from base_station.alarms.tracker_gone import TrackerGone
 from base_station.bench.rig import said
-from base_station.boot_state import BootState
 from base_station.live_state import UnitState
+from base_station.units.boot_state import BootState
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import Header, Temperature

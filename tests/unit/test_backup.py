@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from base_station import backup
-from base_station.backup import Backup, back_up
 from base_station.db.models import LogSegment
 from base_station.db.records import Records
 from base_station.db.store import Store
+from base_station.storage import backup
+from base_station.storage.backup import Backup, back_up
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError, UserError
 from tests.full_disk import files_of_at_most

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.boot_state import BootState
-from base_station.boot_state import told_ns as when_told_ns
+from base_station.units.boot_state import BootState
+from base_station.units.boot_state import told_ns as when_told_ns
 from shared.clock import NS_PER_S
 from shared.messages import Header
 

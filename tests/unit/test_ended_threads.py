@@ -7,7 +7,7 @@ from threading import Thread
 
 import pytest
 
-from base_station.ended_threads import EndedThreads
+from base_station.program.ended_threads import EndedThreads
 
 
 def fail() -> None:

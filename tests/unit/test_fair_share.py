@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.fair_share import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ, FairShare
+from base_station.live.fair_share import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ, FairShare
 from shared.channels import COMMAND, EVENT, POSITION, STATUS
 from shared.clock import ManualClock
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from threading import Thread
 
+from base_station.clocks.steady import SteadyClock
 from base_station.feed import LiveFeed, LogFeed
-from base_station.steady_clock import SteadyClock
 from shared.channels import EVENT, POSITION
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import SegmentWriter

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from base_station.accounts.first_login import ensure_administrator
+from base_station.accounts.principals import Role
 from base_station.db.accounts import Accounts
-from base_station.db.principals import Role
 from base_station.db.store import Store
-from base_station.first_login import ensure_administrator
 from shared.clock import SystemClock
 from shared.errors import StoreError
 from tests.station import QUICK_HASH
@@ -40,7 +40,7 @@ def test_the_note_is_on_the_disk_before_there_is_such_a_user(
         assert password in (tmp_path / "note").read_text()
         add_user(self, username, password, role)
 
-    monkeypatch.setattr("base_station.private_files.os.fsync", synced)
+    monkeypatch.setattr("base_station.storage.private_files.os.fsync", synced)
     monkeypatch.setattr(Accounts, "add_user", after_both)
     password = ensure_administrator(accounts, tmp_path / "note")
     assert password is not None
@@ -57,7 +57,7 @@ def test_a_disk_that_does_not_take_the_note_makes_no_user_of_whom_nobody_knows(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as disk:
-        disk.setattr("base_station.private_files.os.fsync", full)
+        disk.setattr("base_station.storage.private_files.os.fsync", full)
         with pytest.raises(StoreError, match=r"note cannot be written: No space left"):
             ensure_administrator(accounts, tmp_path / "note")
     assert not accounts.users()

@@ -7,7 +7,7 @@ import pytest
 from base_station.events import event_of
 from base_station.live.hearing import Heard, judge
 from base_station.live_state import StationState, UnitState
-from base_station.sender import STARTS
+from base_station.units.sender import STARTS
 from shared.channels import ALARM, COMMAND, EVENT, TEMPERATURE, backfilled_key, unread_key
 from shared.clock import NS_PER_S
 from shared.codec import encode

@@ -11,8 +11,8 @@ import msgspec
 import pytest
 
 from base_station.api.hub import QUEUE, Client, Hub
-from base_station.api.wire import Delta, HealthView, Snapshot
 from base_station.live.sinks import Trails
+from base_station.views.wire import Delta, HealthView, Snapshot
 from shared.errors import StoreError
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)

@@ -9,7 +9,7 @@ import pytest
 
 LARGE = """
 import ctypes
-from base_station import interpreter
+from base_station.program import interpreter
 
 libc = ctypes.CDLL(None)
 if not hasattr(libc, "mallinfo2"):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import msgspec
 import pytest
 
-from base_station.jobs import Jobs
+from base_station.storage.jobs import Jobs
 from shared.errors import StoreError
 from tests.waiting import PATIENCE_S, until
 
@@ -43,7 +43,7 @@ def test_how_things_stand_is_told_while_the_disk_hangs(
 
     told: list[tuple[Job, ...]] = []
     with monkeypatch.context() as patched:
-        patched.setattr("base_station.jobs.write_atomically", hang)
+        patched.setattr("base_station.storage.jobs.write_atomically", hang)
         saving = Thread(target=asked_for, args=(jobs, "second"))
         saving.start()
         assert asked.wait(PATIENCE_S)
@@ -85,7 +85,7 @@ def test_what_the_disk_does_not_take_is_not_begun(
     def refuse(*_: object) -> None:
         raise StoreError("the disk is full")
 
-    monkeypatch.setattr("base_station.jobs.write_atomically", refuse)
+    monkeypatch.setattr("base_station.storage.jobs.write_atomically", refuse)
     with pytest.raises(StoreError, match="nothing is done: the disk is full"):
         asked_for(jobs, "first")
     assert jobs.all() == ()

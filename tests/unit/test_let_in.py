@@ -8,8 +8,8 @@ from threading import Event
 
 import pytest
 
+from base_station.accounts.principals import Role
 from base_station.db.accounts import Accounts
-from base_station.db.principals import Role
 from base_station.db.store import Store
 from shared.clock import SystemClock
 from shared.errors import DiskHangsError

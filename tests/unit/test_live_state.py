@@ -8,13 +8,13 @@ from itertools import pairwise
 import msgspec
 import pytest
 
-from base_station.api.wire import ClockView
 from base_station.bench.rig import said
 from base_station.events import Refused, UnitTouched
 from base_station.live_state import UnitState
-from base_station.trail import TRAIL_POINTS
-from base_station.unit_views import unit_views
-from base_station.views import StationFacts, health_view, snapshot
+from base_station.units.trail import TRAIL_POINTS
+from base_station.views.station import StationFacts, health_view, snapshot
+from base_station.views.units import unit_views
+from base_station.views.wire import ClockView
 from shared.clock import NS_PER_S
 from shared.messages import EventKind, Heartbeat
 from shared.messages.pins import SetMeeting, SetPin

@@ -28,11 +28,11 @@ def test_a_record_is_one_line_with_utc_time_level_and_component(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     set_up_logging("INFO", tmp_path / "logs" / "station.log")
-    record = logging.LogRecord("base_station.recorder", 30, "", 0, "disk\nfull", None, None)
+    record = logging.LogRecord("base_station.drive", 30, "", 0, "disk\nfull", None, None)
     record.created, record.msecs = 1_700_000_000.25, 250.0
     logging.getLogger().handle(record)
     logging.getLogger("quiet").debug("not asked for")
-    expected = "2023-11-14T22:13:20.250Z WARNING base_station.recorder  disk\\nfull\n"
+    expected = "2023-11-14T22:13:20.250Z WARNING base_station.drive  disk\\nfull\n"
     assert capsys.readouterr().err == expected
     assert (tmp_path / "logs" / "station.log").read_text(encoding="utf-8") == expected
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from base_station.feed import LogFeed
-from base_station.log_check import LogCheck
-from base_station.recorder import Recorder
 from base_station.standby.stale_picture import StalePicture
+from base_station.storage.log_check import LogCheck
+from base_station.storage.recorder import Recorder
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
 from shared.mcap_log import SegmentPolicy
@@ -53,7 +53,7 @@ def test_what_breaks_later_is_found_by_the_next_round(
     check = looked(LogCheck(""), recorder)
     path = flip(recorder)
     assert looked(check, recorder, 100).damaged == ()
-    monkeypatch.setattr("base_station.log_check._AGAIN_LOOKS", 50)
+    monkeypatch.setattr("base_station.storage.log_check._AGAIN_LOOKS", 50)
     assert looked(check, recorder, 60).damaged == (path,)
 
 
@@ -85,7 +85,7 @@ def test_one_that_was_put_back_from_a_backup_is_damaged_no_more(
     recorder: Recorder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As the console tells people to do it."""
-    monkeypatch.setattr("base_station.log_check._AGAIN_LOOKS", 50)
+    monkeypatch.setattr("base_station.storage.log_check._AGAIN_LOOKS", 50)
     whole = recorder.segments()[0].path.read_bytes()
     path = flip(recorder)
     check = looked(LogCheck("Restore it."), recorder)

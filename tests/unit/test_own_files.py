@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from base_station.backup import back_up
-from base_station.data_folder import DataFolder
 from base_station.db.models import LogSegment
 from base_station.db.records import Records
 from base_station.db.store import Store
@@ -18,6 +16,8 @@ from base_station.past.checkpoints import Checkpoints
 from base_station.recordings.fetch import FetchState
 from base_station.standby.places import BEGINNING
 from base_station.standby.setting_aside import set_aside
+from base_station.storage.backup import back_up
+from base_station.storage.data_folder import DataFolder
 from shared.clock import ManualClock
 from shared.mcap_log import SegmentWriter, recover_log, rewrite_segment, segment_paths
 from shared.own_files import make_folder

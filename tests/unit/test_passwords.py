@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from pwdlib import PasswordHash
 
-from base_station.db.passwords import Passwords
+from base_station.accounts.passwords import Passwords
 
 SECRET = "long enough"
 

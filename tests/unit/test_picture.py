@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.api.wire import Delta, ReplayView
 from base_station.events import (
     CommandTouched,
     NamesForgotten,
@@ -16,7 +15,8 @@ from base_station.live.picture import FILLED_A_TURN, Picture
 from base_station.live_state import Incident, UnitState
 from base_station.pipeline import StationPipeline
 from base_station.site.plan import read_plan
-from base_station.trail import TrailStep
+from base_station.units.trail import TrailStep
+from base_station.views.wire import Delta, ReplayView
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
 from shared.messages import STATION_ID, AlarmChange, AlarmState, Header

@@ -12,7 +12,7 @@ from base_station.fusion.path.points import FIX_ROW, Point, arrays_of, rows_of
 from base_station.live_state import StationState
 from base_station.pins.evidence import floors_said, ties_of
 from base_station.pins.pinning import floors_along, trail_of
-from base_station.trail import TRAIL_POINTS
+from base_station.units.trail import TRAIL_POINTS
 from shared.clock import NS_PER_S
 from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
 from shared.messages.station import CloseIncident, ForgetWearers, OpenIncident, SetPlan, SetStart

@@ -13,7 +13,7 @@ from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.path_graph import PathGraph
 from base_station.fusion.smoother.port import Solution, Tie, UnitEvidence
 from base_station.pins.evidence import floors_said
-from base_station.views import pin_views
+from base_station.views.station import pin_views
 from shared.channels import SIGHTING, backfilled_key
 from shared.clock import NS_PER_S
 from shared.codec import encode

@@ -18,7 +18,7 @@ from base_station.pki.certificates import make_authority
 from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
 from base_station.pki.folder import CERTIFICATE_VALID, PkiFolder
 from base_station.pki.renewal import Renewal
-from base_station.private_files import locked
+from base_station.storage.private_files import locked
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError, StoreError
@@ -68,7 +68,7 @@ def test_a_disk_that_is_full_leaves_a_certificate_and_its_key_together(
             raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as disk:
-        disk.setattr("base_station.private_files.os.fsync", full)
+        disk.setattr("base_station.storage.private_files.os.fsync", full)
         with pytest.raises(StoreError, match="No space left"):
             pki.renew_station()
     after = pki.station_identity()  # which says where the two do not belong together
@@ -242,7 +242,7 @@ def test_a_disk_that_is_full_leaves_no_half_of_an_authority(
             raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as disk:
-        disk.setattr("base_station.private_files.os.fsync", full)
+        disk.setattr("base_station.storage.private_files.os.fsync", full)
         with pytest.raises(StoreError, match="No space left"):
             PkiFolder(tmp_path).create("Test", [], [])
     PkiFolder(tmp_path).create("Test", [], [])

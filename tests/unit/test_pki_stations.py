@@ -221,7 +221,7 @@ def test_a_disk_that_is_full_leaves_no_half_of_a_further_station(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as disk:
-        disk.setattr("base_station.private_files.os.fsync", full)
+        disk.setattr("base_station.storage.private_files.os.fsync", full)
         with pytest.raises(StoreError, match="No space left"):
             folder.join(file)
     folder.join(file)

@@ -14,9 +14,9 @@ from typing import NoReturn
 
 import pytest
 
-from base_station.data_folder import DataFolder
 from base_station.feed import LogFeed
-from base_station.recorder import LOG_FOLDER, Recorder
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import LOG_FOLDER, Recorder
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import DataFolderInUseError
@@ -186,14 +186,14 @@ def test_a_disk_that_hangs_is_said_and_hardly_waited_for(
         fsync(descriptor)
 
     monkeypatch.setattr("shared.mcap_log.durable_file.os.fsync", hang)
-    monkeypatch.setattr("base_station.recorder._LONGEST_WAIT_S", 0.1)
+    monkeypatch.setattr("base_station.storage.recorder._LONGEST_WAIT_S", 0.1)
     assert recorder.write(T0_NS, KEY, b"1", urgent=True)
     clock.advance(4.0)
     assert (recorder.is_behind, recorder.hangs, recorder.problem) == (True, False, "")
     clock.advance(2.0)
     assert recorder.hangs
     assert "does not answer" in recorder.problem
-    monkeypatch.setattr("base_station.recorder._LONGEST_WAIT_S", 3600.0)
+    monkeypatch.setattr("base_station.storage.recorder._LONGEST_WAIT_S", 3600.0)
     assert recorder.write(T0_NS, KEY, b"2", urgent=True)
     answers.set()
     until(lambda: not recorder.hangs)
@@ -208,7 +208,7 @@ def test_little_room_on_the_disk_is_said_and_is_no_failure(
 ) -> None:
     with recording(tmp_path) as recorder:
         assert recorder.little_room == ""
-    monkeypatch.setattr("base_station.recorder._LITTLE_FREE_BYTES", 1 << 62)
+    monkeypatch.setattr("base_station.storage.recorder._LITTLE_FREE_BYTES", 1 << 62)
     with recording(tmp_path) as recorder:
         assert "MB are free for the log" in recorder.little_room
         assert recorder.problem == ""
@@ -223,7 +223,7 @@ def test_a_disk_that_does_not_say_how_much_room_it_has_is_written_all_the_same(
         asked.set()
         raise OSError(errno.ESTALE, "Stale file handle")
 
-    monkeypatch.setattr("base_station.recorder._LOOK_AT_DISK_EVERY_NS", 0)
+    monkeypatch.setattr("base_station.storage.recorder._LOOK_AT_DISK_EVERY_NS", 0)
     with recording(tmp_path) as recorder:
         monkeypatch.setattr(shutil, "disk_usage", fail)
         assert asked.wait(PATIENCE_S)

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from base_station.config import StationConfig
-from base_station.data_folder import DataFolder
 from base_station.db.models import Incident, LogSegment
 from base_station.db.records import Records
 from base_station.db.store import Store
 from base_station.recordings.app import since, window_of
+from base_station.storage.data_folder import DataFolder
 from shared.clock import NS_PER_S, SystemClock
 
 AHEAD_NS = 3600 * NS_PER_S

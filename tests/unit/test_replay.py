@@ -10,12 +10,12 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.api.wire import Snapshot, TrailPoint
 from base_station.bench.rig import said
 from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import BURST, Archive
 from base_station.past.replay import ReplaySession, Window
+from base_station.views.wire import Snapshot, TrailPoint
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.sender import BOOTS, STARTS, WILD_NS, Sender
+from base_station.units.sender import BOOTS, STARTS, WILD_NS, Sender
 from shared.channels import EVENT, GPS, POSITION, STATUS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header
@@ -92,7 +92,7 @@ def test_what_a_goodbye_overtook_does_not_take_it_back(sender: Sender) -> None:
     for seq, channel, goodbye in ((9, EVENT, True), (8, POSITION, False), (7, STATUS, False)):
         assert sender.accept(channel, said(seq, 100.0 + seq), NOW_NS) == "new"
         if goodbye:
-            sender.stopped_ns = NOW_NS  # as ``unit_updates`` does
+            sender.stopped_ns = NOW_NS  # as ``units.updates`` does
     assert sender.stopped_ns == NOW_NS
     left = []
     for later in (said(10, 110.0), said(1, 1.0, boot_id=8)):

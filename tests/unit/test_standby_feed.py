@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.clocks.steady import SteadyClock
 from base_station.feed import LiveFeed
 from base_station.standby.standby_feed import StandbyFeed
-from base_station.steady_clock import SteadyClock
 from shared.channels import EVENT, POSITION, TICK, backfilled_key
 from shared.clock import ManualClock
 from shared.messages import STATION_ID

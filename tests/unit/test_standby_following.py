@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
+from base_station.clocks.steady import SteadyClock
 from base_station.feed import LiveFeed
-from base_station.recorder import Recorder
 from base_station.standby.following import Follower, Leader
 from base_station.standby.places import BEGINNING, Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.shipping import Shipping
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.standby.words import Have, key_of, unpack
-from base_station.steady_clock import SteadyClock
+from base_station.storage.recorder import Recorder
 from shared.bus_memory import MemoryRouter
 from shared.clock import SystemClock
 from shared.messages.station import TakeOver

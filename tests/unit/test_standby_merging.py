@@ -9,13 +9,13 @@ from threading import Event, Thread
 
 import pytest
 
-from base_station.data_folder import DataFolder
 from base_station.live.sinks import ActionDone
-from base_station.recorder import Recorder
 from base_station.standby.asking import ask
 from base_station.standby.merging import Merging, PartServer
 from base_station.standby.places import BEGINNING, Record
 from base_station.standby.setting_aside import parts, set_aside
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, OPERATOR, TICK, backfilled_key, unread_key
 from shared.clock import SystemClock

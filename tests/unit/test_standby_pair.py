@@ -8,13 +8,13 @@ from threading import Event, Thread
 
 import pytest
 
+from base_station.clocks.steady import SteadyClock
 from base_station.config import StandbyConfig
 from base_station.feed import LiveFeed, LogFeed
 from base_station.standby.pair import Around, Pair
 from base_station.standby.places import Place
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
-from base_station.steady_clock import SteadyClock
 from shared.bus_memory import MemoryRouter
 from shared.channels import OPERATOR
 from shared.clock import SystemClock

@@ -7,9 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.data_folder import DataFolder
 from base_station.feed import LogFeed
-from base_station.recorder import Recorder
 from base_station.standby.places import BEGINNING, Place
 from base_station.standby.setting_aside import (
     APART,
@@ -19,6 +17,8 @@ from base_station.standby.setting_aside import (
     set_aside,
 )
 from base_station.standby.shared_log import SharedLog
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
 from shared.clock import SystemClock
 from shared.mcap_log import segment_paths
 from tests.standby_logs import T0, TICKED, events, written

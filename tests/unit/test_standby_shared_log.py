@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from base_station.recorder import Recorder
 from base_station.standby.places import BEGINNING, Place, events_behind
 from base_station.standby.shared_log import SharedLog
+from base_station.storage.recorder import Recorder
 from shared.channels import ALARM, OPERATOR
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.steady_clock import SteadyClock
+from base_station.clocks.steady import SteadyClock
 from shared.clock import NS_PER_S, ManualClock
 
 DAY_NS = 86_400 * NS_PER_S

@@ -12,8 +12,8 @@ from copy import copy
 import msgspec
 import pytest
 
-from base_station.api.wire import TrailPoint
 from base_station.events import Refused
+from base_station.views.wire import TrailPoint
 from shared.geo import Anchor
 from shared.messages import Sighting, SightingKind
 from shared.messages.pins import PlaceBeacon, RemoveBeacon, RemovePin, SetMeeting, SetPin

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.live_state import UnitState
-from base_station.thermal import dose_of
+from base_station.units.thermal import dose_of
 from shared.messages import Temperature
 from tests.station_script import Script
 

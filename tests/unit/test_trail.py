@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.bench.rig import said
-from base_station.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
+from base_station.units.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, FusedPosition, Header
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base_station.journals.unit_journal import Held, UnitJournal
-from base_station.sender import BOOTS
+from base_station.units.sender import BOOTS
 from shared.clock import NS_PER_S
 from shared.messages import JournalBoot, JournalChunk, JournalIndex
 from shared.sequence_set import Run

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.views import StationFacts, health_view
+from base_station.views.station import StationFacts, health_view
 from shared.channels import HEARTBEAT
 from shared.codec import decode, encode
 from shared.messages import Heartbeat

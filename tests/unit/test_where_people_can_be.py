@@ -13,7 +13,7 @@ from base_station.checkpoint import read_checkpoint
 from base_station.events import Refused
 from base_station.positioning.inside import is_outside
 from base_station.site.way_out import SECTORS
-from base_station.views import StationFacts, snapshot
+from base_station.views.station import StationFacts, snapshot
 from edge.simulation.building import plan_path
 from shared.channels import GPS, backfilled_key
 from shared.codec import encode

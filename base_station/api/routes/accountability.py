@@ -14,7 +14,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.commands import CrewTarget, Target, UnitTarget
 from base_station.api.security import Viewer
 from base_station.api.services import Station
-from base_station.api.wire import DutyView, IncidentView, PersonView
+from base_station.views.wire import DutyView, IncidentView, PersonView
 from shared.messages.station import CheckIn, SetAccountability, SetRest
 
 router = APIRouter(tags=["accountability"])

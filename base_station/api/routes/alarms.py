@@ -9,16 +9,16 @@ import msgspec
 from fastapi import APIRouter, Depends
 from pydantic import Field
 
-from base_station.answer import Answer, to_ms
 from base_station.api.acting import Act
 from base_station.api.forms import LAST_MS, AlarmId, Form, Limit, Note, window
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import AlarmView
 from base_station.db import models
 from base_station.db.records import Window
-from base_station.views import alarm_view
+from base_station.views.answer import Answer, to_ms
+from base_station.views.station import alarm_view
+from base_station.views.wire import AlarmView
 from shared.errors import DiskHangsError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 

@@ -7,13 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from base_station.answer import to_ms, to_ms_or_none
 from base_station.api.acting import Act
 from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.db.records import Window
+from base_station.views.answer import to_ms, to_ms_or_none
 from shared.messages.station import Assign, Unassign
 
 router = APIRouter(tags=["assignments"])

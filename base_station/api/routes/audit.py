@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from base_station.answer import to_ms
 from base_station.api.forms import Limit, window
 from base_station.api.security import Administrator
 from base_station.api.services import Station
 from base_station.db.records import Window
+from base_station.views.answer import to_ms
 
 router = APIRouter(tags=["audit"])
 

@@ -14,7 +14,7 @@ from base_station.api.forms import Form, Id, Note, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import CommandView
+from base_station.views.wire import CommandView
 from shared.messages import CommandKind
 from shared.messages.station import ConfirmCommand, SendCommand
 

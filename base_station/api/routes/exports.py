@@ -6,13 +6,13 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
+from base_station.accounts.principals import Principal
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import TrailKind, trails_of
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db.principals import Principal
 from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
 from shared.errors import StoreError

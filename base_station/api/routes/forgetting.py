@@ -10,8 +10,8 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Administrator
 from base_station.api.services import Services, Station
-from base_station.api.wire import CommandView
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
+from base_station.views.wire import CommandView
 
 router = APIRouter(tags=["forgetting"])
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import msgspec
 from fastapi import APIRouter
 
-from base_station.answer import Answer, to_ms
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Station
-from base_station.api.wire import HealthView
+from base_station.views.answer import Answer, to_ms
+from base_station.views.wire import HealthView
 
 router = APIRouter(tags=["health"])
 

@@ -13,17 +13,17 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.alarms import ALARMS
-from base_station.answer import Answer, to_ms, to_ms_or_none
 from base_station.api.acting import Act
 from base_station.api.forms import Form, Id, Limit, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import AlarmView
 from base_station.db import models
 from base_station.db.records import FOREVER_NS, Window
-from base_station.views import alarm_view
+from base_station.views.answer import Answer, to_ms, to_ms_or_none
+from base_station.views.station import alarm_view
+from base_station.views.wire import AlarmView
 from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 

@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from base_station.api.hub import Client, Hub
 from base_station.api.security import Scope, covers, is_own_origin, principal_of
 from base_station.api.services import Services, services_of
-from base_station.trouble import Trouble
+from base_station.program.recurring_trouble import RecurringTrouble
 from shared.errors import StoreError
 
 router = APIRouter(tags=[Scope.LIVE])
@@ -120,7 +120,7 @@ async def _keep_checking(socket: WebSocket, services: Services) -> None:
     """A session that ended takes its WebSockets along; a disk that does not tell blinds nobody who
     was let in.
     """
-    trouble = Trouble(_log, "whether a console may look on cannot be seen")
+    trouble = RecurringTrouble(_log, "whether a console may look on cannot be seen")
     while True:
         await asyncio.sleep(CHECK_LOGIN_S)
         with trouble:

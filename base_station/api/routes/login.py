@@ -7,13 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, StringConstraints
 
+from base_station.accounts.passwords import MAX_PASSWORD
+from base_station.accounts.principals import Principal
 from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import COOKIE, Throttle, Viewer
 from base_station.api.services import Services, Station
 from base_station.db.accounts import HAND_OVER_S, SESSION_S
-from base_station.db.passwords import MAX_PASSWORD
-from base_station.db.principals import Principal
 
 router = APIRouter(tags=["login"])
 

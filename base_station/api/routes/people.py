@@ -12,8 +12,8 @@ from base_station.api.photos import clean_photo
 from base_station.api.problems import Problem
 from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import PersonView
 from base_station.db import models
+from base_station.views.wire import PersonView
 from shared.messages.station import Assign
 
 router = APIRouter(tags=["people"], route_class=AfterLogin)

@@ -14,7 +14,7 @@ from base_station.api.forms import LAST_MS, Form, Id, Metres, Note, UnitIdText, 
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import BeaconView, PinView
+from base_station.views.wire import BeaconView, PinView
 from shared.clock import NS_PER_MS
 from shared.messages.pins import (
     PlaceBeacon,

@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.answer import to_ms
 from base_station.api.forms import LAST_MS, Form, Id, PersonIdText, UnitIdText
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
@@ -15,6 +14,7 @@ from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.recordings.desk import Pull, RecordingDesk
 from base_station.recordings.fetch import Wanted
+from base_station.views.answer import to_ms
 from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["recordings"])

@@ -13,15 +13,15 @@ import msgspec
 from fastapi import APIRouter, Request
 from pydantic import Field
 
+from base_station.accounts.principals import Principal, Role
 from base_station.api.forms import LAST_MS, Form, Id, PersonIdText
 from base_station.api.problems import Problem
 from base_station.api.replays import OpenReplay
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.api.wire import ReplayView
-from base_station.db.principals import Principal, Role
 from base_station.past.replay import FASTEST, SLOWEST
+from base_station.views.wire import ReplayView
 from shared.clock import NS_PER_MS
 
 router = APIRouter(tags=["replays"])

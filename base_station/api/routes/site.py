@@ -14,9 +14,9 @@ from base_station.api.forms import MOST_UPLOADED_BYTES, Form
 from base_station.api.problems import Problem
 from base_station.api.security import AfterLogin, Viewer
 from base_station.api.services import Station
-from base_station.api.wire import AnchorView
 from base_station.site.plan import read_plan, require_floors
-from base_station.views import anchor_view
+from base_station.views.station import anchor_view
+from base_station.views.wire import AnchorView
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 

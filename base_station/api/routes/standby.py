@@ -9,7 +9,7 @@ from base_station.api.problems import Problem
 from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
 from base_station.api.standing import Standing
-from base_station.api.wire import StandbyView
+from base_station.views.wire import StandbyView
 
 router = APIRouter(tags=["standby"])
 

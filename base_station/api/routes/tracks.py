@@ -8,12 +8,12 @@ import msgspec
 from fastapi import APIRouter, Depends, Query, Response
 from starlette.concurrency import run_in_threadpool
 
-from base_station.answer import Answer, to_ms
 from base_station.api.forms import Id, UnitId, window
 from base_station.api.routes.incidents import incident_or_404, window_of
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.db.records import TrackSample, Window
+from base_station.views.answer import Answer, to_ms
 
 router = APIRouter(tags=["tracks"])
 

@@ -9,7 +9,6 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, Query, Response
 
-from base_station.answer import Answer, to_ms
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
@@ -18,6 +17,7 @@ from base_station.api.services import Services, Station
 from base_station.db import models
 from base_station.db.records import TrackSample
 from base_station.past.hindsight import Hindsight, Tracks
+from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_S
 
 router = APIRouter(tags=["tracks"])

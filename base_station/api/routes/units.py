@@ -8,13 +8,13 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.answer import to_ms_or_none
 from base_station.api.acting import Act
 from base_station.api.forms import Form, Metres, UnitId, UnitIdOrNone, UnitIdText, Word
 from base_station.api.problems import Problem
 from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.db import models
+from base_station.views.answer import to_ms_or_none
 from shared.channels import validate_unit_id
 from shared.messages.station import RegisterUnit, SetReference, SetStart
 

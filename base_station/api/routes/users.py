@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path
 from pydantic import BaseModel, StringConstraints
 
-from base_station.answer import to_ms
+from base_station.accounts.passwords import MAX_PASSWORD, MIN_PASSWORD
+from base_station.accounts.principals import Role
 from base_station.api.forms import Form, Name
 from base_station.api.problems import Problem
 from base_station.api.security import Administrator, Throttle, Viewer
 from base_station.api.services import Station
-from base_station.db.passwords import MAX_PASSWORD, MIN_PASSWORD
-from base_station.db.principals import Role
+from base_station.views.answer import to_ms
 
 router = APIRouter(tags=["users"])
 

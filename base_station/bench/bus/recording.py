@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from base_station.bench.rig.units import Wearer, unit_names
-from base_station.recorder import Recorder
+from base_station.storage.recorder import Recorder
 from shared.channels import channel_of
 from shared.clock import ManualClock, SystemClock
 from shared.codec import encode

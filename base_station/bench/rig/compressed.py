@@ -17,7 +17,6 @@ from pathlib import Path
 from base_station.alarms import ALARMS
 from base_station.api.hub import Client, Hub
 from base_station.bench.rig.units import Wearer
-from base_station.data_folder import DataFolder
 from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.store import Store
@@ -26,9 +25,10 @@ from base_station.fusion import FUSERS
 from base_station.live.drive_ports import DrivePorts, Record
 from base_station.past.checkpoints import Checkpoints
 from base_station.pipeline import StationPipeline
-from base_station.recorder import Recorder
-from base_station.segment_index import SegmentIndex
-from base_station.views import StationFacts
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.recorder import Recorder
+from base_station.storage.segment_index import SegmentIndex
+from base_station.views.station import StationFacts
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode

@@ -20,8 +20,8 @@ import typer
 
 from base_station.bench.rig import processes
 from base_station.bench.rig.console import Api
-from base_station.data_folder import DataFolder
 from base_station.pki.folder import PkiFolder
+from base_station.storage.data_folder import DataFolder
 from shared.bus_zenoh import UnitEndpoint
 from shared.channels import parse_key
 from shared.clock import NS_PER_S

@@ -1,4 +1,4 @@
-/** What the station says over the WebSocket: the mirror of `base_station/api/wire.py`.
+/** What the station says over the WebSocket: the mirror of `base_station/views/wire.py`.
  *
  * Times are milliseconds since 1970 in station time (in a replay, the time of the incident);
  * positions are metres north, east and down in the incident frame.

@@ -38,7 +38,7 @@ export interface Applied {
   missed: boolean; // something did not arrive: ask for a snapshot
 }
 
-// As the station thins its own trails out (base_station/trail.py).
+// As the station thins its own trails out (base_station/units/trail.py).
 const TRAIL_STEP_MS = 1000;
 const TRAIL_STEP_M = 0.5;
 const TRAIL_REST_MS = 15_000;

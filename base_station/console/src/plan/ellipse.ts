@@ -1,7 +1,7 @@
 /** The region where a person is with 95 % probability, and when a position is old.  Pure. */
 import type { PositionView } from "../wire";
 
-/** As the station widens the region of a unit that it cannot hear (base_station/views.py). */
+/** As the station widens the region of a unit that it cannot hear (base_station/views/units.py). */
 const ROAMING_MPS = 1.0;
 const ROAMING_MOST_M = 250;
 /** From this age a position is marked as old everywhere. */

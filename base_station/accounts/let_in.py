@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable
 from threading import Lock
 
-from base_station.db.principals import Principal
+from base_station.accounts.principals import Principal
 from shared.errors import DiskHangsError
 
 _MOST = 1000

@@ -1,12 +1,20 @@
-"""The live state as the console sees it: ``base_station.api.wire``; of units ``unit_views``."""
+"""The live state as the console sees it, in the structs of ``wire``; units: ``units``."""
 
 from __future__ import annotations
 
 import msgspec
 
 from base_station.accountability import warning_s
-from base_station.answer import to_ms, to_ms_or_none
-from base_station.api.wire import (
+from base_station.commands.state import Delivery, SentCommand
+from base_station.db.models import Alarm as StoredAlarm
+from base_station.journals.losses import unkept_problem
+from base_station.live.sinks import PhotoUrls
+from base_station.live_state import Alarm, Incident, StationState
+from base_station.pins.evidence import at_of
+from base_station.pins.pin import WAITING, Pin
+from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.units import unit_views
+from base_station.views.wire import (
     AlarmView,
     AnchorView,
     BeaconView,
@@ -20,14 +28,6 @@ from base_station.api.wire import (
     Snapshot,
     StandbyView,
 )
-from base_station.commands.state import Delivery, SentCommand
-from base_station.db.models import Alarm as StoredAlarm
-from base_station.live.sinks import PhotoUrls
-from base_station.live_state import Alarm, Incident, StationState
-from base_station.pins.evidence import at_of
-from base_station.pins.pin import WAITING, Pin
-from base_station.unit_losses import unkept_problem
-from base_station.unit_views import unit_views
 from shared.geo import Anchor
 from shared.messages import AlarmChange
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from base_station.boot_state import told_ns
 from base_station.live_state import Fault, UnitState
-from base_station.thermal import dose_of
+from base_station.units.boot_state import told_ns
+from base_station.units.thermal import dose_of
 from shared.clock import NS_PER_S
 from shared.messages import (
     EventKind,

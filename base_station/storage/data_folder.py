@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
-from base_station.recorder import LOG_FOLDER
+from base_station.storage.recorder import LOG_FOLDER
 from shared.errors import LogError, StoreError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, segment_paths

@@ -6,12 +6,12 @@ import logging
 
 import pytest
 
-from base_station.trouble import Trouble
+from base_station.program.recurring_trouble import RecurringTrouble
 from shared.errors import StoreError
 
 
 def test_it_is_told_once_until_it_is_over_or_another(caplog: pytest.LogCaptureFixture) -> None:
-    trouble = Trouble(logging.getLogger("tested"), "the list is old")
+    trouble = RecurringTrouble(logging.getLogger("tested"), "the list is old")
 
     def attempt(*causes: Exception | None) -> None:
         for cause in causes:
@@ -31,5 +31,5 @@ def test_it_is_told_once_until_it_is_over_or_another(caplog: pytest.LogCaptureFi
 
 
 def test_a_mistake_of_the_program_goes_on_to_who_can_tell_it() -> None:
-    with pytest.raises(KeyError), Trouble(logging.getLogger("tested"), "it failed"):
+    with pytest.raises(KeyError), RecurringTrouble(logging.getLogger("tested"), "it failed"):
         raise KeyError

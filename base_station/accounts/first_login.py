@@ -5,9 +5,9 @@ from __future__ import annotations
 import secrets
 from pathlib import Path
 
+from base_station.accounts.principals import Role
 from base_station.db.accounts import Accounts
-from base_station.db.principals import Role
-from base_station.private_files import write_atomically
+from base_station.storage.private_files import write_atomically
 
 USERNAME = "admin"
 

@@ -14,10 +14,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from base_station.data_folder import DataFolder
 from base_station.db.store import copy_database, known_segments
 from base_station.pki.folder import PkiFolder
 from base_station.standby.setting_aside import APART, TOLD
+from base_station.storage.data_folder import DataFolder
 from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
 from shared.own_files import give_to_owner, make_folder

@@ -8,7 +8,7 @@ from types import TracebackType
 from shared.errors import MusterError
 
 
-class Trouble:
+class RecurringTrouble:
     """Entered at every try; what the disk, the bus or a file did not do does not leave it."""
 
     def __init__(self, log: logging.Logger, what: str) -> None:

@@ -32,8 +32,8 @@ def add_user(
     data: Path = Path("muster-data"),
 ) -> None:
     """Add a user; the password is asked for, or read from standard input."""
+    from base_station.accounts.principals import Role  # noqa: PLC0415
     from base_station.app.folder import open_accounts  # noqa: PLC0415
-    from base_station.db.principals import Role  # noqa: PLC0415
 
     with ExitStack() as closing:
         accounts, records = open_accounts(data, closing)

@@ -18,9 +18,9 @@ import uvicorn
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from base_station import interpreter
-from base_station.networks import network_of
-from base_station.trouble import Trouble
+from base_station.api.networks import network_of
+from base_station.program import interpreter
+from base_station.program.recurring_trouble import RecurringTrouble
 from shared.errors import ConfigError
 
 _GRACE_S = 5
@@ -197,14 +197,14 @@ async def serve_until_stopped(
     if starting.done() and not serving.done():  # it may have been stopped as it began
         announce(f"ready {server.address}")
     starting.cancel()
-    trouble = Trouble(_log, "the station's housekeeping failed; it is tried again")
+    trouble = RecurringTrouble(_log, "the station's housekeeping failed; it is tried again")
     while not serving.done():
         await asyncio.to_thread(_keep_house, housekeeping, trouble)
         await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
     await serving
 
 
-def _keep_house(housekeeping: Callable[[], None], trouble: Trouble) -> None:
+def _keep_house(housekeeping: Callable[[], None], trouble: RecurringTrouble) -> None:
     try:
         with trouble:
             housekeeping()

@@ -10,7 +10,7 @@ from typing import Generic, Protocol, TypeVar
 
 import msgspec
 
-from base_station.private_files import write_atomically
+from base_station.storage.private_files import write_atomically
 from shared.errors import StoreError
 
 _KEPT = 20  # of those that are over

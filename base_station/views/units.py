@@ -1,12 +1,17 @@
-"""Units' cards and places as the console sees them: ``base_station.api.wire``."""
+"""Units' cards and places as the console sees them, in the structs of ``wire``."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 
-from base_station.answer import to_ms_or_none
-from base_station.api.wire import (
+from base_station.assessment.trust import conflicts_of, trust_of
+from base_station.live.sinks import PhotoUrls
+from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
+from base_station.site.plan import Ring
+from base_station.site.roaming import RADII_95, roamed_m
+from base_station.views.answer import to_ms_or_none
+from base_station.views.wire import (
     ClockView,
     DutyView,
     PersonView,
@@ -15,11 +20,6 @@ from base_station.api.wire import (
     TrustView,
     UnitView,
 )
-from base_station.assessment.trust import conflicts_of, trust_of
-from base_station.live.sinks import PhotoUrls
-from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
-from base_station.site.plan import Ring
-from base_station.site.roaming import RADII_95, roamed_m
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Activity, FusedPosition, Heartbeat, Status
 from shared.quality import Quality

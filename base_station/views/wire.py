@@ -15,7 +15,7 @@ from typing import Literal
 
 import msgspec
 
-from base_station.answer import Answer
+from base_station.views.answer import Answer
 
 Link = Literal["live", "stale", "lost", "never"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from base_station.db.models import LogSegment
 from base_station.db.records import Records
-from base_station.trouble import Trouble
+from base_station.program.recurring_trouble import RecurringTrouble
 from shared.mcap_log import SegmentInfo
 
 _log = logging.getLogger(__name__)
@@ -19,7 +19,7 @@ class SegmentIndex:
         """``notes``: what recovery had to say of segments."""
         self._records = records
         self._notes = notes
-        self._trouble = Trouble(_log, "the list of log segments is not up to date")
+        self._trouble = RecurringTrouble(_log, "the list of log segments is not up to date")
         self._written: dict[Path, SegmentInfo] = {}
 
     def update(self, segments: Iterable[SegmentInfo]) -> None:

@@ -8,7 +8,7 @@ from typing import Literal
 
 import msgspec
 
-from base_station.boot_state import BootState
+from base_station.units.boot_state import BootState
 from shared.channels import GPS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header

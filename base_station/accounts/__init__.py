@@ -1,0 +1,1 @@
+"""Who may log in: users' names, roles and passwords; their table is ``db.accounts``."""

@@ -1,0 +1,1 @@
+"""Station time: kept, and told to the units that ask (see docs/clocks.md)."""
