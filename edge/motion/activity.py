@@ -103,6 +103,8 @@ class ActivityMonitor:
 
     def _take_stride(self, stride: Stride) -> None:
         self._posture.take_stride(stride)
+        if self._posture.is_walking_step(stride) and stride.speed_mps <= _FASTEST_MPS:
+            self._falls.walk(stride)
         self._doing = self._kind(stride)
         self._stride_count += 1
         self._strides.append(stride)
@@ -145,7 +147,7 @@ class ActivityMonitor:
         self._stirring_s = self._stirring_s + WINDOW_NS / NS_PER_S if window.moving else 0.0
         motionless_s = self._motion.motionless_s
         self._posture.take_window(window, motionless_s)
-        struck = self._falls.confirm(motionless_s)
+        struck = self._falls.confirm(motionless_s, lying=self._posture.lying)
         collapsed = self._posture.collapsed and motionless_s >= _COLLAPSED_S
         if not (struck or collapsed):
             self._fall_told = self._fall_told and not window.moving

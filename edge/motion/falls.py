@@ -12,6 +12,7 @@ from math import isnan
 import numpy as np
 
 from edge.motion.body_motion import WINDOW_NS
+from edge.motion.strides import Stride
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
 
@@ -22,6 +23,7 @@ _BLOW_MPS2 = 30.0
 _BLOW_WITHIN_NS = NS_PER_S // 2
 _DOWN_FOR_S = 2.0  # motionless after the blow
 _DOWN_WITHIN_NS = 8 * NS_PER_S  # that were seen: in a hole nobody is known to have got up
+_WALKS_ON = 2  # strides: one may be a lunge on the way down
 
 
 class FallDetector:
@@ -31,11 +33,13 @@ class FallDetector:
         self._weightless_since_ns: int | None = None
         self._weightless_ns = 0  # the last such sample
         self._weightless_until_ns: int | None = None
+        self._blow_ns = 0
         self._seen_ns: int | None = None  # how long the wearer has been watched since the blow
+        self._strides = 0  # since then
 
     @property
     def falling(self) -> bool:
-        return self._seen_ns is not None
+        return self._seen_ns is not None and self._strides < _WALKS_ON
 
     def push(self, imu: ImuBatch) -> None:
         force_mps2 = np.linalg.norm(imu.accel_mps2, axis=1)
@@ -46,7 +50,12 @@ class FallDetector:
         for t_ns, force in zip(imu.t_ns.tolist(), force_mps2.tolist(), strict=True):
             self._step(t_ns, force)
 
-    def confirm(self, motionless_s: float) -> bool:
+    def walk(self, stride: Stride) -> None:
+        """Take a stride that nobody makes who is down."""
+        if stride.end_ns - round(stride.period_s * NS_PER_S) > self._blow_ns:
+            self._strides += 1
+
+    def confirm(self, motionless_s: float, *, lying: bool) -> bool:
         """Whether the wearer stayed down after the blow: True once a fall.
 
         To be asked after every window of motion, from the one with the blow on.
@@ -54,7 +63,8 @@ class FallDetector:
         if self._seen_ns is None:
             return False
         self._seen_ns += WINDOW_NS
-        down = motionless_s >= _DOWN_FOR_S
+        walked_on = self._strides >= _WALKS_ON and not lying
+        down = motionless_s >= _DOWN_FOR_S and not walked_on
         if down or self._seen_ns > _DOWN_WITHIN_NS:
             self._seen_ns = None
         return down
@@ -77,4 +87,5 @@ class FallDetector:
             and dropped_ns is not None
             and 0 <= t_ns - dropped_ns <= _BLOW_WITHIN_NS
         ):
-            self._seen_ns = 0
+            self._blow_ns = t_ns
+            self._seen_ns = self._strides = 0

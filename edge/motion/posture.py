@@ -23,6 +23,7 @@ _TIPPED_STEP_COS = 0.77  # 40 degrees: more than any shoe rolls while it carries
 _LYING_AFTER_S = 2.0
 _KNEELING_S = 6.0  # someone who crawls may rest on hands and knees for so long
 _SAME_COS = 0.8
+_CRAWLS_ON_M = 0.2  # who stirs where they lie puts the foot down where it was
 _SUDDEN_NS = 2 * NS_PER_S  # from upright to rest
 _SUDDEN_RADPS = 2.4  # nobody tips the foot so fast who lies or kneels down
 _COLLAPSED_S = 1.0
@@ -56,6 +57,14 @@ class Posture:
         since_ns = self._tipped_since_ns
         return since_ns is not None and not 0 <= self._now_ns - since_ns < _TIPPED_FOR_NS
 
+    def is_walking_step(self, stride: Stride) -> bool:
+        """Whether nobody but who is on their feet makes it."""
+        return (
+            self._standing_b is not None
+            and stride.length_m >= _LONG_STRIDE_M
+            and cosine(stride.up_b, self._standing_b) >= _TIPPED_STEP_COS
+        )
+
     def take_stride(self, stride: Stride) -> None:
         if stride.length_m >= _LONG_STRIDE_M:
             standing_b = self._standing_b if self._standing_b is not None else stride.up_b
@@ -68,6 +77,8 @@ class Posture:
         before_b, self._tipped_step_b = self._tipped_step_b, stride.up_b
         # One such step may be that of someone who lies down.
         self.crawling = before_b is not None and cosine(before_b, stride.up_b) > _SAME_COS
+        if self.crawling and stride.length_m > _CRAWLS_ON_M:
+            self.lying = self.collapsed = False  # it was a rest on hands and knees
 
     def take_window(self, window: MotionWindow, motionless_s: float) -> None:
         """Take the next half second; ``motionless_s`` counts it."""
@@ -86,6 +97,9 @@ class Posture:
         cos = cosine(window.force_mps2, self._standing_b)
         if cos > _UPRIGHT_COS:
             self._stand(window.end_ns)
+            if not window.moving:  # they have got up, and go down from there anew
+                self._tipped_step_b = None
+                self.crawling = False
         if cos > _TIPPED_COS:
             self.lying = self.collapsed = False
             self._tipped_since_ns = None

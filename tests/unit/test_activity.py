@@ -327,3 +327,45 @@ def test_who_has_collapsed_is_falling_until_it_is_lying(wearer: Wearer) -> None:
         wearer.rests(0.8, 90.0)
         said.append(wearer.said())
     assert said == [Activity.STILL, Activity.FALLING, Activity.LYING]
+
+
+def test_who_jumps_from_the_engine_walks_on_and_stands_has_not_fallen(wearer: Wearer) -> None:
+    wearer.falls_down()
+    said = [wearer.said()]
+    wearer.strides(3, 1.3)
+    said.append(wearer.said())
+    wearer.rests(4.0)
+    said.append(wearer.said())
+    assert said == [Activity.FALLING, Activity.WALKING, Activity.STILL]
+    assert wearer.falls == 0
+
+
+@pytest.mark.parametrize(
+    ("length_m", "angle_deg"),
+    [(0.7, 0.0), (1.3, TIPPED_DEG), (13.0, 0.0)],
+    ids=["stumbles on", "is dragged away", "a tracker that is lost"],
+)
+def test_only_long_strides_on_ones_feet_show_that_one_has_got_up(
+    wearer: Wearer, length_m: float, angle_deg: float
+) -> None:
+    wearer.falls_down()
+    wearer.strides(2, length_m, angle_deg=angle_deg)
+    wearer.rests(4.0)
+    assert wearer.falls == 1
+
+
+def test_who_walks_some_steps_after_a_blow_and_lies_down_has_fallen(wearer: Wearer) -> None:
+    wearer.falls_down()
+    wearer.strides(2, 1.3)
+    wearer.stirs(1.0, 80.0)
+    wearer.rests(3.0, 90.0)
+    assert wearer.falls == 1
+
+
+def test_who_kneels_for_a_while_and_then_crawls_is_told_to_crawl(wearer: Wearer) -> None:
+    wearer.stirs(1.0, TIPPED_DEG)
+    wearer.rests(3.0, TIPPED_DEG)
+    said = [wearer.said()]
+    wearer.strides(4, 0.4, angle_deg=TIPPED_DEG)
+    said.append(wearer.said())
+    assert said == [Activity.LYING, Activity.CRAWLING]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from edge.motion.falls import FallDetector
+from edge.motion.strides import Stride
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
 
@@ -33,9 +34,15 @@ class Wearer:
     def strikes(self, force_mps2: float = 60.0) -> None:
         self.feels(force_mps2, 0.03)
 
-    def confirmed(self, motionless_s: float) -> bool:
+    def walks(self, strides: int) -> None:
+        for _ in range(strides):
+            self.now_s += 1.0
+            end_ns = round(self.now_s * NS_PER_S)
+            self.falls.walk(Stride(end_ns, 0.9, 1.3, 0.0, np.array([0.0, 0.0, 1.0])))
+
+    def confirmed(self, motionless_s: float, *, lying: bool = False) -> bool:
         """By the next half second."""
-        return self.falls.confirm(motionless_s)
+        return self.falls.confirm(motionless_s, lying=lying)
 
 
 @pytest.fixture
@@ -163,3 +170,36 @@ def test_a_drop_that_was_half_heard_is_one_if_that_half_was_long_enough(wearer: 
     wearer.drops(duration_s=0.3)
     wearer.strikes()
     assert wearer.falls.falling
+
+
+@pytest.mark.parametrize(("strides", "falls"), [(0, True), (1, True), (2, False)])
+def test_who_walks_on_after_the_blow_and_then_stands_still_has_jumped(
+    fallen: Wearer, strides: int, falls: bool
+) -> None:
+    fallen.walks(strides)
+    assert fallen.falls.falling is falls
+    assert fallen.confirmed(2.0) is falls
+
+
+def test_who_walks_on_after_the_blow_and_then_lies_has_fallen(fallen: Wearer) -> None:
+    fallen.walks(3)
+    assert not fallen.confirmed(1.5, lying=True)
+    assert fallen.confirmed(2.0, lying=True)
+
+
+def test_strides_up_to_the_blow_are_not_walking_on(wearer: Wearer) -> None:
+    """A tracker tells them up to a second late."""
+    before = [Stride(round(t_s * NS_PER_S), 0.9, 1.3, 0.0, np.zeros(3)) for t_s in (9.0, 9.5, 11.0)]
+    wearer.drops()
+    wearer.strikes()
+    for stride in before:  # the last of them began before the blow
+        wearer.falls.walk(stride)
+    assert wearer.confirmed(2.0)
+
+
+def test_after_another_blow_nobody_has_walked_on_yet(fallen: Wearer) -> None:
+    fallen.walks(2)
+    fallen.drops()
+    fallen.strikes()
+    assert fallen.falls.falling
+    assert fallen.confirmed(2.0)

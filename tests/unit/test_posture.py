@@ -243,6 +243,39 @@ def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None
     assert not foot.posture.collapsed
 
 
+@pytest.mark.parametrize(("length_m", "lying"), [(0.15, True), (0.25, False)])
+def test_who_crawls_on_after_a_long_rest_does_not_lie(
+    foot: Foot, length_m: float, lying: bool
+) -> None:
+    """Who only stirs goes nowhere."""
+    foot.held(KNEELING_DEG, 3.0)
+    assert foot.posture.lying
+    for _ in range(3):
+        foot.held(KNEELING_DEG, 1.0, 1.0)
+        foot.steps(KNEELING_DEG, length_m)
+    assert foot.posture.lying is lying
+
+
+def test_one_tipped_step_gets_nobody_up(foot: Foot) -> None:
+    foot.held(KNEELING_DEG, 3.0)
+    foot.held(KNEELING_DEG, 1.0, 1.0)
+    foot.steps(KNEELING_DEG)
+    assert foot.posture.lying
+
+
+@pytest.mark.parametrize("stood_up", [True, False])
+def test_who_stood_up_from_a_crawl_without_a_stride_may_collapse(
+    foot: Foot, stood_up: bool
+) -> None:
+    foot.steps(KNEELING_DEG)
+    foot.steps(KNEELING_DEG)
+    foot.held(KNEELING_DEG, 1.0, 1.0)
+    foot.held(0.0, 1.0, None if stood_up else 1.0)
+    foot.held(70.0, 1.0, 3.0)
+    foot.held(KNEELING_DEG, 1.0)
+    assert foot.posture.collapsed is stood_up
+
+
 def test_tipped_is_longer_than_a_swing(foot: Foot) -> None:
     tipped = []
     for _ in range(4):
