@@ -32,6 +32,10 @@ def read_calibration(path: Path) -> Calibration:
         calibration = msgspec.convert(table, Calibration)
         if not all(map(isfinite, _numbers(table))):
             raise msgspec.ValidationError("a value that is no number")
+        if calibration.made.tzinfo is None:
+            raise ConfigError(
+                f"calibration {path}: made has no time zone; write 2026-01-31T12:00:00Z"
+            )
         if impossible := calibration.impossible():
             raise msgspec.ValidationError(impossible)
     except FileNotFoundError:
@@ -42,8 +46,6 @@ def read_calibration(path: Path) -> Calibration:
         raise ConfigError(
             f"calibration {path} is damaged ({error}); make it anew with `muster edge calibrate`"
         ) from error
-    if calibration.made.tzinfo is None:
-        raise ConfigError(f"calibration {path}: made has no time zone; write 2026-01-31T12:00:00Z")
     return calibration
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 
 import msgspec
 import numpy as np
@@ -25,6 +25,10 @@ _POOR_FORCE_MPS2 = 0.05
 _POOR_RATE_RADPS = 5e-4  # 0.03 degrees a second
 _POOR_FIELD_SHARE = 0.03
 _SCALE_AND_BIAS = 6  # unknowns: so many poses fit whatever they show
+# The first is the time of a machine whose clock was never set.
+_MADE = datetime(1970, 1, 1, tzinfo=UTC), datetime(3000, 1, 1, tzinfo=UTC)
+_DEGC = (-60.0, 150.0)  # in which sensors work
+_FIELD_UT = (10.0, 120.0)  # the earth's, with what a unit's own iron may add or take
 _CLIPPED_SHARE = 0.98  # of full scale: from here on a reading says no more than "too much"
 
 Vector = tuple[float, float, float]
@@ -137,9 +141,14 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """What no sensor that is whole is off by: the file is damaged, or the samples were of other
         units.
         """
+        if not _MADE[0] <= self.made < _MADE[1]:
+            return f"made in {self.made.year}"
         for what, values, most in self._off_by():
             if not np.all(np.abs(values) <= most):
                 return f"{what} is off by more than {most:g}"
+        for what, value, (least, most) in self._said():
+            if value is not None and not least <= value <= most:
+                return f"{what} is not from {least:g} to {most:g}"
         return None
 
     def _off_by(self) -> Iterator[tuple[str, Floats, float]]:
@@ -158,6 +167,18 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             yield "warmth.accel_bias_per_degc_mps2", slope, 0.2
             slope = np.array(warmth.gyro_bias_per_degc_radps)
             yield "warmth.gyro_bias_per_degc_radps", slope, 0.02
+
+    def _said(self) -> Iterator[tuple[str, float | None, tuple[float, float]]]:
+        """What was measured of the surroundings: its name in the file, and the least and most."""
+        if part := self.accelerometer:
+            yield "accelerometer.at_degc", part.at_degc, _DEGC
+        if gyroscope := self.gyroscope:
+            yield "gyroscope.at_degc", gyroscope.at_degc, _DEGC
+        if magnetometer := self.magnetometer:
+            yield "magnetometer.field_ut", magnetometer.field_ut, _FIELD_UT
+        if warmth := self.warmth:
+            yield "warmth.from_degc", warmth.from_degc, _DEGC
+            yield "warmth.to_degc", warmth.to_degc, _DEGC
 
     def is_old(self, now: datetime) -> bool:
         return now - self.made > OLD_AFTER

@@ -128,6 +128,52 @@ def test_numbers_that_no_sensor_is_off_by_are_damage(line, said, tmp_path):
         read_calibration(file)
 
 
+@pytest.mark.parametrize(
+    ("part", "line", "said"),
+    [
+        ("accelerometer", "at_degc = 1e9", "accelerometer.at_degc is not from -60 to 150"),
+        ("gyroscope", "at_degc = -240.0", "gyroscope.at_degc is not from -60 to 150"),
+        ("magnetometer", "field_ut = 0.0", "magnetometer.field_ut is not from 10 to 120"),
+        ("magnetometer", "field_ut = 500.0", "magnetometer.field_ut is not from 10 to 120"),
+        ("warmth", "from_degc = -1e9", "warmth.from_degc is not from -60 to 150"),
+        ("warmth", "to_degc = 300.0", "warmth.to_degc is not from -60 to 150"),
+    ],
+)
+def test_what_no_table_is_like_is_damage(part, line, said, tmp_path):
+    """A warmth that never was would be taken out of every sample."""
+    file = tmp_path / "c.toml"
+    write_calibration(whole_calibration(), file)
+    name = line.partition(" =")[0]
+    before, head, rest = file.read_text().partition(f"[{part}]\n")
+    kept, *others = rest.partition("\n[")
+    lines = [one for one in kept.split("\n") if not one.startswith(f"{name} =")]
+    file.write_text(before + head + "\n".join([line, *lines]) + "".join(others))
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said}")):
+        read_calibration(file)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ("1026-05-01T12:00:00Z", "made in 1026"),
+        ("0001-01-01T00:00:00+14:00", "made in 1"),
+        ("9999-12-31T23:00:00-14:00", "made in 9999"),
+        ("1970-01-01T00:00:00Z", None),
+    ],
+)
+def test_a_time_that_no_description_can_say_is_damage(made, said, tmp_path):
+    file = tmp_path / "c.toml"
+    write_calibration(whole_calibration(), file)
+    text = file.read_text()
+    first = text.index("made = ")
+    file.write_text(text[:first] + f"made = {made}\n" + text[text.index("\n", first) :])
+    if said is None:
+        assert identity(read_calibration(file)).startswith("19700101T000000Z-")
+        return
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said})")):
+        read_calibration(file)
+
+
 def test_six_poses_fit_whatever_they_show():
     """As many equations as unknowns: a pose on a table that was pushed would not be noticed."""
     accelerometer = known(whole_calibration().accelerometer)
