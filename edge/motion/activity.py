@@ -27,6 +27,7 @@ _STIRRING_S = 1.0  # of motion before the first stride of a walk is known
 _RUNNING_MPS = 2.0  # people change from walking to running here (Hreljac 1995)
 _RUNNING_PERIOD_S = 0.8
 _RUNNING_STRIDE_M = 0.9
+_LATE_NS = 2 * NS_PER_S  # no row comes later
 _FASTEST_MPS = 12.0  # nobody is faster
 _STAIR_RISE_M = 0.11
 _STAIR_SLOPE = 0.25  # steeper than ramps, flatter than stairs
@@ -51,6 +52,7 @@ class ActivityMonitor:
         self._stride_count = 0
         self._stirring_s = 0.0
         self._window_ns: int | None = None  # the end of the last one
+        self._moved_ns = 0  # the end of the last one that moved
         self._fall_told = False
 
     @property
@@ -102,6 +104,8 @@ class ActivityMonitor:
         return Activity.WALKING if self._stirring_s >= _STIRRING_S else Activity.STILL
 
     def _take_stride(self, stride: Stride) -> None:
+        if self._is_without_motion(stride):
+            return
         self._posture.take_stride(stride)
         if self._posture.is_walking_step(stride) and stride.speed_mps <= _FASTEST_MPS:
             self._falls.walk(stride)
@@ -110,6 +114,13 @@ class ActivityMonitor:
         self._strides.append(stride)
         while not 0 <= stride.end_ns - self._strides[0].end_ns <= _CADENCE_OVER_NS:
             self._strides.popleft()
+
+    def _is_without_motion(self, stride: Stride) -> bool:
+        """A tracker whose samples are poor loses its stances also while the foot rests."""
+        if self._window_ns is None or not 0 <= self._window_ns - stride.end_ns <= _LATE_NS:
+            return False  # what it did is not known yet, or of a clock that was set
+        began_ns = stride.end_ns - round(stride.period_s * NS_PER_S)
+        return began_ns >= self._moved_ns
 
     def _kind(self, stride: Stride) -> Activity:
         if self._posture.crawling:
@@ -144,6 +155,8 @@ class ActivityMonitor:
     def _take_window(self, window: MotionWindow) -> bool:
         """Return whether it confirms a fall."""
         self._window_ns = window.end_ns
+        if window.moving:
+            self._moved_ns = window.end_ns
         self._stirring_s = self._stirring_s + WINDOW_NS / NS_PER_S if window.moving else 0.0
         motionless_s = self._motion.motionless_s
         self._posture.take_window(window, motionless_s)

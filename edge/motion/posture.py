@@ -41,15 +41,11 @@ class Posture:
         self._now_ns = 0
         self._rest_ns: int | None = None  # since when nothing moves
         self._peaks: deque[tuple[int, float]] = deque(maxlen=16)  # (start, rate) of each window
-        self._tipped_step_b: Floats | None = None  # up at the last step if it was tipped
-        self.crawling = False  # the last two steps were tipped the same way
+        self._crawl_step_b: Floats | None = None  # up at the last step on hands and knees
+        self.tipped_step = False  # the last one came down on the toes or on the side
+        self.crawling = False  # the last two that got on were tipped the same way
         self.lying = False
         self.collapsed = False  # went down suddenly and has not moved since
-
-    @property
-    def tipped_step(self) -> bool:
-        """Whether the last step came down on the toes or on the side, as in crawling."""
-        return self._tipped_step_b is not None
 
     @property
     def tipped(self) -> bool:
@@ -69,16 +65,16 @@ class Posture:
         if stride.length_m >= _LONG_STRIDE_M:
             standing_b = self._standing_b if self._standing_b is not None else stride.up_b
             self._standing_b = standing_b + _LEARNT_SHARE * (stride.up_b - standing_b)
-        if not self._is_tipped_step(stride):
+        self.tipped_step = self._is_tipped_step(stride)
+        if not self.tipped_step:
             self._stand(stride.end_ns)
-            self._tipped_step_b = None
-            self.crawling = False
-            return
-        before_b, self._tipped_step_b = self._tipped_step_b, stride.up_b
-        # One such step may be that of someone who lies down.
-        self.crawling = before_b is not None and cosine(before_b, stride.up_b) > _SAME_COS
-        if self.crawling and stride.length_m > _CRAWLS_ON_M:
-            self.lying = self.collapsed = False  # it was a rest on hands and knees
+            self._end_crawl()
+        elif stride.length_m > _CRAWLS_ON_M:
+            before_b, self._crawl_step_b = self._crawl_step_b, stride.up_b
+            # One such step may be that of someone who lies down.
+            self.crawling = before_b is not None and cosine(before_b, stride.up_b) > _SAME_COS
+            if self.crawling:
+                self.lying = self.collapsed = False  # it was a rest on hands and knees
 
     def take_window(self, window: MotionWindow, motionless_s: float) -> None:
         """Take the next half second; ``motionless_s`` counts it."""
@@ -98,8 +94,7 @@ class Posture:
         if cos > _UPRIGHT_COS:
             self._stand(window.end_ns)
             if not window.moving:  # they have got up, and go down from there anew
-                self._tipped_step_b = None
-                self.crawling = False
+                self._end_crawl()
         if cos > _TIPPED_COS:
             self.lying = self.collapsed = False
             self._tipped_since_ns = None
@@ -109,7 +104,7 @@ class Posture:
         self._hold_tipped(window, motionless_s)
 
     def _hold_tipped(self, window: MotionWindow, motionless_s: float) -> None:
-        step_b = self._tipped_step_b
+        step_b = self._crawl_step_b
         kneeling = (
             self.crawling and step_b is not None and cosine(step_b, window.force_mps2) > _SAME_COS
         )
@@ -132,6 +127,9 @@ class Posture:
             and stride.length_m < _LONG_STRIDE_M
             and cosine(stride.up_b, self._standing_b) < _TIPPED_STEP_COS
         )
+
+    def _end_crawl(self) -> None:
+        self._crawl_step_b, self.crawling = None, False
 
     def _stand(self, t_ns: int) -> None:
         if self._upright_ns is None or not 0 <= self._upright_ns - t_ns <= _LATE_NS:

@@ -78,6 +78,12 @@ class Wearer:
             self.falls += self.monitor.push(_nothing(), track)
             self._height_m += climbed_m or 0.0
 
+    def is_said_to_step(self, ago_s: float, angle_deg: float = 0.0) -> None:
+        """The tracker lost a stance while the foot rested."""
+        lifted_s = self.now_s - ago_s
+        rows = [(lifted_s, 0.0, True), (lifted_s + 0.1, 0.0, False), (lifted_s + 0.5, 0.0, True)]
+        self.falls += self.monitor.push(_nothing(), self._rows(rows, 0.0, 0.0, angle_deg))
+
     def _feels(
         self,
         seconds: float,
@@ -360,6 +366,23 @@ def test_who_walks_some_steps_after_a_blow_and_lies_down_has_fallen(wearer: Wear
     wearer.stirs(1.0, 80.0)
     wearer.rests(3.0, 90.0)
     assert wearer.falls == 1
+
+
+def test_a_stride_in_which_nothing_moved_is_none(wearer: Wearer) -> None:
+    wearer.strides(2, 1.3)
+    for _ in range(3):
+        wearer.rests(2.5)
+        wearer.is_said_to_step(ago_s=1.5)
+    assert wearer.monitor.steps == 4
+    wearer.stirs(2.5)
+    wearer.is_said_to_step(ago_s=1.5)
+    assert wearer.monitor.steps == 6
+
+
+def test_who_has_stood_since_the_start_has_made_no_stride() -> None:
+    wearer = Wearer(stands_s=4.0)
+    wearer.is_said_to_step(ago_s=2.0)
+    assert wearer.monitor.steps == 0
 
 
 def test_who_kneels_for_a_while_and_then_crawls_is_told_to_crawl(wearer: Wearer) -> None:

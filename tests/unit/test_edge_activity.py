@@ -323,7 +323,22 @@ def test_the_barometer_has_a_say_on_stairs(rise_m, pa_per_s, told):
     assert monitor.activity(int(imu.t_ns[-1])) is told
 
 
-def activities(source, until_s: float) -> tuple[list[Activity], int]:
+def as_it_is(imu: ImuBatch) -> ImuBatch:
+    return imu
+
+
+def a_fifth_missed(imu: ImuBatch) -> ImuBatch:
+    missed = np.random.default_rng(int(imu.t_ns[0])).random(len(imu)) < 0.2
+    return replace(imu, accel_mps2=np.where(missed[:, None], np.nan, imu.accel_mps2))
+
+
+def a_tenth_twice(imu: ImuBatch) -> ImuBatch:
+    twice = np.random.default_rng(int(imu.t_ns[0])).random(len(imu)) < 0.1
+    rows = np.repeat(np.arange(len(imu)), 1 + twice)
+    return ImuBatch(imu.t_ns[rows], imu.accel_mps2[rows], imu.gyro_radps[rows])
+
+
+def activities(source, until_s: float, spoilt=as_it_is) -> tuple[list[Activity], int]:
     """Each second's activity, and the falls told."""
     tracker = make_tracker("eskf", source.description)
     monitor = ActivityMonitor()
@@ -333,14 +348,16 @@ def activities(source, until_s: float) -> tuple[list[Activity], int]:
         t_ns = int(batch.imu.t_ns[-1])
         if t_ns > until_s * NS_PER_S:
             break
-        falls += monitor.push(batch.imu, tracker.push(batch.imu))
+        imu = spoilt(batch.imu)
+        falls += monitor.push(imu, tracker.push(imu))
         if t_ns // NS_PER_S > len(each):
             each.append(monitor.activity(t_ns))
     return each, falls
 
 
-def test_a_simulated_collapse_is_a_fall_and_then_lying():
-    each, falls = activities(open_source("simulated:goes-down"), 60.0)
+@pytest.mark.parametrize("spoilt", [as_it_is, a_fifth_missed, a_tenth_twice])
+def test_a_simulated_collapse_is_a_fall_and_then_lying(spoilt):
+    each, falls = activities(open_source("simulated:goes-down"), 60.0, spoilt)
     assert falls == 1
     assert Activity.WALKING in each[:20]
     assert set(each[30:]) == {Activity.LYING}

@@ -256,6 +256,23 @@ def test_who_crawls_on_after_a_long_rest_does_not_lie(
     assert foot.posture.lying is lying
 
 
+def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> None:
+    """Who has gone down may stir, and a tracker may say that a foot did."""
+    said = []
+    for length_m in (0.1, 0.1, 0.4, 0.1, 0.4, 0.1):
+        foot.steps(KNEELING_DEG, length_m)
+        said.append((foot.posture.tipped_step, foot.posture.crawling))
+    assert said == [(True, False)] * 4 + [(True, True)] * 2
+
+
+def test_who_goes_down_suddenly_and_stirs_there_has_collapsed(foot: Foot) -> None:
+    foot.held(KNEELING_DEG, 1.0, 3.0)
+    foot.steps(KNEELING_DEG, 0.1)
+    foot.steps(KNEELING_DEG, 0.1)
+    foot.held(KNEELING_DEG, 1.0)
+    assert foot.posture.collapsed
+
+
 def test_one_tipped_step_gets_nobody_up(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 3.0)
     foot.held(KNEELING_DEG, 1.0, 1.0)
