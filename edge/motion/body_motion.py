@@ -37,7 +37,10 @@ class MotionWindow:
 
 
 class BodyMotion:
-    """Cuts the samples into windows of half a second, however they are batched."""
+    """Cuts the samples into windows of half a second, however they are batched.
+
+    The accelerometer is enough: a gyroscope that fails must not hide that its wearer lies still.
+    """
 
     def __init__(self) -> None:
         self._cell: int | None = None
@@ -68,24 +71,33 @@ class BodyMotion:
             return None
         samples = np.vstack(self._parts)
         self._parts = []
-        samples = samples[np.isfinite(samples).all(axis=1)]
-        if len(samples) < _ENOUGH_SAMPLES:
+        accel_mps2, gyro_radps = _known(samples[:, :3]), _known(samples[:, 3:])
+        if len(accel_mps2) < _ENOUGH_SAMPLES:
             return None
-        spread = np.sqrt(samples.var(axis=0).reshape(2, 3).sum(axis=1))
-        force_mps2 = samples[:, :3].mean(axis=0)
-        moving = bool(
-            spread[0] > _MOVING_ACCEL_MPS2
-            or spread[1] > _MOVING_GYRO_RADPS
+        force_mps2 = accel_mps2.mean(axis=0)
+        moving = (
+            _spread(accel_mps2) > _MOVING_ACCEL_MPS2
+            or _spread(gyro_radps) > _MOVING_GYRO_RADPS
             or self._has_turned(force_mps2)
         )
         self._force_before_mps2 = force_mps2
         self._still_ns = 0 if moving else self._still_ns + WINDOW_NS
-        peak_radps = float(np.linalg.norm(samples[:, 3:], axis=1).max())
+        peak_radps = float(np.linalg.norm(gyro_radps, axis=1).max(initial=0.0))
         return MotionWindow((self._cell + 1) * WINDOW_NS, moving, force_mps2, peak_radps)
 
     def _has_turned(self, force_mps2: Floats) -> bool:
         before = self._force_before_mps2
         return before is not None and cosine(before, force_mps2) < _TURNED_COS
+
+
+def _known(vectors: Floats) -> Floats:
+    """Those (n, 3) that were not missed."""
+    return np.asarray(vectors[np.isfinite(vectors).all(axis=1)])
+
+
+def _spread(vectors: Floats) -> float:
+    """Root of the summed variances; 0 of too few, as of a gyroscope that has failed."""
+    return float(np.sqrt(vectors.var(axis=0).sum())) if len(vectors) >= _ENOUGH_SAMPLES else 0.0
 
 
 def by_window(imu: ImuBatch) -> Iterator[ImuBatch]:

@@ -379,6 +379,12 @@ def test_a_stride_in_which_nothing_moved_is_none(wearer: Wearer) -> None:
     assert wearer.monitor.steps == 6
 
 
+def test_a_stride_that_is_told_before_any_motion_could_be_seen_is_one() -> None:
+    wearer = Wearer(stands_s=0.0)
+    wearer.is_said_to_step(ago_s=1.0)
+    assert wearer.monitor.steps == 2
+
+
 def test_who_has_stood_since_the_start_has_made_no_stride() -> None:
     wearer = Wearer(stands_s=4.0)
     wearer.is_said_to_step(ago_s=2.0)

@@ -82,6 +82,27 @@ def test_samples_that_say_nothing_count_neither_way():
     assert motion.motionless_s == pytest.approx(before_s + 0.5)
 
 
+def test_a_gyroscope_that_has_failed_does_not_hide_that_nobody_moves():
+    motion = BodyMotion()
+    pieces = samples(5.5), samples(5.0, 5.5), samples(1.0, 10.5, shake=1.0), samples(0.6, 11.5)
+    motionless_s = []
+    for piece in pieces:
+        motion.push(replace(piece, gyro_radps=np.full((len(piece), 3), np.nan)))
+        motionless_s.append(motion.motionless_s)
+    assert motionless_s == [5.0, 10.0, 0.0, 0.5]
+
+
+def test_who_falls_on_a_gyroscope_and_breaks_it_has_fallen():
+    monitor = ActivityMonitor()
+    monitor.push(samples(2.0, shake=1.0), empty_rows())
+    monitor.push(samples(0.4, 2.0, (0.0, 0.0, 0.5)), empty_rows())
+    after = np.concatenate(
+        (samples(0.05, 2.4, (0.0, 0.0, 60.0)).accel_mps2, samples(6.0).accel_mps2)
+    )
+    imu = ImuBatch(samples(6.05, 2.4).t_ns, after, np.full((605, 3), np.nan))
+    assert monitor.push(imu, empty_rows()) == 1
+
+
 @pytest.mark.parametrize(
     ("weightless_s", "after_force", "after_shake", "falls"),
     [

@@ -189,10 +189,11 @@ def test_who_walks_on_after_the_blow_and_then_lies_has_fallen(fallen: Wearer) ->
 
 def test_strides_up_to_the_blow_are_not_walking_on(wearer: Wearer) -> None:
     """A tracker tells them up to a second late."""
-    before = [Stride(round(t_s * NS_PER_S), 0.9, 1.3, 0.0, np.zeros(3)) for t_s in (9.0, 9.5, 11.0)]
+    ends_s = 9.0, 10.5, 10.9  # the blow is at 10.4 s, and each began before it
+    before = [Stride(round(t_s * NS_PER_S), 0.9, 1.3, 0.0, np.zeros(3)) for t_s in ends_s]
     wearer.drops()
     wearer.strikes()
-    for stride in before:  # the last of them began before the blow
+    for stride in before:
         wearer.falls.walk(stride)
     assert wearer.confirmed(2.0)
 
