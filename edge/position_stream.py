@@ -134,8 +134,12 @@ class PositionStream:
             self.floors_climbed = round(height_m / _STOREY_M)
 
     def _pressure_at(self, t_ns: int) -> float | None:
+        """The last reading; a barometer that has failed says nothing of where one has gone since."""
         after = bisect_right(self._pressures, (t_ns, math.inf))
-        return self._pressures[after - 1][1] if after else None
+        if not after:
+            return None
+        read_ns, pressure_pa = self._pressures[after - 1]
+        return pressure_pa if t_ns - read_ns <= _PRESSURE_KEPT_NS else None
 
 
 def _magnetic_north(track: TrackBatch, row: int) -> MagneticNorth | None:

@@ -205,6 +205,18 @@ def test_pressures_are_kept_for_as_long_as_rows_may_be_held_back() -> None:
     assert too_old.pressure_pa is None
 
 
+@pytest.mark.parametrize(("after_s", "pressure_pa"), [(3.0, 1001.0), (3.2, None)])
+def test_a_barometer_that_has_failed_does_not_go_on_with_its_last_reading(
+    after_s: float, pressure_pa: float | None
+) -> None:
+    """Whoever climbs meanwhile would stay on the floor where it failed."""
+    out = stream(rate_hz=RATE_HZ)
+    out.take_pressure(air(0.0, [1000.0, 1001.0]))
+    out.take_pressure(air(0.1, [math.nan] * 80))
+    (position,) = out.push(rows(standing(1), from_s=0.05 + after_s), LIVE)
+    assert position.pressure_pa == pressure_pa
+
+
 def test_before_the_first_reading_and_without_a_barometer_there_is_no_pressure() -> None:
     out = stream(rate_hz=RATE_HZ)
     (position,) = out.push(rows(standing(1)), LIVE)
