@@ -134,7 +134,7 @@ class PositionStream:
             self.floors_climbed = round(height_m / _STOREY_M)
 
     def _pressure_at(self, t_ns: int) -> float | None:
-        """The last reading; a barometer that has failed says nothing of where one has gone since."""
+        """The last reading, unless it is of long ago: a barometer may fail on the way."""
         after = bisect_right(self._pressures, (t_ns, math.inf))
         if not after:
             return None
