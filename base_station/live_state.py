@@ -154,11 +154,11 @@ class UnitState(Sender):
         return worn.name if worn else self.label or self.unit_id
 
     def worn_from_ns(self, t_ns: int | None) -> int | None:
-        """When whoever wore it then began to; names one wearing of this unit."""
+        """When whoever wore it then began to, 0: nobody did; names one wearing of this unit."""
         if t_ns is None:
             return None
         if t_ns >= self.worn_since_ns:
-            return self.worn_since_ns
+            return self.worn_since_ns if self.person else 0
         worn = self._worn_at(t_ns)
         return worn.from_ns if worn else 0
 
@@ -272,7 +272,7 @@ class Alarm(msgspec.Struct):
     by: str
     latched: bool  # only a person resolves it
     raised_ns: int
-    worn_from_ns: int | None  # by whom it is about; None: it is about the unit
+    about: int | str | None  # as its ``Finding`` says; None: its rule finds one at a time
     last_raised_ns: int  # at first, or anew: it got worse, or happened again
     changed_ns: int
     held: bool = False  # resolved by a person while the condition went on
@@ -307,7 +307,7 @@ class StationState(msgspec.Struct):
     boot_id: int = 0  # station time of the first event: names this run of the pipeline
     seq: int = 0  # of the last output
     units: dict[str, UnitState] = msgspec.field(default_factory=dict)
-    # The newest of each rule and unit; beside it those that are open of who wore the unit before.
+    # The newest of each rule and unit; beside it those that are open of another wearer or fault.
     alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)
     history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
     commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first

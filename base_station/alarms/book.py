@@ -8,12 +8,12 @@ go on.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
+from itertools import count
 
 import msgspec
 
-from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding
+from base_station.alarms.port import IMMEDIATE, SOON, AlarmRule, Clear, Finding, without_numbers
 from base_station.alarms.thresholds import Thresholds, with_thresholds
 from base_station.live_state import FORGOTTEN, Alarm, StationState, UnitState
 from shared.clock import NS_PER_MS, NS_PER_S
@@ -33,7 +33,7 @@ from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
-_NUMBER = re.compile(r"\d+")
+MOST_BESIDE = 10  # open ones of one rule and unit, beside the newest
 
 
 class AlarmBook:
@@ -76,7 +76,9 @@ class AlarmBook:
                 if current is not None:  # what nobody can say has not stayed so
                     current.clear_since_ns = current.lower_since_ns = None
                 continue
-            if isinstance(verdict, Finding) and current is not None and current.is_open:
+            if isinstance(verdict, Finding) and current is not None:
+                if current.is_open and not current.latched and current.about != verdict.about:
+                    yield _resolve(state, current, "handed over")
                 current = _of_the_same(state, key, current, verdict)
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
@@ -96,10 +98,9 @@ class AlarmBook:
         if text:
             state.problems[part] = text
             if standing is None:
-                alarm_id = f"{STATION_RULE}:{part}:{state.t_ns}"
                 finding = Finding(part, SOON, text, seen_ns=state.t_ns)
-                yield self._raise(state, key, alarm_id, STATION_RULE, "", finding)
-            elif _NUMBER.sub("", text) not in _NUMBER.sub("", standing.text):
+                yield self._raise(state, key, STATION_RULE, "", finding)
+            elif without_numbers(text) not in without_numbers(standing.text):
                 yield _raise_anew(state, standing, text)
         else:
             state.problems.pop(part, None)
@@ -147,21 +148,14 @@ class AlarmBook:
         if isinstance(verdict, Clear):
             return None if current is None else _clear(state, rule, current, verdict)
         if current is None or (not current.is_open and _is_new(state, rule, current, verdict)):
-            alarm_id = f"{rule.name}:{unit_id}:{state.t_ns}"
-            return self._raise(state, key, alarm_id, rule.name, unit_id, verdict)
+            return self._raise(state, key, rule.name, unit_id, verdict)
         return _move_level(state, rule, current, verdict) if current.is_open else None
 
     def _raise(
-        self,
-        state: StationState,
-        key: str,
-        alarm_id: str,
-        rule_name: str,
-        unit_id: str,
-        finding: Finding,
+        self, state: StationState, key: str, rule_name: str, unit_id: str, finding: Finding
     ) -> Alarm:
         alarm = Alarm(
-            alarm_id=alarm_id,
+            alarm_id=_new_id(state, f"{rule_name}:{unit_id or finding.level}"),
             rule=rule_name,
             unit_id=unit_id,
             priority=finding.priority,
@@ -171,7 +165,7 @@ class AlarmBook:
             by="",
             latched=finding.latched,
             raised_ns=state.t_ns,
-            worn_from_ns=finding.worn_from_ns,
+            about=finding.about,
             last_raised_ns=state.t_ns,
             changed_ns=state.t_ns,
         )
@@ -179,21 +173,36 @@ class AlarmBook:
         return alarm
 
 
+def _new_id(state: StationState, of: str) -> str:
+    """With the time at which it is raised, or just after where another one has that."""
+    taken = {alarm.alarm_id for alarm in (*state.alarms.values(), *state.history)}
+    return next(name for t_ns in count(state.t_ns) if (name := f"{of}:{t_ns}") not in taken)
+
+
 def _of_the_same(state: StationState, key: str, newest: Alarm, finding: Finding) -> Alarm | None:
-    """The open alarm about the same wearer, None where there is none: who pressed the button
-    while another one wore the unit is not forgotten over it.
+    """The alarm about the same wearer or fault, None where there is none: who pressed the button
+    while another one wore the unit, or what failed before, is not forgotten over it.
     """
-    if finding.worn_from_ns == newest.worn_from_ns:
+    if finding.about == newest.about:
         return newest
-    state.alarms[newest.alarm_id] = state.alarms.pop(key)
-    for beside, alarm in state.alarms.items():
-        same = (alarm.rule, alarm.unit_id, alarm.worn_from_ns) == (
-            newest.rule, newest.unit_id, finding.worn_from_ns
-        )  # fmt: skip
-        if same:
-            state.alarms[key] = state.alarms.pop(beside)
-            return alarm
-    return None
+    of_the_rule = {
+        beside: alarm
+        for beside, alarm in state.alarms.items()
+        if (alarm.rule, alarm.unit_id) == (newest.rule, newest.unit_id) and alarm is not newest
+    }
+    same = next((one for one, alarm in of_the_rule.items() if alarm.about == finding.about), None)
+    if not newest.is_open and same is None:
+        return newest
+    if same is None and len(of_the_rule) >= MOST_BESIDE:  # of a wild unit: told anew in its place
+        newest.about = finding.about
+        return newest
+    if newest.is_open:
+        state.alarms[newest.alarm_id] = newest
+    del state.alarms[key]
+    if same is None:
+        return None
+    state.alarms[key] = state.alarms.pop(same)
+    return state.alarms[key]
 
 
 def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Finding) -> bool:
@@ -239,12 +248,13 @@ def _raise_anew(state: StationState, alarm: Alarm, text: str) -> Alarm:
 
 def _happened_again(alarm: Alarm, finding: Finding) -> bool:
     """Somebody has acknowledged the mayday, the fall, the silence; and now there is another one.
-    Or it is another fault than the one that stands there.
+    Or it says something else: whoever wears the unit now, or a fault beyond those that are kept.
     """
     if finding.onset_ns <= alarm.changed_ns:
         return False
     is_known = alarm.state is AlarmState.ACKNOWLEDGED and finding.priority == IMMEDIATE
-    return is_known or (finding.latched and finding.text != alarm.text)
+    is_other = without_numbers(finding.text) != without_numbers(alarm.text)
+    return is_known or (finding.latched and is_other)
 
 
 def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:

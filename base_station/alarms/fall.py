@@ -29,5 +29,5 @@ class Fall:
             seen_ns=unit.fall_ns,
             onset_ns=unit.fall_ns,
             latched=True,
-            worn_from_ns=unit.worn_from_ns(said_ns),
+            about=unit.worn_from_ns(said_ns),
         )

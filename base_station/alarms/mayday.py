@@ -31,5 +31,5 @@ class Mayday:
             seen_ns=unit.mayday_ns,
             onset_ns=unit.mayday_ns,
             latched=True,
-            worn_from_ns=unit.worn_from_ns(said_ns),
+            about=unit.worn_from_ns(said_ns),
         )

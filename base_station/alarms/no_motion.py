@@ -40,11 +40,16 @@ class NoMotion:
         if motionless_s < self.pre_alert_s:
             return Clear(seen_ns, "motion")
         full = motionless_s >= self.alarm_s
+        onset_ns = seen_ns - round(motionless_s * NS_PER_S)
+        lies_from_ns = onset_ns + round(self.pre_alert_s * NS_PER_S)
+        now, then = unit.name, unit.name_at(lies_from_ns)
+        who = now if now == then else f"{now} or, before, {then}"
         return Finding(
             "alarm" if full else "pre-alert",
             IMMEDIATE if full else SOON,
-            f"{unit.name} has not moved for {motionless_s:.0f} s",
+            f"{who} has not moved for {motionless_s:.0f} s",
             seen_ns=seen_ns,
-            onset_ns=seen_ns - round(motionless_s * NS_PER_S),
+            onset_ns=onset_ns,
             latched=full,
+            about=unit.worn_from_ns(lies_from_ns),
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Protocol
 
 import msgspec
@@ -21,7 +22,7 @@ class Finding(msgspec.Struct, frozen=True):
     seen_ns: int  # station time of the evidence
     onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
     latched: bool = False  # only a person resolves it
-    worn_from_ns: int | None = None  # of what befell a wearer: whose (``UnitState.worn_from_ns``)
+    about: int | str | None = None  # which of several of one unit: whose, or which fault
 
 
 class Clear(msgspec.Struct, frozen=True):
@@ -33,6 +34,12 @@ class Clear(msgspec.Struct, frozen=True):
 
 
 Verdict = Finding | Clear | None  # None: nothing is known either way
+_NUMBER = re.compile(r"\d+")
+
+
+def without_numbers(text: str) -> str:
+    """What is only more or less of the same is no other trouble."""
+    return _NUMBER.sub("", text)
 
 
 class AlarmRule(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base_station.alarms.port import SOON, Finding, Verdict
+from base_station.alarms.port import SOON, Finding, Verdict, without_numbers
 from base_station.live_state import UnitState
 from shared.messages import Message
 
@@ -28,4 +28,5 @@ class UnitFault:
             seen_ns=unit.fault.t_ns,
             onset_ns=unit.fault.t_ns,
             latched=True,
+            about=without_numbers(unit.fault.text),
         )

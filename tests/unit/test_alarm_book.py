@@ -384,21 +384,73 @@ def test_a_sensor_that_fails_is_told_in_the_unit_s_words_until_a_person_has_seen
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED", "RAISED"]
 
 
-def test_another_fault_is_told_while_the_first_one_stands(script: Script) -> None:
-    script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
-    script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
-    for detail in (
-        "the accelerometer is stuck",
-        "the gyroscope is stuck",
-        "the gyroscope is stuck",
-    ):
-        script.wait(1)
+def fault_texts(script: Script) -> set[str]:
+    """Of those that stand."""
+    alarms = script.pipeline.state.alarms.values()
+    return {one.text.partition(": ")[2] for one in alarms if one.is_open}
+
+
+def test_faults_of_one_unit_stand_beside_each_other_and_each_is_told_once(script: Script) -> None:
+    details = ("the accelerometer is stuck", "the gyroscope is stuck", "no sample for 1.3 s")
+    for detail in (*details, *details, "no sample for 2.5 s"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
-    assert [(one.state.name, "gyroscope" in one.text) for one in script.alarms] == [
-        ("RAISED", False),
-        ("ACKNOWLEDGED", False),
-        ("RAISED", True),
-    ]
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(1)
+    told = [one.text for one in script.alarms if one.state is AlarmState.RAISED]
+    assert [text.partition(": ")[2] for text in told] == list(details)
+    assert fault_texts(script) == set(details)
+
+
+def test_a_fault_is_over_by_itself_and_is_told_anew_when_it_comes_again(script: Script) -> None:
+    ids = {}
+    for detail in ("A", "B", "C"):
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+        ids[detail] = script.alarms[-1].alarm_id
+        script.wait(1)
+    for detail, standing in (("C", {"A", "B"}), ("A", {"B"})):
+        script.act(ResolveAlarm(ids[detail], ""))
+        script.wait(3)
+        assert fault_texts(script) == standing
+    before = len(script.alarms)
+    script.event(U, EventKind.SENSOR_FAULT, "B")
+    script.wait(1)
+    assert len(script.alarms) == before, "it stands, though one that came later is over"
+    script.event(U, EventKind.SENSOR_FAULT, "A")
+    script.wait(1)
+    assert script.alarms[-1].alarm_id not in ids.values()
+    assert fault_texts(script) == {"A", "B"}
+
+
+def test_faults_that_come_at_once_have_ids_of_their_own(script: Script) -> None:
+    """What comes out of a journal in one go may have one time."""
+    for detail in ("A", "B", "C"):
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+    assert len({one.alarm_id for one in script.alarms}) == 3
+    assert fault_texts(script) == {"A", "B", "C"}
+
+
+def test_of_faults_without_end_the_last_is_told_and_few_are_kept(script: Script) -> None:
+    details = [letter * 3 for letter in "abcdefghijklmnopqrstuvwxyz"]
+    for detail in details:
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+        script.wait(1)
+        assert script.alarms[-1].text.endswith(detail)
+        assert script.alarms[-1].state is AlarmState.RAISED
+    assert fault_texts(script) == {*details[:10], details[-1]}
+
+
+def test_faults_that_stand_do_so_after_a_restart(script: Script) -> None:
+    for detail in ("A", "B"):
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+        script.wait(1)
+    saved = read_checkpoint(script.pipeline.checkpoint())
+    script.pipeline = StationPipeline(ALARMS, FUSERS[0], saved)
+    before = len(script.alarms)
+    for detail in ("A", "B"):
+        script.event(U, EventKind.SENSOR_FAULT, detail)
+        script.wait(1)
+    assert len(script.alarms) == before
+    assert fault_texts(script) == {"A", "B"}
 
 
 def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:

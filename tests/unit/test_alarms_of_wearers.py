@@ -155,6 +155,99 @@ def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_com
     assert len(script.pipeline.state.alarms) == 2
 
 
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+def test_what_a_unit_said_that_nobody_wore_is_told_once_whoever_is_given_it(
+    script: Script, kind: EventKind
+) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.act(Unassign(U))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, kind)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3)
+    assert len(script.alarms) == 1
+
+
+def lie(script: Script, from_s: int, to_s: int) -> None:
+    for motionless_s in range(from_s, to_s):
+        script.now_s += 1.0
+        script.status(U, motionless_s=float(motionless_s))
+
+
+def test_two_wearers_of_one_unit_who_lie_still_are_two_people_in_need(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 0, 40)
+    ana, bo = "Ana has not moved for 30 s", "Bo has not moved for 30 s"
+    assert open_texts(script) == {ana, bo}
+    of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
+    lie(script, 0, 3)
+    script.act(ResolveAlarm(of_bo, "rests"))
+    lie(script, 0, 3)
+    assert open_texts(script) == {ana}
+
+
+def test_who_is_given_a_unit_that_nobody_wore_and_that_lay_is_heard(script: Script) -> None:
+    lie(script, 0, 40)
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    assert open_texts(script) == {
+        "unit FF-01 has not moved for 30 s",
+        "Ana has not moved for 30 s",
+    }
+
+
+def test_a_unit_that_lies_on_while_another_is_given_it_is_one_alarm(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    count = len(script.alarms)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 40, 100)
+    assert len(script.alarms) == count
+
+
+def test_of_who_lay_still_before_the_unit_was_given_on_both_are_named(script: Script) -> None:
+    """It may have been given on before the station was told."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 25)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 25, 40)
+    assert [one.text for one in script.alarms] == [
+        "Ana has not moved for 20 s",
+        "Bo or, before, Ana has not moved for 30 s",
+    ]
+    assert len({one.alarm_id for one in script.alarms}) == 1
+
+
+def test_who_had_hardly_lain_still_before_is_not_named(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 10)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 10, 40)
+    assert {one.text for one in script.alarms} == {
+        f"Bo has not moved for {lain_s} s" for lain_s in (20, 30)
+    }
+
+
+def test_a_pre_alert_of_who_wears_the_unit_no_more_is_over(script: Script) -> None:
+    """Nobody heard that they moved."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 25)
+    script.wait(60)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(30)
+    lie(script, 20, 22)
+    no_motion = [one for one in script.alarms if one.rule == "no-motion"]
+    assert [(one.text.partition(" ")[0], one.state.name) for one in no_motion] == [
+        ("Ana", "RAISED"),
+        ("Ana", "RESOLVED"),
+        ("Bo", "RAISED"),
+    ]
+
+
 def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
