@@ -44,6 +44,12 @@ def test_what_lasts_for_a_second_is_told_once_and_again_when_it_comes_again(
     assert len(told(health, samples(lasts_s, spoilt=spoilt, from_s=10.5))) == 1
 
 
+@pytest.mark.parametrize(("spoilt", "word"), [("stuck", "repeated"), ("unusable", "no usable")])
+def test_a_sensor_that_never_worked_is_told(spoilt: str, word: str) -> None:
+    (fault,) = told(SensorHealth(), samples(5.0, spoilt=spoilt))
+    assert word in fault
+
+
 @pytest.mark.parametrize(
     ("next_s", "words"),
     [(1.98, []), (2.1, ["no inertial sample for 1.1 s"]), (0.0, []), (-0.1, ["back by 1.1 s"])],
