@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import time
+import urllib.request
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -48,6 +50,27 @@ def texts(station: Station) -> list[str]:
 
 def tell_everyone(station: Station, text: str) -> None:
     station.post("/commands", {"kind": "text", "target": {"everyone": True}, "text": text})
+
+
+def evacuate(station: Station, key: str) -> str:
+    """The id of the command that this request made, now or before."""
+
+    def post() -> str:
+        request = urllib.request.Request(  # our own station's address
+            f"{station.url}/api/v1/commands",
+            method="POST",
+            data=json.dumps({"kind": "evacuate", "target": {"everyone": True}}).encode(),
+            headers={
+                "Content-Type": "application/json",
+                "Origin": station.url,
+                "Cookie": station.logged_in().cookie,
+                "Idempotency-Key": key,
+            },
+        )
+        with urllib.request.urlopen(request, timeout=30.0) as answer:
+            return str(json.load(answer)["command_id"])
+
+    return station.place.call(post)
 
 
 def fill_journal(folder: Path, unit_id: str) -> None:
@@ -107,6 +130,8 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     two.start_unit("bert", two.second)
     two.wait_heard(two.first)
     two.first.post("/incidents", {"name": "Mill Lane"})
+    evacuation = evacuate(two.first, "k1")
+    wait_until("the second knows of it", lambda: two.second.get("/commands"))
     assert two.second.refuses("/incidents", {"name": "Other"})
     wait_until("the backlog comes", lambda: count_old(two.first) > 1000)
     two.first.kill()
@@ -115,12 +140,14 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     assert count_old(two.first) < BACKLOG  # in the middle
     wait_until("the second leads", two.second.leads)
     assert [one["name"] for one in two.second.get("/incidents")] == ["Mill Lane"]
+    assert evacuate(two.second, "k1") == evacuation, "it is the same request"
+    assert evacuate(two.second, "k2") != evacuation
     tell_everyone(two.second, "come out")
     wait_until("the units answer", lambda: two.second.delivered("come out") == {"anna", "bert"})
     with one.ticks():
         two.first.start()
     wait_until("the first follows", two.first.follows)
-    assert texts(two.first) == ["come out"]
+    assert texts(two.first) == ["", "", "come out"]
     complete(two)
     end_and_compare(two, two.first)
     times_ns = [t_ns for t_ns, _, _ in two.first.logged().events]

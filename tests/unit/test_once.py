@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
 import pytest
 
 from base_station import once
+from base_station.clocks.steady import SteadyClock
+from base_station.drive import StationDrive
+from base_station.feed import LiveFeed
 from base_station.forgetting.erasure import id_put_in
 from base_station.live_state import FORGOTTEN, StationState
 from base_station.once import asks_the_same, done_before, forget_words, note_done
+from base_station.standby.places import is_event
+from base_station.standby.shared_log import SharedLog
+from base_station.standby.standby_feed import StandbyFeed
+from base_station.storage.recorder import Recorder
+from shared.clock import SystemClock
 from shared.messages import STATION_ID, CommandKind, Header, OperatorAction
 from shared.messages.station import (
     Action,
@@ -22,7 +31,8 @@ from shared.messages.station import (
     RegisterUnit,
     SendCommand,
 )
-from tests.live_station import LiveStation
+from tests.live_station import LiveStation, Screen, make_pipeline, ports_of
+from tests.waiting import PATIENCE_S, until
 
 EVACUATE = SendCommand("c1", CommandKind.EVACUATE, "", "", True, "", 0.0, 600.0)
 CALL = CheckIn("", "", everyone=True)
@@ -95,6 +105,47 @@ def test_a_station_that_was_started_again_knows_what_was_done(tmp_path: Path) ->
         cellar = OpenIncident("i2", "Cellar")
         assert station.act(cellar, action_id=once_id("ada", "r", b"x")).refused == why
         assert station.act(OpenIncident("i3", ""), action_id=opened).made_id == "i1"
+
+
+@pytest.fixture
+def standby(tmp_path: Path) -> Iterator[tuple[StationDrive, StandbyFeed]]:
+    """It follows, whatever is delivered."""
+    clock = SteadyClock(SystemClock())
+    recorder = Recorder(tmp_path / "standby", clock)
+    feed = StandbyFeed(LiveFeed(clock), clock)
+    ports = ports_of(feed, SharedLog(recorder, clock), Screen(), tmp_path / "saved", clock)
+    drive = StationDrive(make_pipeline(), ports)
+    drive.start()
+    yield drive, feed
+    drive.stop()
+    feed.close()
+    recorder.close()
+
+
+def test_a_standby_that_takes_over_knows_what_was_done_at_the_other_station(
+    tmp_path: Path, standby: tuple[StationDrive, StandbyFeed]
+) -> None:
+    told, refused = once_id("ada", "c", b"x"), once_id("ada", "r", b"x")
+    with LiveStation(tmp_path / "leader") as leader:
+        leader.act(RegisterUnit("FF-01", "one"))
+        leader.act(Assign("FF-01", "p1", "Ada", "A", ""))
+        first = leader.act(EVACUATE, action_id=told)
+        why = leader.act(Assign("FF-02", "p1", "Ada", "A", ""), action_id=refused).refused
+        leader.recorder.flush()
+        followed = [record for record in leader.log.records() if is_event(record[1])]
+    drive, feed = standby
+    feed.deliver(followed)
+    feed.lead()
+    until(lambda: not feed.follows)
+    anew = msgspec.structs.replace(EVACUATE, command_id="c2")
+    again = drive.submit("ada", anew, once_id("ada", "c", b"x")).result(PATIENCE_S)
+    assert again == first
+    worn = Assign("FF-02", "p1", "Ada", "A", "")
+    again = drive.submit("ada", worn, once_id("ada", "r", b"x")).result(PATIENCE_S)
+    assert why is not None
+    assert again.refused == why
+    other = drive.submit("mia", anew, once_id("mia", "c", b"x")).result(PATIENCE_S)
+    assert other.made_id == "c2", "a key counts for who sent it"
 
 
 def test_the_drive_forgets_the_words_of_refusals(tmp_path: Path) -> None:
