@@ -243,7 +243,7 @@ def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None
     assert not foot.posture.collapsed
 
 
-@pytest.mark.parametrize(("length_m", "lying"), [(0.15, True), (0.25, False)])
+@pytest.mark.parametrize(("length_m", "lying"), [(0.08, True), (0.12, False)])
 def test_who_crawls_on_after_a_long_rest_does_not_lie(
     foot: Foot, length_m: float, lying: bool
 ) -> None:
@@ -259,7 +259,7 @@ def test_who_crawls_on_after_a_long_rest_does_not_lie(
 def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> None:
     """Who has gone down may stir, and a tracker may say that a foot did."""
     said = []
-    for length_m in (0.1, 0.1, 0.4, 0.1, 0.4, 0.1):
+    for length_m in (0.05, 0.05, 0.4, 0.05, 0.4, 0.05):
         foot.steps(KNEELING_DEG, length_m)
         said.append((foot.posture.tipped_step, foot.posture.crawling))
     assert said == [(True, False)] * 4 + [(True, True)] * 2
@@ -267,8 +267,8 @@ def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> 
 
 def test_who_goes_down_suddenly_and_stirs_there_has_collapsed(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 1.0, 3.0)
-    foot.steps(KNEELING_DEG, 0.1)
-    foot.steps(KNEELING_DEG, 0.1)
+    foot.steps(KNEELING_DEG, 0.05)
+    foot.steps(KNEELING_DEG, 0.05)
     foot.held(KNEELING_DEG, 1.0)
     assert foot.posture.collapsed
 
