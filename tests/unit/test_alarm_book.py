@@ -197,6 +197,20 @@ def test_who_lies_still_a_second_time_is_to_be_acknowledged_again(script: Script
     assert changes(script, "no-motion")[-1] == ("RAISED", "alarm")
 
 
+def test_a_pre_alert_that_was_acknowledged_becomes_the_alarm_of_a_later_stillness(
+    script: Script,
+) -> None:
+    """Nobody heard of the motion between the two."""
+    still(script, 0, 25)
+    script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.wait(60)
+    script.status(U, motionless_s=40.0)
+    assert changes(script, "no-motion")[-1] == ("RAISED", "alarm")
+    assert script.alarms[-1].priority == 1
+    still(script, 0, 5)
+    assert changes(script, "no-motion")[-1] == ("RAISED", "alarm"), "a person resolves it"
+
+
 def test_a_late_mayday_of_an_earlier_run_still_counts(script: Script) -> None:
     script.event(U, EventKind.STARTED)
     late = script.header(U, captured_s=-5.0)
@@ -437,6 +451,16 @@ def test_of_faults_without_end_the_last_is_told_and_few_are_kept(script: Script)
         assert script.alarms[-1].text.endswith(detail)
         assert script.alarms[-1].state is AlarmState.RAISED
     assert fault_texts(script) == {*details[:10], details[-1]}
+    before = len(script.alarms)
+    script.event(U, EventKind.SENSOR_FAULT, details[3])
+    script.wait(1)
+    assert len(script.alarms) == before, "of those that are kept each stands by itself"
+    script.event(U, EventKind.SENSOR_FAULT, "and yet another")
+    told = script.alarms[-1].text
+    script.act(ResolveAlarm(script.alarms[0].alarm_id, ""))
+    script.wait(3)
+    assert script.alarms[-1].state is AlarmState.RESOLVED, "nothing is told anew for the room"
+    assert told.partition(": ")[2] in fault_texts(script)
 
 
 def test_faults_that_stand_do_so_after_a_restart(script: Script) -> None:
