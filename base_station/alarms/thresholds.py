@@ -61,15 +61,17 @@ def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple
 def _changed_or_as_it_was(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
     try:
         return _changed(rule, thresholds)
-    except ConfigError:
+    except (ConfigError, msgspec.ValidationError):
         return rule
 
 
 def _changed(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
-    """Raises ConfigError where they do not go together."""
+    """Raises ValidationError where one is beyond its limits, ConfigError where they do not go
+    together.
+    """
     changes = {
-        name: thresholds[key]
-        for name in limits_of(rule)
+        name: msgspec.convert(thresholds[key], limits)
+        for name, limits in limits_of(rule).items()
         if (key := f"{rule.name}.{name}") in thresholds
     }
     return cast("AlarmRule", dataclasses.replace(cast("Any", rule), **changes)) if changes else rule

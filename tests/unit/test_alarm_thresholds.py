@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -123,6 +124,9 @@ def test_a_station_that_starts_again_goes_by_them(script: Script) -> None:
         {"no-motion.since_s": 3.0, "wet-feet.alarm_s": 5.0},
         {"no-motion.pre_alert_s": 100.0},
         {"no-motion.name": 3.0},
+        {"no-motion.pre_alert_s": math.nan},
+        {"no-motion.alarm_s": math.inf},
+        {"no-motion.pre_alert_s": 1.0},
     ],
 )
 def test_the_log_of_another_version_leaves_a_rule_as_it_is(thresholds: dict[str, float]) -> None:
