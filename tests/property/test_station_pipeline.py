@@ -87,7 +87,12 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
         st.booleans(),
     ),
     st.builds(lambda u, t: lambda s: s.temperature(u, t), UNITS, st.floats(-50.0, 900.0)),
-    st.builds(lambda u, k: lambda s: s.event(u, k), UNITS, st.sampled_from(list(EventKind))),
+    st.builds(
+        lambda u, k, d: lambda s: s.event(u, k, d),
+        UNITS,
+        st.sampled_from(list(EventKind)),
+        st.sampled_from(["", "stuck", "silent for 2 s", "silent for 3 s"]),
+    ),
     st.builds(lambda d: lambda s: s.wait(d), st.integers(1, 40)),
     st.builds(
         lambda key, payload: lambda s: s.record(key, payload),
@@ -181,12 +186,17 @@ def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut:
 @settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
 def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
-    """Raised first, resolved last and for good; acknowledged and worse in between."""
+    """Raised first, resolved last and for good; acknowledged and worse in between; of one matter
+    one is open.
+    """
     script = Script()
     script.register("FF-01", "FF-02")
     for deed in deeds:
         script.now_s += 0.3
         deed(script)
+        still_open = [one for one in script.pipeline.state.alarms.values() if one.is_open]
+        matters = {(one.rule, one.unit_id, one.level, one.about) for one in still_open}
+        assert len(matters) == len(still_open)
     lives: dict[str, list[AlarmChange]] = {}
     for change in script.alarms:
         lives.setdefault(change.alarm_id, []).append(change)
