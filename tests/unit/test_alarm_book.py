@@ -27,7 +27,7 @@ from shared.messages.station import (
     ResolveAlarm,
     SetStart,
 )
-from shared.quality import Quality
+from shared.quality import Quality, Reason
 from tests.station_script import Script
 
 U = "FF-01"
@@ -508,6 +508,17 @@ def test_what_was_well_for_two_moments_has_not_been_well_in_between(script: Scri
     assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
     walk(12, Quality.GOOD)
     assert changes(script, "tracker-degraded")[1:] == [("RESOLVED", "lost")]
+
+
+def test_doubt_that_comes_again_for_another_reason_is_told_once(script: Script) -> None:
+    for quality, reasons, seconds in (
+        (Quality.LOST, Reason.NO_STANCE, 20),
+        (Quality.GOOD, Reason.NONE, 5),
+        (Quality.LOST, Reason.SAMPLE_GAP, 20),
+    ):
+        doubted = {"quality": quality, "reasons": reasons}
+        script.wait(seconds, lambda d=doubted: script.position(U, 0.0, 0.0, **d))  # type: ignore[misc]
+    assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
 
 
 def test_what_was_less_bad_for_two_moments_has_not_been_so_in_between(script: Script) -> None:
