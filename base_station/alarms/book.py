@@ -33,6 +33,7 @@ from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
+HANDED_OVER = "handed over"  # what is not latched ends with who wore the unit
 MOST_BESIDE = 10  # open ones of one rule and unit, beside the newest
 
 
@@ -78,7 +79,7 @@ class AlarmBook:
                 continue
             if isinstance(verdict, Finding) and current is not None:
                 if current.is_open and not current.latched and current.about != verdict.about:
-                    yield _resolve(state, current, "handed over")
+                    yield _resolve(state, current, HANDED_OVER)
                 current = _of_the_same(state, key, current, verdict)
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
@@ -207,7 +208,8 @@ def _of_the_same(state: StationState, key: str, newest: Alarm, finding: Finding)
 
 def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Finding) -> bool:
     """Whether what is found is another matter than the alarm that was resolved."""
-    if not resolved.held or finding.onset_ns > resolved.changed_ns:
+    is_others = finding.about != resolved.about and not finding.latched
+    if is_others or not resolved.held or finding.onset_ns > resolved.changed_ns:
         return True
     if rule.levels.index(finding.level) > rule.levels.index(resolved.level):
         return True
@@ -268,7 +270,8 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
     has_stayed_s = (clear.seen_ns - alarm.clear_since_ns) / NS_PER_S
     if has_stayed_s < rule.clear_after_s and not clear.at_once:
         return None
-    return _resolve(state, alarm, clear.by)
+    is_others = clear.about is not None and clear.about != alarm.about
+    return _resolve(state, alarm, HANDED_OVER if is_others else clear.by)
 
 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:

@@ -29,7 +29,8 @@ class MissedCheckIn:
         if duty is None:
             return Clear(unit.off_duty_ns, "off duty")
         if t_ns < duty.due_ns:
-            return Clear(duty.checked_in_ns, f"not overdue; last heard by {duty.checked_in_by}")
+            heard_by = f"not overdue; last heard by {duty.checked_in_by}"
+            return Clear(duty.checked_in_ns, heard_by, about=unit.worn_from_ns(t_ns))
         answers_due_ns = [asked_ns + ANSWER_NS for asked_ns in duty.asks_ns]
         onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
         silent_min = (onset_ns - duty.checked_in_ns) / NS_PER_S / 60.0
@@ -40,4 +41,5 @@ class MissedCheckIn:
             f"{unit.name}: PAR overdue, {asked}not heard from for {silent_min:.0f} min",
             seen_ns=duty.checked_in_ns,
             onset_ns=onset_ns,
+            about=unit.worn_from_ns(t_ns),
         )

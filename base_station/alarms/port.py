@@ -31,6 +31,7 @@ class Clear(msgspec.Struct, frozen=True):
     seen_ns: int  # station time of the evidence: time passing without news clears nothing
     by: str  # what it was that resolved the alarm
     at_once: bool = False  # a word that settles it, and does not have to stay so
+    about: int | None = None  # of whose matter it is evidence, where that counts
 
 
 Verdict = Finding | Clear | None  # None: nothing is known either way

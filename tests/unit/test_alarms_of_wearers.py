@@ -7,12 +7,15 @@ import pytest
 
 from base_station.bench.rig import said
 from shared.channels import EVENT, NO_TRACKER, backfilled_key, tracker_id
+from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.messages import AlarmState, EventKind, UnitEvent
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
+    CheckIn,
     ForgetWearers,
+    OpenIncident,
     ResolveAlarm,
     Unassign,
 )
@@ -132,6 +135,29 @@ def test_two_wearers_of_one_unit_are_two_people_in_need(
     script.wait(3)
     assert open_texts(script) == set()
     assert len(script.pipeline.state.alarms) == 1, "of each rule and unit the newest is kept"
+
+
+def test_alarms_of_other_kinds_and_units_of_the_same_time_are_others(script: Script) -> None:
+    units = (U, "FF-02")
+    script.register("FF-02")
+    said_by: dict[str, list[tuple[str, UnitEvent]]] = {}
+    for name in ("Ana", "Bo"):
+        for unit_id in units:
+            script.act(Assign(unit_id, name + unit_id, name + unit_id, "", ""))
+        script.wait(3, lambda: [script.status(unit_id) for unit_id in units])
+        said_by[name] = [
+            (unit_id, UnitEvent(script.header(unit_id), kind))
+            for unit_id in units
+            for kind in (EventKind.MAYDAY, EventKind.FALL)
+        ]
+        script.wait(3)
+    for name in ("Bo", "Ana"):
+        for unit_id, event in said_by[name]:
+            script.record(backfilled_key(unit_id, EVENT.suffix), encode(event))
+    for unit_id, kind in ((U, EventKind.FALL), ("FF-02", EventKind.MAYDAY)):
+        script.event(unit_id, kind)
+    script.wait(3)
+    assert len(open_texts(script)) == 8
 
 
 def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_comes_again(
@@ -281,3 +307,55 @@ def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Scr
     script.wait(3)
     script.record(backfilled_key(agent, EVENT.suffix), encode(fell))
     assert script.alarms[-1].text == "Ana may have fallen"
+
+
+def overdue_pair(script: Script) -> None:
+    """Ana wears FF-01 and Bo FF-02, and nobody has heard of either for too long."""
+    script.register(U, "FF-02")
+    script.act(OpenIncident("i1", "Mill Lane", 30.0, 60.0))
+    for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
+        script.act(Assign(unit_id, name, name, "", ""))
+    script.wait(40)
+
+
+@pytest.mark.parametrize("dealt_with", [False, True])
+def test_who_is_overdue_is_so_with_another_unit_whoever_was_overdue_with_that(
+    script: Script, dealt_with: bool
+) -> None:
+    overdue_pair(script)
+    if dealt_with:
+        (of_bo,) = (one for one in script.alarms if one.unit_id == "FF-02")
+        script.act(ResolveAlarm(of_bo.alarm_id, ""))
+        script.wait(3)
+    script.act(Assign("FF-02", "Ana", "Ana", "", ""))
+    script.wait(3)
+    assert open_texts(script) == {"Ana: PAR overdue, not heard from for 0 min"}
+    script.wait(3)
+    raised = [one for one in script.alarms if one.state is AlarmState.RAISED]
+    assert len(raised) == 3
+    over = [one.alarm_id for one in script.alarms if one.state is AlarmState.RESOLVED]
+    assert len(set(over)) == len(over) == 2
+
+
+def test_a_unit_that_is_given_on_is_no_word_of_who_was_overdue_with_it(script: Script) -> None:
+    overdue_pair(script)
+    script.act(Assign(U, "cem", "Cem", "", ""))
+    (over,) = (one for one in script.alarms if one.state is AlarmState.RESOLVED)
+    assert (over.text.partition(":")[0], over.by) == ("Ana", "handed over")
+    script.act(CheckIn("FF-02", "", everyone=False))
+    assert script.alarms[-1].by == "not overdue; last heard by chief"
+
+
+def test_who_is_to_rest_is_so_with_another_unit(script: Script) -> None:
+    script.register(U, "FF-02")
+    script.act(OpenIncident("i1", "Mill Lane", 3600.0, 30.0))
+    for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
+        script.act(Assign(unit_id, name, name, "", ""))
+        duty = script.pipeline.state.units[unit_id].duty
+        assert duty is not None
+        duty.work_since_ns = script.t_ns
+        duty.rest_due_ns = script.t_ns + 30 * NS_PER_S
+    script.wait(40)
+    script.act(Assign("FF-02", "Ana", "Ana", "", ""))
+    script.wait(3)
+    assert open_texts(script) == {"Ana has worked for 1 min: send to rest"}
