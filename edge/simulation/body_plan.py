@@ -17,6 +17,7 @@ class BodyPlan:
 
     ``north``, ``east`` and ``down`` are where the instep is when the foot is flat;
     ``pivot`` is 0 when the foot rolls about its ball and 1 when about its heel;
+    ``rock`` is what it pitches besides, on the sole below the instep;
     ``tremor`` scales the small motion that a living body never quite stops.
     """
 
@@ -30,6 +31,7 @@ class BodyPlan:
         self.pitch = Curve(0.0)
         self.roll = Curve(0.0)
         self.pivot = Curve(0.0)
+        self.rock = Curve(0.0)
         self.shank_pitch = Curve(0.0)
         self.pelvis_height = Curve(STANDING_PELVIS_M)
         self.trunk_pitch = Curve(0.0)

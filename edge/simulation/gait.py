@@ -20,7 +20,7 @@ class Gait:
     activity: Activity
     stride_m: float  # two steps
     stride_s: float
-    flat: float  # fraction of the stride in which the foot is flat on the ground
+    flat: float  # fraction of the stride in which the foot stands
     toe_off_rad: float  # pitch when the toe leaves the ground, toe down negative
     strike_rad: float  # pitch when the foot touches down, toe up positive
     clearance_m: float  # extra height in mid-swing

@@ -58,11 +58,10 @@ class Tremor:
 
 def _foot(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
     shake = tremor.jets(t_s, plan.tremor.jet(t_s))
-    attitude = Attitude(
-        roll=plan.roll.jet(t_s) + shake[3],
-        pitch=plan.pitch.jet(t_s) + shake[4],
-        yaw=plan.yaw.jet(t_s) + shake[5],
-    )
+    roll, yaw = plan.roll.jet(t_s) + shake[3], plan.yaw.jet(t_s) + shake[5]
+    pitch = plan.pitch.jet(t_s) + shake[4]
+    sole = Attitude(roll, pitch, yaw)
+    attitude = Attitude(roll, pitch + plan.rock.jet(t_s), yaw)
     flat = Place(
         plan.north.jet(t_s) + shake[0],
         plan.east.jet(t_s) + shake[1],
@@ -71,8 +70,9 @@ def _foot(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]
     # The lever from the point that stays on the ground, and where it would be if flat.
     to_heel_m = _HEEL_TO_INSTEP_X_M - _BALL_TO_INSTEP_X_M
     x = plan.pivot.jet(t_s).scaled(to_heel_m).shifted(_BALL_TO_INSTEP_X_M)
-    y, z = constant(t_s, 0.0), constant(t_s, _SOLE_TO_INSTEP_Z_M)
-    return flat + attitude.turned(x, y, z) - attitude.yawed(x, y, z), attitude
+    zero, z = constant(t_s, 0.0), constant(t_s, _SOLE_TO_INSTEP_Z_M)
+    below = sole.turned(x, zero, zero)
+    return flat + below + attitude.turned(zero, zero, z) - attitude.yawed(x, zero, z), attitude
 
 
 def _shank(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:

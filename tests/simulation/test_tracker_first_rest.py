@@ -49,15 +49,17 @@ def walked(seed, bias_radps, legs=LEGS):
 
 @pytest.mark.parametrize("bias_deg", [1.0, -2.0])
 def test_a_start_on_the_move_is_stated(bias_deg):
-    for seed in range(3):
+    stated = []
+    for seed in range(6):
         rows, way_m, _ = walked(seed, np.radians(bias_deg))
         walking = slice(0, len(rows) // 2, 20)
         nees = horizontal_nees(
             rows.position_n_m[walking], way_m[walking], rows.position_cov_m2[walking]
         )
         flagged = rows.quality[walking] != Quality.GOOD
-        assert np.mean(flagged | (nees <= CHI2_95_2DOF)) > 0.8
+        stated.append(np.mean(flagged | (nees <= CHI2_95_2DOF)))
         assert np.degrees(rows.heading_std_rad[len(rows) // 2]) > 12.0
+    assert np.mean(stated) > 0.85
 
 
 def test_the_first_rest_shows_the_bias_and_turns_the_heading_back():

@@ -24,7 +24,7 @@ NEES_BOUNDS = (12.401 / 12, 39.364 / 12)
 RATIO_BOUNDS = (0.606, 1.394)
 
 
-@pytest.mark.parametrize("name", ["straight", "square of 60 m", "J-shape"])
+@pytest.mark.parametrize("name", ["straight", "square of 60 m", "J-shape", "stairs"])
 def test_a_calibrated_sensor_is_as_good_as_is_stated(name):
     endings = [ending(name, seed, calibrated=True) for seed in SEEDS]
     assert NEES_BOUNDS[0] < np.mean([one.nees for one in endings]) < NEES_BOUNDS[1]

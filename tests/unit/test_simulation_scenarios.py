@@ -13,6 +13,7 @@ import pytest
 from edge.samples import AmbientSample, BatterySample, Floats, GpsSample, OtherSample
 from edge.simulation import SCENARIOS, Scenario, Simulation, open_simulation
 from edge.simulation.building import load_building
+from edge.simulation.gait import WALK
 from edge.simulation.kinematics import Motion
 from edge.simulation.legs import (
     Kneel,
@@ -208,6 +209,17 @@ def test_a_foot_stands_flat_between_strides_and_never_below_the_floor() -> None:
     assert motion.position_n_m[:, 2].max() < -0.07
 
 
+def test_no_foot_stands_stiller_than_recorded_ones() -> None:
+    """In the middle of recorded stances: 1.7 cm/s along the floor, 0.8 up or down, 5.6 deg/s."""
+    simulation = Simulation(Scenario("test", "", (Walk(((100.0, 0.0),)),)))
+    middle_s = np.array(simulation.plan.footfall_s[:-1]) + 0.5 * WALK.flat * WALK.stride_s
+    motion = simulation.truth(middle_s)
+    along_mps = np.hypot(motion.velocity_n_mps[:, 0], motion.velocity_n_mps[:, 1])
+    assert 0.01 < np.median(along_mps) < 0.025
+    assert 0.005 < np.median(np.abs(motion.velocity_n_mps[:, 2])) < 0.012
+    assert 4.0 < np.degrees(np.median(np.linalg.norm(motion.rate_b_radps, axis=1))) < 8.0
+
+
 def test_turning_on_the_spot_faces_the_heading_and_stays() -> None:
     simulation = Simulation(Scenario("test", "", (Stand(1.0), Turn(200.0), Stand(1.0))))
     ends = simulation.truth(np.array([0.0, simulation.duration_s]))
@@ -233,7 +245,8 @@ def test_winding_stairs_end_above_or_below_their_start_turned(rise_m: float) -> 
     _, ends = ends_of(Stand(1.0), Spiral((1.0, 0.0), 450.0, rise_m, 17), Stand(1.0))
     moved_m = ends.position_n_m[1] - ends.position_n_m[0]
     assert moved_m == pytest.approx([1.0, -1.0, -rise_m], abs=0.25)
-    assert turned_deg(ends) == pytest.approx(0.0, abs=12.0)
+    # The last foot looks along the chord of the last tread, which is a dozen degrees short.
+    assert turned_deg(ends) == pytest.approx(-12.0, abs=8.0)
 
 
 def test_two_risers_at_once_take_half_the_strides() -> None:
@@ -255,7 +268,8 @@ def test_a_wearer_may_face_elsewhere_than_he_goes(pace: Pace, facing_deg: float)
 def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
     simulation = Simulation(Scenario("test", "", (Walk(((9.0, 0.0),), pace),)))
     height_m = -simulation.truth(np.arange(0.0, simulation.duration_s, 0.005)).position_n_m[:, 2]
-    assert height_m.min() > 0.06
+    # A heel on a slope in the rubble has the instep low.
+    assert height_m.min() > (0.02 if pace == "rubble" else 0.055)
     assert height_m.max() > 0.1
 
 
@@ -281,7 +295,7 @@ def test_a_foothold_in_rubble_is_high_and_slopes_and_a_pulled_shoe_slips() -> No
     assert slope_deg.max() > 5.0
     hose = Simulation(Scenario("test", "", (Stand(1.0), Walk(((9.0, 0.0),), "hose"))))
     begun_s = np.array(hose.plan.footfall_s[:-1])
-    held_m = [hose.truth(begun_s + of_stance_s).position_n_m[:, 0] for of_stance_s in (0.35, 0.62)]
+    held_m = [hose.plan.north.jet(begun_s + of_stance_s).value for of_stance_s in (0.35, 0.62)]
     assert np.mean(held_m[1] - held_m[0]) < -0.003
 
 
