@@ -33,7 +33,7 @@ WALKS: tuple[tuple[str, str, float], ...] = (  # as it is called, the scenario, 
     ("10 min of search", SEARCH, 600.0),
     ("20 min of search", SEARCH, 1200.0),
 )
-SEEDS = 12
+SEEDS = 24
 _BLOCK_S = 2.0
 _EVERY_S = 0.5
 

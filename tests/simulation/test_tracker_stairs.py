@@ -74,7 +74,7 @@ def test_five_floors_keep_their_height(riser_m):
 def test_what_stairs_may_add_up_is_stated():
     _, once, _ = tracked(flights(1.53, 1), seed=2)
     _, thrice, _ = tracked(flights(1.53, 3), seed=2)
-    assert thrice[-1] > 1.9 * once[-1]
+    assert thrice[-1] > 1.75 * once[-1]  # more than by chance, which is the root of three
 
 
 @pytest.mark.parametrize(
