@@ -122,6 +122,16 @@ def test_what_makes_no_sense_is_refused_with_the_reason(action, reason):
     assert not script.pipeline.state.commands
 
 
+def test_a_command_does_not_take_the_place_of_another_one():
+    """A unit does a command of one id once."""
+    script = to_one()
+    script.reply("FF-01", "c1", RECEIVED)
+    (output,) = script.act(order("c1", CommandKind.EVACUATE, everyone=True))
+    assert isinstance(output, Refused)
+    assert "an id of its own" in output.reason
+    assert states(script) == {"FF-01": "received"}
+
+
 def test_it_is_queued_sent_received_and_acknowledged():
     script = to_one()
     seen = [states(script)["FF-01"]]
@@ -279,6 +289,8 @@ def test_a_reply_out_of_the_journal_counts():
     script.status("FF-01")
     script.record(backfilled_key("FF-01", REPLY.suffix), encode(reply))
     assert states(script) == {"FF-01": "acknowledged"}
+    delivery = script.pipeline.state.commands["c1"].deliveries["FF-01"]
+    assert delivery.received_ns == script.t_ns, "who answers has it"
 
 
 @pytest.mark.parametrize(("said", "by"), [("before", "Person 1"), ("after", "Person 4")])
