@@ -168,7 +168,8 @@ class StationDrive:
                     self._hear(t_ns, key, payload)
             except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
                 self._watch.failed("drive", error)
-        self._take_actions()
+        if not follows:  # of half a log nobody can tell what an action does
+            self._take_actions()
         now_ns = clock.monotonic_ns()
         if now_ns >= due.tick_ns:
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)

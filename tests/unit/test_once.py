@@ -148,6 +148,25 @@ def test_a_standby_that_takes_over_knows_what_was_done_at_the_other_station(
     assert other.made_id == "c2", "a key counts for who sent it"
 
 
+def test_what_is_asked_while_the_other_station_s_log_is_followed_waits_for_its_end(
+    tmp_path: Path, standby: tuple[StationDrive, StandbyFeed]
+) -> None:
+    with LiveStation(tmp_path / "leader") as leader:
+        leader.act(RegisterUnit("FF-01", "one"))
+        leader.act(Assign("FF-01", "p1", "Ada", "A", ""))
+        leader.recorder.flush()
+        followed = [record for record in leader.log.records() if is_event(record[1])]
+    drive, feed = standby
+    asked = drive.submit("ada", EVACUATE)
+    looked: list[object] = []
+    drive.request_snapshot(lambda picture, _: looked.append(picture))
+    until(lambda: bool(looked))
+    feed.deliver(followed)
+    feed.lead()
+    done = asked.result(PATIENCE_S)
+    assert done.refused is None, "half of the log does not know the unit"
+
+
 def test_the_drive_forgets_the_words_of_refusals(tmp_path: Path) -> None:
     key = once_id("ada", "k", b"x")
     with LiveStation(tmp_path) as station:
