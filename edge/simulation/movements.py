@@ -127,8 +127,9 @@ def _stand_on_it(
         plan.pitch.move(begin_s + _FLATTENS_S, rise_s, gait.sink_rad)
     if gait.slip_m:
         slip_m = abs(float(rng.normal(0.0, gait.slip_m)))
-        plan.north.move(rise_s, off_s, plan.north.last - slip_m * cos(plan.yaw.last))
-        plan.east.move(rise_s, off_s, plan.east.last - slip_m * sin(plan.yaw.last))
+        slips_s = begin_s + _LEAVES * (off_s - begin_s)
+        plan.north.move(slips_s, off_s, plan.north.last - slip_m * cos(plan.yaw.last))
+        plan.east.move(slips_s, off_s, plan.east.last - slip_m * sin(plan.yaw.last))
 
 
 def _give_way(
