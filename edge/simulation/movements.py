@@ -25,6 +25,7 @@ _LEAVES = 0.75  # of the time on the ground: then it begins to roll over the bal
 _ROLLS_RADPS = radians(6.0)
 _CREEPS_MPS = 0.0106  # each way, of Student's t: some strides creep far more than most
 _CREEPS_FREEDOM = 3.0
+_CREEPS_MOST_MPS = 0.1  # none of 511 recorded stances rose or sank faster
 _GIVES_WAY_S = 0.15  # before it is down altogether
 _CURVE_PEAK = 140.0 / 64.0  # of a curve's speed by its mean
 _CRAWL_PITCH_RAD = radians(-72)
@@ -145,7 +146,8 @@ def _give_way(
         start_s = max(curve.end_s, begins_s)
         curve.move(start_s, lifted_s, curve.last + per_s * (lifted_s - start_s) / _CURVE_PEAK)
 
-    north_mps, east_mps, down_mps = (_CREEPS_MPS * rng.standard_t(_CREEPS_FREEDOM, 3)).tolist()
+    creeps_mps = _CREEPS_MPS * rng.standard_t(_CREEPS_FREEDOM, 3)
+    north_mps, east_mps, down_mps = creeps_mps.clip(-_CREEPS_MOST_MPS, _CREEPS_MOST_MPS).tolist()
     rolls_radps = copysign(rng.normal(_ROLLS_RADPS, 0.5 * _ROLLS_RADPS), gait.toe_off_rad)
     creep(plan.lift, down_mps)
     if not gait.sink_rad:

@@ -220,6 +220,15 @@ def test_no_foot_stands_stiller_than_recorded_ones() -> None:
     assert 4.0 < np.degrees(np.median(np.linalg.norm(motion.rate_b_radps, axis=1))) < 8.0
 
 
+def test_no_foot_on_the_ground_goes_faster_than_recorded_ones() -> None:
+    """Of 511 stances of motion capture none rose or sank by more than 9.3 cm/s."""
+    simulation = Simulation(Scenario("test", "", (Walk(((3000.0, 0.0),)),)))
+    middle_s = np.array(simulation.plan.footfall_s[:-1]) + 0.5 * WALK.flat * WALK.stride_s
+    up_or_down_mps = np.abs(simulation.truth(middle_s).velocity_n_mps[:, 2])
+    assert len(up_or_down_mps) > 2000
+    assert 0.05 < up_or_down_mps.max() < 0.1
+
+
 def test_turning_on_the_spot_faces_the_heading_and_stays() -> None:
     simulation = Simulation(Scenario("test", "", (Stand(1.0), Turn(200.0), Stand(1.0))))
     ends = simulation.truth(np.array([0.0, simulation.duration_s]))
