@@ -164,6 +164,8 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
         at = {"x": across + to_east_m * scale, "y": down - to_north_m * scale}
         ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
     form.get_by_role("button", name="Set place").click()
+    page.wait_for_timeout(600)  # two presses in haste would be one
+    form.get_by_role("button", name="Yes, replace place").click()
     expect(form).to_have_count(0)
     anchor = answer_to(page, "site/anchor")
     assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.05)

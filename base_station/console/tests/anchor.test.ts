@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { anchorThrough, doubtOf, type Known } from "../src/plan/anchor";
+import { anchorThrough, changeOf, doubtOf, type Known } from "../src/plan/anchor";
 
 /** A degree of latitude and of longitude at 57.7° north, from tables of WGS-84, metres. */
 const LAT_M = 111_372;
@@ -37,6 +37,29 @@ describe("an anchor through two points", () => {
     expect(back.lat_deg).toBeCloseTo(there.lat_deg, 9);
     expect(back.lon_deg).toBeCloseTo(there.lon_deg, 9);
     expect(back.plan_rotation_rad).toBeCloseTo(there.plan_rotation_rad, 9);
+  });
+});
+
+describe("another place for a plan that has one", () => {
+  const shown = { lat_deg: 57.7, lon_deg: 11.97, height_m: 12, plan_rotation_rad: 0 };
+
+  it("says what is there, and how far people move by it", () => {
+    const said = changeOf(shown, { ...shown, lat_deg: 57.7 + 30 / LAT_M, lon_deg: 11.97 - 40 / LON_M });
+    expect(said).toContain("57.70000°, 11.97000°, its north towards 0.0°");
+    expect(said).toContain("whoever satellites have placed moves by 50.0 m.");
+    expect(changeOf(shown, { ...shown, lat_deg: 50 })).toMatch(/moves by 85\d km\./);
+  });
+
+  it("says by how much people are turned, the short way about", () => {
+    const west = { ...shown, plan_rotation_rad: -0.02 };
+    const east = { ...shown, plan_rotation_rad: 2 * Math.PI + 0.02 };
+    expect(changeOf(west, east)).toContain("satellites have placed is turned by 2.3°.");
+    expect(changeOf(west, east)).toContain("towards 358.9°");
+  });
+
+  it("says that of a height as well, and that nothing changes", () => {
+    expect(changeOf(shown, { ...shown, height_m: 15 })).toMatch(/new one, its height changes by 3.0 m\.$/);
+    expect(changeOf(shown, shown)).toBe("");
   });
 });
 

@@ -72,6 +72,39 @@ export function doubtOf(fit: Fit): string {
   return off > MOST_OFF ? `${said}: one of them is another point, or the plan's scale is wrong.` : "";
 }
 
+/** What another place for the plan changes, for who is to say whether that is meant; empty: nothing. */
+export function changeOf(shown: AnchorView, next: AnchorView): string {
+  const moved = length(siteOf(next, shown.lat_deg, shown.lon_deg));
+  const turn = next.plan_rotation_rad - shown.plan_rotation_rad;
+  const turned = Math.abs(Math.atan2(Math.sin(turn), Math.cos(turn)) / RAD);
+  const raised = Math.abs(next.height_m - shown.height_m);
+  const changes = [
+    moved < LEAST_M ? "" : `moves by ${distance(moved)}`,
+    turned < LEAST_DEG ? "" : `is turned by ${turned.toFixed(1)}°`,
+  ].filter((change) => change !== "");
+  const people = `on the plan, whoever satellites have placed ${changes.join(" and ")}`;
+  const all = [
+    changes.length === 0 ? "" : people,
+    raised < LEAST_M ? "" : `its height changes by ${distance(raised)}`,
+  ].filter((change) => change !== "");
+  if (all.length === 0) return "";
+  return `The plan has a place: ${placeWords(shown)}. With the new one, ${all.join(", and ")}.`;
+}
+
+/** "57.70000°, 11.97000°, its north towards 12.0°". */
+export function placeWords({ lat_deg, lon_deg, plan_rotation_rad }: AnchorView): string {
+  const heading = (plan_rotation_rad / RAD + 360) % 360;
+  return `${lat_deg.toFixed(5)}°, ${lon_deg.toFixed(5)}°, its north towards ${heading.toFixed(1)}°`;
+}
+
+const LEAST_M = 0.05;
+const LEAST_DEG = 0.05;
+
+function distance(metres: number): string {
+  if (metres >= 10_000) return `${Math.round(metres / 1000)} km`;
+  return metres < 100 ? `${metres.toFixed(1)} m` : `${Math.round(metres)} m`;
+}
+
 function metresPerDegree(latDeg: number): { lat: number; lon: number } {
   const sin = Math.sin(latDeg * RAD);
   const bulge = 1 - ECCENTRICITY_2 * sin * sin;

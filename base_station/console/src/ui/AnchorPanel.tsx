@@ -1,13 +1,15 @@
-import { useSignal } from "@preact/signals";
+import { useSignal, useSignalEffect } from "@preact/signals";
 import { attempt } from "../sessions";
 import * as api from "../api";
 import type { LatLon } from "../api";
 import type { Picture } from "../live/picture";
-import { anchorThrough, doubtOf, type Fit, type Known } from "../plan/anchor";
+import { anchorThrough, changeOf, doubtOf, type Fit, type Known } from "../plan/anchor";
 import { baseMap } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
+import type { AnchorView } from "../wire";
 import { Ends } from "./Ends";
 import { MapPicker } from "./MapPicker";
+import { ReplacePlace } from "./ReplacePlace";
 import { fields } from "./useLoaded";
 
 /** Where the plan lies on the Earth: two points of it, clicked, with latitude and longitude. */
@@ -22,14 +24,27 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
     fit.value = anchorThrough(known(given, "one", one), known(given, "other", other), height);
   };
   const doubt = fit.value === null ? "" : doubtOf(fit.value);
-  const send = (event: SubmitEvent) => {
+  const asked = useSignal<AnchorView | null>(null);
+  const shown = picture.anchor.value;
+  const isNone = () => (asked.value = null);
+  useSignalEffect(() => {
+    void [clicked.value, picked.value];
+    isNone(); // it was asked of other points
+  });
+  const send = (next: AnchorView) =>
+    void attempt(api.setAnchor(next).then(() => true)).then((done) => done && putDown());
+  const submit = (event: SubmitEvent) => {
     take(fields(event));
     const found = fit.value;
     if (found === null || doubtOf(found) !== "") return;
-    void attempt(api.setAnchor(found.anchor).then(() => true)).then((done) => done && putDown());
+    if (shown === null || changeOf(shown, found.anchor) === "") send(found.anchor);
+    else asked.value = found.anchor;
   };
+  const question = asked.value !== null && shown !== null && (
+    <ReplacePlace shown={shown} next={asked} onYes={send} />
+  );
   return (
-    <form class="tool-panel" aria-label="Place on the Earth" onSubmit={send}>
+    <form class="tool-panel" aria-label="Place on the Earth" onInput={isNone} onSubmit={submit}>
       <h3>Place on the Earth</h3>
       <Point name="one" label="First point" place={one} at={picked.value[0]} />
       <Point name="other" label="Second point" place={other} at={picked.value[1]} />
@@ -51,7 +66,10 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
           ? "A map or a GPS receiver tells where they are."
           : "Click the same two, in the same order, on the plan and on the map."}
       </p>
-      <Ends label={one !== undefined && other !== undefined ? "Set place" : null} />
+      <Ends
+        label={one !== undefined && other !== undefined ? "Set place" : null}
+        question={question || null}
+      />
     </form>
   );
 }

@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
-import { HASTE_MS } from "./haste";
+import { useEffect } from "preact/hooks";
+import { Confirm, useFocusBack } from "./Confirm";
 
 interface Props {
   label: string;
@@ -12,44 +12,28 @@ interface Props {
 
 /** A button for what cannot be taken back: the first press only asks. */
 export function ConfirmButton({ label, about = "", question, focused = false, onConfirm }: Props) {
-  const state = useSignal<"at rest" | "asked" | "answered">("at rest");
-  const askedMs = useRef(0);
-  const next = useRef<HTMLButtonElement>(null);
+  const asked = useSignal(false);
+  const button = useFocusBack(asked.value);
   useEffect(() => {
-    const lost = focused && document.activeElement === document.body;
-    if (lost || state.value !== "at rest") next.current?.focus();
-  }, [state.value]);
-  if (state.value !== "asked") {
-    const spoken = about === "" ? {} : { "aria-label": `${label}: ${about}` };
+    if (focused && document.activeElement === document.body) button.current?.focus();
+  }, []);
+  if (asked.value) {
     return (
-      <button
-        type="button"
-        class="asks"
-        ref={next}
-        {...spoken}
-        onClick={() => {
-          askedMs.current = performance.now();
-          state.value = "asked";
+      <Confirm
+        question={question}
+        yes={`Yes, ${label.toLowerCase()}`}
+        onYes={(press) => {
+          asked.value = false;
+          onConfirm(press);
         }}
-      >
-        {label}
-      </button>
+        onNo={() => (asked.value = false)}
+      />
     );
   }
-  const confirm = (press: MouseEvent) => {
-    if (performance.now() - askedMs.current <= HASTE_MS) return;
-    state.value = "answered";
-    onConfirm(press);
-  };
+  const spoken = about === "" ? {} : { "aria-label": `${label}: ${about}` };
   return (
-    <span class="confirm" role="group" aria-label={question}>
-      {question}
-      <button type="button" class="danger" onClick={confirm}>
-        Yes, {label.toLowerCase()}
-      </button>
-      <button type="button" ref={next} onClick={() => (state.value = "answered")}>
-        No
-      </button>
-    </span>
+    <button type="button" class="asks" ref={button} {...spoken} onClick={() => (asked.value = true)}>
+      {label}
+    </button>
   );
 }

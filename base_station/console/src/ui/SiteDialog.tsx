@@ -1,11 +1,15 @@
+import { useSignal } from "@preact/signals";
 import { setAnchor } from "../api";
 import { attempt, live } from "../sessions";
 import { dialog } from "../view";
+import { changeOf, placeWords } from "../plan/anchor";
 import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { BaseMapForm } from "./BaseMapForm";
+import { useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
 import { PlanForm } from "./PlanForm";
+import { ReplacePlace } from "./ReplacePlace";
 import { fields } from "./useLoaded";
 
 const DEGREES = 180 / Math.PI;
@@ -36,22 +40,27 @@ export function SiteDialog() {
   );
 }
 
+/** As with the plan, one that is there is not replaced without asking. */
 function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
+  const asked = useSignal<AnchorView | null>(null);
+  const button = useFocusBack(asked.value !== null);
+  const send = (next: AnchorView) =>
+    void attempt(setAnchor(next).then(() => (dialog.value = null)));
   return (
     <form
       class="row"
+      onInput={() => (asked.value = null)}
       onSubmit={(event) => {
-        const given = fields(event);
-        const number = (name: string) => Number(given[name]);
-        const anchor = {
-          lat_deg: number("lat"),
-          lon_deg: number("lon"),
-          height_m: number("height"),
-          plan_rotation_rad: number("turn") / DEGREES,
-        };
-        void attempt(setAnchor(anchor));
+        const next = anchorOf(fields(event));
+        if (anchor === null || changeOf(anchor, next) === "") send(next);
+        else asked.value = next;
       }}
     >
+      <p>
+        {anchor === null
+          ? "Nobody has said where the plan lies."
+          : `The plan’s origin lies at ${placeWords(anchor)}.`}
+      </p>
       <NumberField name="lat" label="Latitude of the plan’s origin, °" value={anchor?.lat_deg} />
       <NumberField name="lon" label="Longitude, °" value={anchor?.lon_deg} />
       <NumberField name="height" label="Height, m" value={anchor?.height_m ?? 0} />
@@ -60,9 +69,25 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
         label="True heading of the plan’s north, °"
         value={(anchor?.plan_rotation_rad ?? 0) * DEGREES}
       />
-      <button class="primary">Set place</button>
+      {asked.value === null || anchor === null ? (
+        <button class="primary" ref={button}>
+          Set place
+        </button>
+      ) : (
+        <ReplacePlace shown={anchor} next={asked} onYes={send} />
+      )}
     </form>
   );
+}
+
+function anchorOf(given: Record<string, string>): AnchorView {
+  const number = (name: string) => Number(given[name]);
+  return {
+    lat_deg: number("lat"),
+    lon_deg: number("lon"),
+    height_m: number("height"),
+    plan_rotation_rad: number("turn") / DEGREES,
+  };
 }
 
 interface NumberFieldProps {

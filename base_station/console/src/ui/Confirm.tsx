@@ -1,0 +1,43 @@
+import type { RefObject } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { HASTE_MS } from "./haste";
+
+interface Props {
+  question: string;
+  yes: string;
+  onYes: (press: MouseEvent) => void;
+  onNo: () => void;
+}
+
+/** Whether somebody means what they pressed, in whose place this comes; the second of two presses in
+ * haste is no answer. */
+export function Confirm({ question, yes, onYes, onNo }: Props) {
+  const askedMs = useRef(performance.now());
+  const no = useRef<HTMLButtonElement>(null);
+  useEffect(() => no.current?.focus(), []);
+  const confirm = (press: MouseEvent) => {
+    if (performance.now() - askedMs.current > HASTE_MS) onYes(press);
+  };
+  return (
+    <span class="confirm" role="group" aria-label={question}>
+      {question}
+      <button type="button" class="danger" onClick={confirm}>
+        {yes}
+      </button>
+      <button type="button" ref={no} onClick={onNo}>
+        No
+      </button>
+    </span>
+  );
+}
+
+/** For the button that asks: it has the focus again once that was answered. */
+export function useFocusBack(isAsked: boolean): RefObject<HTMLButtonElement | null> {
+  const button = useRef<HTMLButtonElement>(null);
+  const wasAsked = useRef(isAsked);
+  useEffect(() => {
+    if (wasAsked.current && !isAsked) button.current?.focus();
+    wasAsked.current = isAsked;
+  }, [isAsked]);
+  return button;
+}
