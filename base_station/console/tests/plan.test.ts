@@ -3,6 +3,7 @@ import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
 import { colourOf, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
+import { nameAt, UNDER, type Pixel } from "../src/plan/names";
 import { pinLabelStyle } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
 import type { PinView, Plan, TrailPoint } from "../src/wire";
@@ -107,6 +108,43 @@ describe("floorRemark", () => {
   });
 });
 
+describe("where the name of somebody stands on the plan", () => {
+  const screen: Pixel = [500, 400];
+  /** Left, right and lower edge of a name of 120 pixels. */
+  const edges = (mark: Pixel) => {
+    const [right, down] = nameAt(mark, 120, screen);
+    return [mark[0] + right - 60, mark[0] + right + 60, mark[1] + down + 8];
+  };
+
+  it("is under the mark where there is room", () => {
+    expect(nameAt([250, 200], 120, screen)).toEqual(UNDER);
+  });
+
+  it.each<Pixel>([
+    [3, 200],
+    [497, 200],
+    [250, 398],
+    [3, 398],
+    [497, 0],
+  ])("is on the screen where the mark is at %i, %i", (x, y) => {
+    const [left, right, lower] = edges([x, y]) as [number, number, number];
+    expect(left).toBeGreaterThanOrEqual(0);
+    expect(right).toBeLessThanOrEqual(500);
+    expect(lower).toBeLessThanOrEqual(400);
+  });
+
+  it("begins on the screen where it is longer than that", () => {
+    const [right] = nameAt([250, 200], 700, screen);
+    expect(250 + right - 350).toBeGreaterThanOrEqual(0);
+  });
+
+  it("stays with a mark that is beside the screen", () => {
+    for (const mark of [[-1, 200], [501, 200], [250, -1], [250, 401]] as const) {
+      expect(nameAt(mark, 120, screen)).toEqual(UNDER);
+    }
+  });
+});
+
 describe("the name of somebody on the plan", () => {
   const mark = {
     name: "Ana",
@@ -120,7 +158,7 @@ describe("the name of somebody on the plan", () => {
     headingKnown: false,
   } as const;
   const colours = { text: "#000000", halo: "#ffffff" } as Colours;
-  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours).getText();
+  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours, UNDER).getText();
 
   it("shows danger also where the place is old", () => {
     const looks = { quiet: "grey", immediate: "red", soon: "amber" } as Colours;

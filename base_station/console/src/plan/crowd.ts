@@ -5,6 +5,7 @@ import MultiLineString from "ol/geom/MultiLineString";
 import Point from "ol/geom/Point";
 import Polygon from "ol/geom/Polygon";
 import VectorLayer from "ol/layer/Vector";
+import { measureTextWidth } from "ol/render/canvas";
 import VectorSource from "ol/source/Vector";
 import { displayName, urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../view";
@@ -13,7 +14,16 @@ import { initials } from "../words";
 import type { Colours } from "./colours";
 import { isOld, outline, regionAt } from "./ellipse";
 import { floorRemark } from "./floors";
-import { labelStyle, markStyle, regionStyle, trailStyle, type Mark } from "./marks";
+import {
+  labelFont,
+  labelOf,
+  labelStyle,
+  markStyle,
+  regionStyle,
+  trailStyle,
+  type Mark,
+} from "./marks";
+import { nameAt, UNDER, type Pixel } from "./names";
 import { siteCoordinate } from "./site";
 import { trailLines } from "./trail";
 
@@ -26,6 +36,13 @@ export interface Scene {
   floor: FloorChoice;
   chosen: string | null;
   colours: Colours;
+  screen: Screen;
+}
+
+/** What part of the plan is on the screen. */
+export interface Screen {
+  size: Pixel;
+  pixelOf(coordinate: number[]): Pixel | null; // null: nothing is drawn yet
 }
 
 const HEADING_KNOWN_RAD = 0.8;
@@ -90,7 +107,7 @@ export class Crowd {
     trail.setStyle(trailStyle(looks, scene.colours));
     region.setStyle(regionStyle(looks, ellipse.major_m, scene.colours));
     mark.setStyle(markStyle(looks, scene.colours));
-    label.setStyle(labelStyle(looks, scene.colours));
+    label.setStyle(labelStyle(looks, scene.colours, placeOfName(looks, centre, scene.screen)));
   }
 
   private figure(unitId: string): Figure {
@@ -120,6 +137,12 @@ export class Crowd {
     this.marks.removeFeature(figure.mark);
     this.labels.removeFeature(figure.label);
   }
+}
+
+function placeOfName(looks: Mark, centre: number[], { size, pixelOf }: Screen): Pixel {
+  const mark = pixelOf(centre);
+  if (mark === null) return UNDER;
+  return nameAt(mark, measureTextWidth(labelFont(looks), labelOf(looks)), size);
 }
 
 /** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who

@@ -27,7 +27,9 @@ const MOVE_MS = 250;
 const AROUND_M = 2;
 /** Nobody alone fills the screen with the few metres about them. */
 const FITTED_M_PER_PX = 0.02;
-const EDGE_PX = 25; // nearer to it a mark or its name is cut
+/** Nearer to an edge a mark is cut, or lies under the zoom buttons; a fit leaves a little more. */
+const EDGE_PX = 25;
+const RIGHT_EDGE_PX = RIGHT_MARGIN_PX - 2;
 
 /** What a person does on the plan. */
 export interface PlanEvents {
@@ -59,6 +61,7 @@ export class PlanMap {
   /** Whether the person chose what to look at; until then everybody is kept in view. */
   private chosen = false;
   private fitted = false;
+  private people: Omit<Scene, "colours" | "screen"> | null = null; // as last shown
 
   constructor(
     target: HTMLElement,
@@ -82,6 +85,7 @@ export class PlanMap {
     for (const kind of ["wheel", "pointerdown"]) {
       target.addEventListener(kind, () => (this.chosen = true), { passive: true });
     }
+    this.map.on("moveend", () => this.drawPeople()); // names keep to what is on the screen
     this.map.on("singleclick", (event) => {
       if (this.events.click(placeOf(event.coordinate))) return;
       const standing = this.standingAt(event.pixel);
@@ -142,12 +146,21 @@ export class PlanMap {
     this.fitted = false;
   }
 
-  showPeople(scene: Omit<Scene, "colours">): void {
-    this.building.choose(scene.floor, this.colours);
-    this.crowd.show({ ...scene, colours: this.colours });
+  showPeople(people: Omit<Scene, "colours" | "screen">): void {
+    this.building.choose(people.floor, this.colours);
+    this.people = people;
+    this.drawPeople();
     if (!this.isSeen()) return;
     if (!this.fitted) this.fitted = this.fit(false);
     else if (!this.chosen && !this.showsEverybody()) this.fit();
+  }
+
+  private drawPeople(): void {
+    if (this.people === null) return;
+    const [right = 0, down = 0] = this.map.getSize() ?? [];
+    const pixelOf = (at: number[]) => this.map.getPixelFromCoordinate(at) as [number, number] | null;
+    const screen = { size: [right, down], pixelOf } as const;
+    this.crowd.show({ ...this.people, colours: this.colours, screen });
   }
 
   /** Not so while another part of a small screen is shown. */
@@ -158,8 +171,11 @@ export class PlanMap {
   private showsEverybody(): boolean {
     const crowd = this.crowd.extent();
     if (crowd === null || !crowd.every(Number.isFinite)) return true;
-    const edgeM = EDGE_PX * (this.view.getResolution() ?? 0);
-    return containsExtent(this.view.calculateExtent(this.map.getSize()), buffer(crowd, edgeM));
+    const mPerPx = this.view.getResolution() ?? 0;
+    const [west = 0, south = 0, east = 0, north = 0] = buffer(crowd, EDGE_PX * mPerPx);
+    const beside = (RIGHT_EDGE_PX - EDGE_PX) * mPerPx;
+    const needed = [west, south, east + beside, north];
+    return containsExtent(this.view.calculateExtent(this.map.getSize()), needed);
   }
 
   /** Show everything there is; false where there is nothing yet. */

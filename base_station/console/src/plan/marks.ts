@@ -4,6 +4,7 @@ import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
 import { age, onPlan } from "../words";
 import { faint, type Colours } from "./colours";
+import type { Pixel } from "./names";
 
 /** What the plan needs to know of one person. */
 export interface Mark {
@@ -60,17 +61,30 @@ export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Styl
   });
 }
 
+export function labelOf(mark: Mark): string {
+  const words = [onPlan(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
+  return words.filter((word) => word !== "").join(", ");
+}
+
+export function labelFont(mark: Mark): string {
+  return `${isStrong(mark) ? "700" : "600"} 14px system-ui, sans-serif`;
+}
+
+function isStrong({ chosen, urgency }: Mark): boolean {
+  return chosen || urgency === "immediate";
+}
+
 /** Names keep clear of each other; the plan leaves out what does not fit, but never who is in danger or
  * chosen. */
-export function labelStyle(mark: Mark, colours: Colours): Style {
-  const words = [onPlan(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
-  const strong = mark.chosen || mark.urgency === "immediate";
+export function labelStyle(mark: Mark, colours: Colours, [offsetX, offsetY]: Pixel): Style {
+  const strong = isStrong(mark);
   return new Style({
     zIndex: strong ? 2 : 1,
     text: new Text({
-      text: words.filter((word) => word !== "").join(", "),
-      font: `${strong ? "700" : "600"} 14px system-ui, sans-serif`,
-      offsetY: RADIUS_PX + 12,
+      text: labelOf(mark),
+      font: labelFont(mark),
+      offsetX,
+      offsetY,
       fill: new Fill({ color: colours.text }),
       stroke: new Stroke({ color: colours.halo, width: 4 }),
       padding: [1, 3, 1, 3],
