@@ -124,3 +124,31 @@ def painted(page: Page, colour: str) -> int:
         colour,
     )
     return count
+
+
+def painted_at_edges(page: Page, colour: str) -> dict[str, int]:
+    """How many points of a colour lie in the outermost pixels of the plan, by side."""
+    found: dict[str, int] = page.evaluate(
+        """(name) => {
+          const said = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+          const wanted = [1, 3, 5].map((at) => parseInt(said.slice(at, at + 2), 16));
+          const found = { left: 0, right: 0, top: 0, bottom: 0 };
+          for (const canvas of document.querySelectorAll(".map canvas")) {
+            const { width, height } = canvas;
+            const sides = {
+              left: [0, 0, 2, height], right: [width - 2, 0, 2, height],
+              top: [0, 0, width, 2], bottom: [0, height - 2, width, 2],
+            };
+            for (const [side, box] of Object.entries(sides)) {
+              const points = canvas.getContext("2d").getImageData(...box).data;
+              for (let i = 0; i < points.length; i += 4)
+                if (points[i + 3] > 128 &&
+                    wanted.every((value, band) => Math.abs(points[i + band] - value) < 40))
+                  found[side]++;
+            }
+          }
+          return found;
+        }""",
+        colour,
+    )
+    return found

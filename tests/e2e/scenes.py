@@ -254,6 +254,31 @@ def switched_off() -> wire.Snapshot:
     return picture(units, off)
 
 
+FAULTS = ("no usable inertial sample for 1 s", "the journal cannot be written: the disk is full")
+
+
+def two_faults() -> wire.Snapshot:
+    """Of one unit, whose wearer is well."""
+    units = [unit(index) for index in range(5)]
+    alarms = []
+    for number, fault in enumerate(FAULTS):
+        one = alarm(2, "unit-fault", 2, f"Mira Okafor's unit: {fault}", 60 - number)
+        alarms.append(msgspec.structs.replace(one, alarm_id=f"fault {number}", level="fault"))
+    units[2] = with_alarms(units[2], *alarms)
+    return picture(units, *alarms)
+
+
+def at_the_edges() -> wire.Snapshot:
+    """No plan; people at each side of all there is, all of them to be named."""
+    places_m = ((0.0, -20.0), (0.0, 20.0), (20.0, 0.0), (-20.0, 0.0))
+    units, falls = [], []
+    for index, (north_m, east_m) in enumerate(places_m):
+        at = msgspec.structs.replace(position(index), north_m=north_m, east_m=east_m, floor=0)
+        falls.append(alarm(index, "fall", 1, f"{NAMES[index]} may have fallen", 20 + index))
+        units.append(with_alarms(unit(index), falls[-1], position=at))
+    return msgspec.structs.replace(picture(units, *falls), plan=None)
+
+
 def taken(one: wire.AlarmView) -> wire.AlarmView:
     """The same alarm once somebody has acknowledged it."""
     return msgspec.structs.replace(one, state="acknowledged", by="chief")

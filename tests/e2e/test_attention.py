@@ -11,8 +11,9 @@ import msgspec
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from base_station.views.wire import AnchorView
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, confirm, menu, painted, press
+from tests.e2e.console_page import barriers, confirm, menu, painted, painted_at_edges, press
 from tests.e2e.looks import flaws
 from tests.e2e.stage import ANSWERS, PAST, Stage
 
@@ -118,6 +119,102 @@ def test_a_button_that_does_nothing_yet_looks_so(stage: Stage) -> None:
         for name in ("Set base map", "Set place")
     )
     assert idle != ready
+
+
+def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: Stage) -> None:
+    """Whoever satellites have placed moves by it: it says by how far, and of another place anew."""
+    anchor = AnchorView(57.7, 11.97, 0.0, 0.0)
+    page, station = stage.open(msgspec.structs.replace(scenes.quiet(), anchor=anchor))
+    site = menu(page, "Site")
+    expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
+    latitude, asks = site.get_by_label("Latitude"), site.get_by_role("button", name="Set place")
+    latitude.fill("57.701")
+    latitude.press("Enter")
+    question = site.get_by_role("group", name="Replace the place for everybody?")
+    expect(question).to_contain_text("whoever satellites have placed moves by 111 m")
+    expect(question.get_by_role("button", name="No")).to_be_focused()
+    assert flaws(page) == []
+    page.keyboard.press("Enter")
+    expect(question).to_have_count(0)
+    expect(asks).to_be_focused()
+    asks.click()
+    latitude.fill("57.702")
+    expect(question).to_have_count(0)
+    assert station.changes() == []
+    asks.click()
+    expect(question).to_contain_text("moves by 223 m")
+    page.wait_for_timeout(600)
+    question.get_by_role("button", name="Yes, replace place").click()
+    expect(site).to_have_count(0)
+    assert station.changes() == ["/site/anchor"]
+
+
+def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    site = menu(page, "Site")
+    expect(site).to_contain_text("Nobody has said where the plan lies")
+    for name in ("Latitude", "Longitude"):
+        site.get_by_label(name).fill("11.5")
+    site.get_by_role("button", name="Set place").click()
+    expect(site).to_have_count(0)
+    assert station.changes() == ["/site/anchor"]
+
+
+def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:
+    page, _ = stage.open(scenes.two_faults())
+    card = page.locator(".card", has_text="Mira Okafor")
+    faults = card.get_by_label("Open alarms of this person").get_by_role("listitem")
+    expect(faults).to_have_text([f"Unit fault: {fault}" for fault in scenes.FAULTS])
+    for fault in scenes.FAULTS:
+        expect(strip(page)).to_contain_text(f"Mira Okafor's unit: {fault}")
+    assert flaws(page) == []
+
+
+def test_a_card_tells_what_befell_who_wore_the_unit_before(stage: Stage) -> None:
+    """Bo is well; nobody is to look for him because of what was never resolved."""
+    shown = scenes.bad_minute()
+    wears_now = msgspec.structs.replace(shown.units[1], person=scenes.person(7))
+    page, _ = stage.open(
+        msgspec.structs.replace(shown, units=(shown.units[0], wears_now, *shown.units[2:]))
+    )
+    alarms = page.locator(".card", has_text="Li Na").get_by_label("Open alarms of this person")
+    expect(alarms.get_by_role("listitem")).to_have_text(
+        ["Fall (who wore it before)", "No motion (who wore it before)"], use_inner_text=True
+    )
+
+
+def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> None:
+    page, station = stage.open(scenes.switched_off())
+    card = page.locator(".card", has_text="Jonas Bergman")
+    expect(card).to_contain_text("Was inside4 min")
+    station.change(now_ms=scenes.NOW_MS + 20 * scenes.MINUTE_MS)
+    expect(card).to_contain_text("30 min ago")
+    expect(card).to_contain_text("Was inside4 min")
+
+
+def test_who_took_an_alarm_leaves_room_for_what_it_is_about(stage: Stage) -> None:
+    """However long the name, the row is as with a short one; it says all to who points at it."""
+    shown = scenes.bad_minute()
+    rows_px = []
+    for by in ("mia", "W" * 64):
+        one = msgspec.structs.replace(shown.alarms[0], state="acknowledged", by=by)
+        page, _ = stage.open(msgspec.structs.replace(shown, alarms=(one, *shown.alarms[1:])))
+        row = strip(page).get_by_role("listitem").filter(has_text="may have fallen")
+        expect(row.locator(".state")).to_have_attribute("title", f"acknowledged by {by}")
+        box = row.bounding_box()
+        assert box is not None
+        rows_px.append(box["height"])
+    assert rows_px[0] == rows_px[1]
+
+
+@pytest.mark.parametrize("screen", ["laptop", "tablet", "phone"])
+def test_a_name_at_the_edge_of_the_plan_is_whole(stage: Stage, screen: str) -> None:
+    page, _ = stage.open(scenes.at_the_edges(), screen)
+    if screen == "phone":
+        page.get_by_role("button", name="Plan").first.click()
+    page.wait_for_timeout(1500)  # the plan has come to rest
+    edges = painted_at_edges(page, "--text")
+    assert edges == {"left": 0, "right": 0, "top": 0, "bottom": 0}
 
 
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:

@@ -137,6 +137,18 @@ export function linkWord({ link, switched_off }: UnitView): string {
   return switched_off ? "Switched off" : LINKS[link];
 }
 
+/** For how long the wearer is in the building; null: outside, as far as is known.  What became of them
+ * since their unit was switched off nobody knows. */
+export function insideMs(unit: UnitView, nowMs: number): number | null {
+  if (unit.inside_since_ms === null) return null;
+  const untilMs = unit.switched_off ? (unit.last_heard_ms ?? nowMs) : nowMs;
+  return untilMs - unit.inside_since_ms;
+}
+
+export function insideWord(unit: UnitView): string {
+  return unit.switched_off ? "Was inside" : "Inside for";
+}
+
 const HEAT: Record<string, string> = {
   "": "normal",
   caution: "caution",
@@ -169,9 +181,18 @@ export function gpsWord(reason: string | null): string {
 /** The level of an alarm that only informs: the unit's silence is no loss. */
 export const SWITCHED_OFF = "switched off";
 
-/** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost". */
+/** What the station puts before a unit's own words (base_station/alarms/unit_fault.py). */
+const BEFORE_FAULT = "'s unit: ";
+const LONGEST_FAULT = 70;
+
+/** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost".  A unit
+ * may have several faults, so each says which it is. */
 export function alarmWord(alarm: AlarmView): string {
   if (alarm.level === SWITCHED_OFF) return "Switched off"; // its link is not lost
+  const faultAt = alarm.text.indexOf(BEFORE_FAULT);
+  if (alarm.rule === "unit-fault" && faultAt >= 0) {
+    return `Unit fault: ${shortened(alarm.text.slice(faultAt + BEFORE_FAULT.length), LONGEST_FAULT)}`;
+  }
   const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
@@ -187,9 +208,13 @@ const LONGEST_ON_PLAN = 24;
 
 /** A name on the plan, where a long one would hide others' names and walls. */
 export function onPlan(name: string): string {
-  const letters = [...name];
-  if (letters.length <= LONGEST_ON_PLAN) return name;
-  return `${letters.slice(0, LONGEST_ON_PLAN - 1).join("").trimEnd()}…`;
+  return shortened(name, LONGEST_ON_PLAN);
+}
+
+function shortened(text: string, most: number): string {
+  const letters = [...text];
+  if (letters.length <= most) return text;
+  return `${letters.slice(0, most - 1).join("").trimEnd()}…`;
 }
 
 export function bytes(count: number): string {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { handedTo, hasAlarm, openAlarms, sinceMs } from "../src/live/alarms";
+import { handedTo, hasAlarm, isOfAnother, openAlarms, sinceMs } from "../src/live/alarms";
 import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
@@ -142,6 +142,14 @@ describe("handedTo", () => {
     expect(handedTo(zoe, unit("1", { person: { ...wearer, name: "Zoë" } }))).toBe("");
     expect(handedTo(zoe, unit("1", { person: { ...wearer, name: "Zo" } }))).not.toBe("");
     expect(handedTo(alarm("battery", { text: "The battery of 1's unit" }), unit("1"))).toBe("");
+  });
+
+  it("is said on a card of what befell a person, and not of what ails the unit", () => {
+    const bo = unit("1", { person: wearer });
+    expect(isOfAnother(alarm("m", { rule: "mayday", text: "Mayday from Ana" }), bo)).toBe(true);
+    expect(isOfAnother(alarm("m", { rule: "mayday", text: "Mayday from Bo" }), bo)).toBe(false);
+    const fault = alarm("f", { rule: "unit-fault", text: "Ana's unit: storage fault" });
+    expect(isOfAnother(fault, bo)).toBe(false);
   });
 });
 

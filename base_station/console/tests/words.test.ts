@@ -104,6 +104,29 @@ describe("words", () => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
   });
 
+  it("name each fault of a unit, in short", () => {
+    const fault = (text: string) => words.alarmWord(alarm("x", { rule: "unit-fault", level: "fault", text }));
+    expect(fault("Ana Diaz's unit: no usable inertial sample for 1 s")).toBe(
+      "Unit fault: no usable inertial sample for 1 s",
+    );
+    const long = fault(`Ana's unit: ${"x".repeat(200)}`);
+    expect(long).toMatch(/^Unit fault: x+…$/);
+    expect(long.length).toBeLessThan(100);
+    expect(fault("as another version says it")).toBe("Unit fault");
+  });
+
+  it("say for how long somebody is inside, and of who switched off was, until then", () => {
+    const at_work = unit("a", { inside_since_ms: 60_000, last_heard_ms: 120_000 });
+    expect(words.insideMs(at_work, 660_000)).toBe(600_000);
+    expect(words.insideWord(at_work)).toBe("Inside for");
+    const lost = { ...at_work, link: "lost" } as const; // may still be in there
+    expect(words.insideMs(lost, 660_000)).toBe(600_000);
+    const off = { ...at_work, switched_off: true };
+    expect(words.insideMs(off, 660_000)).toBe(60_000);
+    expect(words.insideWord(off)).toBe("Was inside");
+    expect(words.insideMs(unit("a"), 660_000)).toBeNull();
+  });
+
   it("tell a unit that was switched off from one that is not heard", () => {
     expect(words.linkWord(unit("a", { link: "lost" }))).toBe("Link lost");
     expect(words.linkWord(unit("a", { link: "lost", switched_off: true }))).toBe("Switched off");

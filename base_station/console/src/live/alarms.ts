@@ -33,6 +33,14 @@ export function sinceMs({ state, raised_ms, last_raised_ms }: AlarmView): number
   return state === "raised" ? last_raised_ms : raised_ms;
 }
 
+/** What these say is of a person, and stays so when the unit is given on. */
+const OF_WEARER = ["mayday", "fall", "no-motion", "missed-check-in", "rest-due"];
+
+/** Whether it is of somebody who wore the unit before. */
+export function isOfAnother(alarm: AlarmView, unit: UnitView): boolean {
+  return OF_WEARER.includes(alarm.rule) && handedTo(alarm, unit) !== "";
+}
+
 /** Of Bo, Bob is not named. */
 function wholeWord(name: string): RegExp {
   const letters = name.replace(/[\\^$.*+?()[\]{}|/]/g, "\\$&");

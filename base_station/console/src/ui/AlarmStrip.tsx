@@ -57,9 +57,18 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
       <span class="since" aria-live="off">
         {duration(picture.nowMs.value - sinceMs(alarm))} ago
       </span>
-      <span class="state">{stateOf(alarm, mayAct.value)}</span>
+      <State words={stateOf(alarm, mayAct.value)} />
       {mayAct.value && <AlarmAction alarm={alarm} place={place} />}
     </li>
+  );
+}
+
+/** A long name is cut; all of it is said to who points at it. */
+function State({ words }: { words: string }) {
+  return (
+    <span class="state" title={words}>
+      {words}
+    </span>
   );
 }
 

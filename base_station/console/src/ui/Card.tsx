@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { centring, select, selectedUnit } from "../view";
+import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { OLD_MS } from "../plan/ellipse";
@@ -119,6 +120,7 @@ function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<stri
         <li key={alarm.alarm_id} class={`p${alarm.priority}`}>
           <Icon name="alarm" />
           {words.alarmWord(alarm)}
+          {isOfAnother(alarm, unit) && <small>(who wore it before)</small>}
         </li>
       ))}
     </ul>

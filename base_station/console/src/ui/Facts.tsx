@@ -121,9 +121,10 @@ function Inside({ unit, now }: { unit: UnitView; now: number }) {
       </Fact>
     );
   }
+  const insideMs = words.insideMs(unit, now);
   return (
-    <Fact icon="inside" label="Inside for">
-      {unit.inside_since_ms === null ? "—" : words.minutes(now - unit.inside_since_ms)}
+    <Fact icon="inside" label={words.insideWord(unit)}>
+      {insideMs === null ? "—" : words.minutes(insideMs)}
     </Fact>
   );
 }
