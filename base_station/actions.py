@@ -13,12 +13,14 @@ from base_station.alarms.book import AlarmBook
 from base_station.assessment.tally import TrustTally
 from base_station.commands import book as command_book
 from base_station.commands.state import SentCommand
-from base_station.events import NamesForgotten, PinsTouched, TrailFilled
+from base_station.events import NamesForgotten, PastTouched, PinsTouched, TrailFilled
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.port import Start
 from base_station.live_state import Alarm, Person, StationState, UnitState
+from base_station.past_incidents import note_closed
 from base_station.pins import book as pin_book
 from base_station.pins.book import PinAction, change_pins, units_of
+from base_station.pins.debriefing import looks_back
 from base_station.pins.late_history import note_late
 from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
@@ -51,7 +53,7 @@ from shared.messages.station import (
 )
 
 # What an action changed.
-Effect = Alarm | UnitState | SentCommand | PinsTouched | TrailFilled | NamesForgotten
+Effect = Alarm | UnitState | SentCommand | PinsTouched | PastTouched | TrailFilled | NamesForgotten
 
 
 class Actions:
@@ -111,7 +113,12 @@ class Actions:
 
     def _pin(self, state: StationState, by: str, action: PinAction) -> Iterator[Effect]:
         is_first = isinstance(action, SetPin | StartTogether | PlaceBeacon) and _is_first(state)
+        running = state.incident
+        closed_ns = None if running is None else running.closed_ns
+        is_of_past = closed_ns is not None and looks_back(state, action, closed_ns)
         changed = change_pins(state, by, action)
+        if is_of_past and running is not None:
+            yield PastTouched(running.incident_id)
         if is_first:
             yield from map(TrailFilled, moved := sorted(self._positioning.lay_on_plan(state)))
             changed |= set(moved)
@@ -257,6 +264,7 @@ def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
     ):
         raise UserError(f"no open incident {action.incident_id}")
     state.incident = msgspec.structs.replace(running, closed_ns=state.t_ns)
+    note_closed(state, state.incident)
     for unit in state.units.values():
         accountability.end(state, unit)
     return state.units.values()

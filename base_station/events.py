@@ -58,6 +58,12 @@ class PinsTouched(msgspec.Struct, frozen=True):
     unit_ids: tuple[str, ...]
 
 
+class PastTouched(msgspec.Struct, frozen=True):
+    """More came to be known of the time of an incident that was closed."""
+
+    incident_id: str
+
+
 class CommandTouched(msgspec.Struct, frozen=True):
     """A command is new or has got further with a unit."""
 
@@ -81,6 +87,7 @@ Output = (
     | UnitTouched
     | TrailFilled
     | PinsTouched
+    | PastTouched
     | CommandTouched
     | NamesForgotten
     | Refused

@@ -312,6 +312,7 @@ class StationState(msgspec.Struct):
     history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
     commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first
     incident: Incident | None = None
+    past_incidents: list[Incident] = msgspec.field(default_factory=list)  # closed, oldest first
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did

@@ -21,6 +21,7 @@ from base_station.events import (
     CommandTouched,
     NamesForgotten,
     Output,
+    PastTouched,
     PinsTouched,
     Received,
     Refused,
@@ -33,10 +34,11 @@ from base_station.fusion.port import FuserKind
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import Alarm, StationState, UnitState
+from base_station.past_incidents import incident_of
 from base_station.pins.late_history import note_late, take_due
 from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
-from base_station.units.boot_state import told_ns
+from base_station.units.boot_state import captured_ns, told_ns
 from base_station.units.sender import News, Sender
 from base_station.units.updates import note
 from shared.channels import Channel, Direction, channel_of, tracked_unit
@@ -65,6 +67,7 @@ from shared.messages.station import SetAnchor, SetPlan
 
 _CAN_WAIT = (Status, Temperature, Heartbeat)  # said again in a second, and slow to change
 MOST_STRANGERS = 200  # units that nobody registered: more are counted only
+TELLS_PAST = Position | GpsFix | Sighting  # of where somebody was, whenever it comes
 _COUNTS_LATE = UnitEvent | CommandReply | Sighting | GpsFix  # whenever it comes
 
 
@@ -159,7 +162,7 @@ class StationPipeline:
                 outputs.append(CommandTouched(effect.command_id))
             elif isinstance(effect, PinsTouched):
                 outputs.extend(self._repin(effect.unit_ids))
-            elif isinstance(effect, TrailFilled | NamesForgotten):
+            elif isinstance(effect, TrailFilled | NamesForgotten | PastTouched):
                 outputs.append(effect)
             else:
                 outputs.append(UnitTouched(effect.unit_id))
@@ -189,6 +192,8 @@ class StationPipeline:
             outputs = self._observe(unit, message)
         elif isinstance(message, Position) and unit.registered:
             outputs = self._recall(unit, message)
+        if event.backfilled and unit.registered:
+            outputs.extend(self._touch_past(unit, message))
         kind = type(message)
         outputs.append(UnitTouched(unit_id, soon=kind not in _CAN_WAIT or link != unit.link))
         if self._book.heeds(kind):
@@ -216,9 +221,19 @@ class StationPipeline:
             unit.tracker.status, unit.tracker.status_ns = message, state.t_ns
         else:
             return []
+        if event.backfilled and unit.registered:
+            outputs.extend(self._touch_past(unit.tracker, message))
         outputs.append(UnitTouched(unit.unit_id))
         outputs.extend(self._review(unit, type(message)))
         return outputs
+
+    def _touch_past(self, sender: Sender, message: Message) -> list[Output]:
+        """What a journal brings may be of an incident that was closed since."""
+        if not self.state.past_incidents or not isinstance(message, TELLS_PAST):
+            return []
+        t_ns = captured_ns(sender.boots, message.header, self.state.t_ns)
+        past = None if t_ns is None else incident_of(self.state, t_ns)
+        return [] if past is None else [PastTouched(past.incident_id)]
 
     def _stranger(self, unit_id: str) -> UnitState | None:
         """Kept and shown, not believed."""

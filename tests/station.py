@@ -28,7 +28,7 @@ from base_station.db.projection import SqlProjection
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.store import Store
-from base_station.events import Output, Received, Refused
+from base_station.events import Output, PastTouched, Received, Refused
 from base_station.forgetting.desk import ForgettingDesk
 from base_station.forgetting.forgetter import ClosedLog, Forgetter
 from base_station.fusion import FUSERS
@@ -84,6 +84,7 @@ class DeskDrive:
                     if isinstance(message, OperatorAction) and not refused
                     else (),
                     descriptions=(message,) if isinstance(message, UnitDescription) else (),
+                    news=tuple(one.incident_id for one in outputs if isinstance(one, PastTouched)),
                     heard=((message.header.unit_id, t_ns),)
                     if message.header.unit_id != STATION_ID
                     else (),

@@ -79,6 +79,7 @@ class IncidentReport(Answer, frozen=True):
     units: tuple[UnitReport, ...]
     stated: Figures | None  # over all units
     against_smoothed: Figures | None
+    is_newest: bool = True  # False: more of it is coming out of a journal; not kept
 
 
 def assess(

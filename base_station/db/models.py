@@ -134,6 +134,7 @@ class Incident(Base):
     opened_by: Mapped[str]
     closed_ns: Mapped[int | None]
     closed_by: Mapped[str]
+    news_ns: Mapped[int] = mapped_column(server_default="0")  # when more was known of it, closed
 
 
 class Assignment(Base):
@@ -247,6 +248,7 @@ class SmoothedIncident(Base):
     incident_id: Mapped[str] = mapped_column(primary_key=True)
     smoother: Mapped[str]
     made_ns: Mapped[int]
+    known_ns: Mapped[int] = mapped_column(server_default="0")  # with the news of until then
 
 
 class SmoothedPoint(Base):

@@ -71,6 +71,9 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
             _alarm(session, change)
         for description in projection.descriptions:
             _unit(session, description.header.unit_id, **_described(description))
+        if projection.news:
+            touched = Incident.incident_id.in_(projection.news)
+            session.execute(update(Incident).where(touched).values(news_ns=projection.t_ns))
         tracks += projection.tracks
         heard.update(projection.heard)
     left_out = _tracks(session, tracks)

@@ -32,9 +32,11 @@ class SmoothedTracks:
         tracks: Mapping[str, Sequence[TrackSample]],
         raw: Mapping[str, Sequence[TrackSample]],
         report: bytes | None,
+        known_ns: int = 0,
         is_outdated: Callable[[], bool] = lambda: False,
     ) -> bool:
         """In the place of what was made before, the assessment included; None: not assessed yet.
+        ``known_ns``: the incident's news until then are in it.
 
         False where it ``is_outdated`` by the time that nobody else writes: nothing is kept then.
         """
@@ -52,7 +54,7 @@ class SmoothedTracks:
                 session.execute(delete(table).where(table.incident_id == incident_id))
             session.execute(
                 insert(SmoothedIncident).values(
-                    incident_id=incident_id, smoother=smoother, made_ns=made_ns
+                    incident_id=incident_id, smoother=smoother, made_ns=made_ns, known_ns=known_ns
                 )
             )
             session.execute(
@@ -77,9 +79,11 @@ class SmoothedTracks:
             return None
         return msgspec.msgpack.decode(zlib.decompress(packed), type=dict[str, list[TrackSample]])
 
-    def has(self, incident_id: str) -> bool:
+    def has(self, incident_id: str, news_ns: int = 0) -> bool:
+        """Whether it was made, with the incident's news until then."""
         with self._store.read() as session:
-            return session.get(SmoothedIncident, incident_id) is not None
+            made = session.get(SmoothedIncident, incident_id)
+            return made is not None and made.known_ns >= news_ns
 
     def of(self, incident_id: str) -> tuple[str, int, dict[str, list[TrackSample]]] | None:
         """Smoother, when it was made, and the trails by unit; None: not made yet."""

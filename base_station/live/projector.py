@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from base_station.events import Output, Received, Refused, StationEvent
+from base_station.events import Output, PastTouched, Received, Refused, StationEvent
 from base_station.live.sinks import Projection
 from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
@@ -24,6 +24,7 @@ class Projector:
         self._actions: list[OperatorAction] = []
         self._descriptions: list[UnitDescription] = []
         self._heard: dict[str, int] = {}
+        self._news: dict[str, None] = {}  # incidents; an ordered set
         self._heard_before: dict[str, int] = {}
         self._track_second: dict[str, int] = {}  # by unit, of its newest track point
 
@@ -33,6 +34,8 @@ class Projector:
                 self._alarms.append(output)
             elif isinstance(output, FusedPosition):
                 self._note_track(output)
+            elif isinstance(output, PastTouched):
+                self._news[output.incident_id] = None
         if not isinstance(event, Received):
             return
         message = event.message
@@ -51,7 +54,14 @@ class Projector:
 
     def take(self, t_ns: int) -> Projection | None:
         """None where nothing changed."""
-        parts = (self._alarms, self._tracks, self._actions, self._descriptions, self._heard)
+        parts = (
+            self._alarms,
+            self._tracks,
+            self._actions,
+            self._descriptions,
+            self._heard,
+            self._news,
+        )
         if not any(parts):
             return None
         projection = Projection(
@@ -61,6 +71,7 @@ class Projector:
             actions=tuple(self._actions),
             descriptions=tuple(self._descriptions),
             heard=tuple(self._heard.items()),
+            news=tuple(self._news),
         )
         for part in parts:
             part.clear()

@@ -59,6 +59,7 @@ class Projection(msgspec.Struct, frozen=True):
     actions: tuple[OperatorAction, ...] = ()  # that were accepted
     descriptions: tuple[UnitDescription, ...] = ()
     heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every five seconds or so
+    news: tuple[str, ...] = ()  # closed incidents of whose time more is known
 
 
 class ProjectionSink(Protocol):

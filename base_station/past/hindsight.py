@@ -1,7 +1,8 @@
 """An incident as it is known afterwards, beside what was shown at the time.
 
-The state at the incident's end comes out of the log, by the same pipeline as live; the smoother
-makes trails of everything in it.  What it made of a closed incident is kept in the store.
+The state at the incident's end comes out of the log, by the same pipeline as live, with what
+came late of its time; the smoother makes trails of everything in it.  What it made of a closed
+incident is kept in the store, and made again when more of its time has come to be known.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import TypeVar
 
 import msgspec
@@ -22,7 +24,8 @@ from base_station.db.smoothed import SmoothedTracks
 from base_station.fusion.path.points import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoother.port import SmoothedPath, Smoother, Solution
 from base_station.live_state import StationState
-from base_station.past.playback import Archive, Playback
+from base_station.past.belated import step_belated
+from base_station.past.playback import Archive, Playback, Record
 from base_station.pins.book import units_of
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pinning import floors_along
@@ -37,6 +40,7 @@ Tracks = Mapping[str, Sequence[TrackSample]]
 Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
 _AGAIN_NS = 300 * NS_PER_S  # after what it came to could not be kept: it may have taken long
+QUIET_NS = 30 * NS_PER_S  # without news: a journal that is being read brings more of it
 _EVER_NS = 2**63 - 1  # an open incident goes on: whatever was recorded is of it
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
@@ -82,7 +86,7 @@ class Hindsight:
         )
 
     def smoothed(self, incident: Incident) -> Smoothed:
-        """As it was made when the incident had closed; made now where it was not."""
+        """As it was made with all that is known of the incident; made now where it was not."""
         return self._once(incident, self._kept_trails, self.smooth)
 
     def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
@@ -101,20 +105,19 @@ class Hindsight:
             packed = None if report is None else msgspec.msgpack.encode(report)
             with self._keeping:
                 what = (incident_id, smoother, made_ns, tracks, raw, packed)
-                is_kept = self._store.put(*what, is_outdated=known.is_outdated)
+                is_kept = self._store.put(*what, _news_ns(incident), known.is_outdated)
         return Smoothed(incident_id, smoother, made_ns, tracks, is_kept)
 
     def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
-        """Smooth and assess an incident that closed lately and was not yet, so that it is there
-        when somebody asks; ``shown`` gives what was.
+        """Smooth and assess an incident that closed lately and was not yet, or of which more is
+        known since, so that it is there when somebody asks; ``shown`` gives what was.
         """
         now_ns = self._clock.utc_ns()
         if now_ns < self._again_ns:
             return
         for incident in incidents:
             incident_id = incident.incident_id
-            lately = incident.closed_ns is not None and now_ns - incident.closed_ns < LATELY_NS
-            if not lately or incident_id in self._given_up or self._store.has(incident_id):
+            if incident_id in self._given_up or not self._is_due(incident, now_ns):
                 continue
             self._again_ns = now_ns + _AGAIN_NS
             try:
@@ -123,9 +126,30 @@ class Hindsight:
             except Exception:  # noqa: BLE001  # the station goes on without these trails
                 _log.exception("the trails of %s cannot be smoothed", incident_id)
                 self._given_up.add(incident_id)
-            if incident_id in self._given_up or self._store.has(incident_id):
+            if incident_id in self._given_up or self._is_made(incident):
                 self._again_ns = 0
             return
+
+    def _is_due(self, incident: Incident, now_ns: int) -> bool:
+        if incident.closed_ns is None:
+            return False
+        if self._store.has(incident.incident_id):
+            return not self._is_enough(incident)
+        return now_ns - incident.closed_ns < LATELY_NS
+
+    def is_newest(self, incident: Incident) -> bool:
+        """Whether what is said of it was made with all that came of it since it was closed; what is
+        not kept is always made anew.
+        """
+        return not self._store.has(incident.incident_id) or self._is_made(incident)
+
+    def _is_made(self, incident: Incident) -> bool:
+        return self._store.has(incident.incident_id, _news_ns(incident))
+
+    def _is_enough(self, incident: Incident) -> bool:
+        """What is kept serves: nothing is newer, or a journal is still being read."""
+        is_quiet = abs(self._clock.utc_ns() - _news_ns(incident)) >= QUIET_NS
+        return self._is_made(incident) or (not is_quiet and self._store.has(incident.incident_id))
 
     def raw(self, incident: Incident) -> Tracks:
         """Each unit's own path, placed where each of its frames began and never corrected; as it
@@ -146,12 +170,16 @@ class Hindsight:
         make: Callable[[Incident], Made],
     ) -> Made:
         """What is kept of a closed incident, or else made of it: whoever asks meanwhile waits."""
-        found = kept(incident) if incident.closed_ns is not None else None
+        found = self._kept(incident, kept)
         if found is not None:
             return found
         with self._working:
-            found = kept(incident) if incident.closed_ns is not None else None
+            found = self._kept(incident, kept)
             return make(incident) if found is None else found
+
+    def _kept(self, incident: Incident, kept: Callable[[Incident], Made | None]) -> Made | None:
+        is_made = incident.closed_ns is not None and self._is_enough(incident)
+        return kept(incident) if is_made else None
 
     def _kept_trails(self, incident: Incident) -> Smoothed | None:
         made = self._store.of(incident.incident_id)
@@ -187,7 +215,7 @@ class Hindsight:
         with self._working:
             until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
-            state = self._state_at(until_ns, on_progress)
+            state = self._state_at(until_ns, _news_ns(incident), on_progress)
             evidence = evidence_of_all(state, FloorGrid.of(state.laid_plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
@@ -195,14 +223,25 @@ class Hindsight:
             on_progress(1.0)
             return Known(state, solution, is_outdated)
 
-    def _state_at(self, until_ns: int, on_progress: Progress) -> StationState:
+    def _state_at(self, until_ns: int, news_ns: int, on_progress: Progress) -> StationState:
+        """As everything was then, and with what came of that time until ``news_ns``."""
         playback = Playback(self._archive)
         begin_ns, end_ns = None, min(until_ns, self._clock.utc_ns())
         for _ in playback.seek(until_ns):
             begin_ns = playback.at_ns if begin_ns is None else begin_ns
             span_ns = max(end_ns - begin_ns, 1)
             on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
+        if news_ns > until_ns:
+            step_belated(playback.pipeline, lambda: self._between(until_ns, news_ns), until_ns)
         return playback.pipeline.state
+
+    def _between(self, after_ns: int, until_ns: int) -> Iterable[Record]:
+        return takewhile(lambda record: record[0] <= until_ns, self._archive.open_log(after_ns + 1))
+
+
+def _news_ns(incident: Incident) -> int:
+    """When more came to be known of it, since it was closed; 0: nothing has."""
+    return incident.news_ns or 0  # a row that was not read from the table has none
 
 
 def _read_report(kept: bytes) -> IncidentReport | None:

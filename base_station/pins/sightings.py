@@ -10,6 +10,7 @@ import math
 from collections import Counter
 
 from base_station.live_state import StationState, UnitState
+from base_station.past_incidents import is_before_incident
 from base_station.pins.book import MOST_PINS, drop, put, units_of
 from base_station.pins.pin import Pin, PinKind, reach_std_m
 from base_station.units.boot_state import captured_ns
@@ -72,6 +73,10 @@ def _reason_against(
         (not unit.registered, "a sighting of a unit that is not registered"),
         (sighting.kind not in _KINDS or not sighting.seen_id, "a sighting of nothing"),
         (t_ns is None, "a sighting of an unknown time"),
+        (
+            t_ns is not None and is_before_incident(state, t_ns),
+            "a sighting of before this incident",
+        ),
         (range_m > FURTHEST_M, "a sighting from too far away"),
         (meets and (other is None or not other.registered), "a meeting with an unknown unit"),
         (other is unit, "a meeting with itself"),

@@ -17,6 +17,7 @@ from base_station.fusion.port import Bearing, FixVerdict, Fuser, FuserKind, Plac
 from base_station.fusion.smoother.port import Smoother
 from base_station.live_state import GpsUse, StationState, UnitState
 from base_station.pins.book import drop, has_pins, units_of
+from base_station.pins.debriefing import is_about
 from base_station.pins.evidence import floors_said
 from base_station.pins.late_history import note_late
 from base_station.pins.pinned_units import PinnedUnits
@@ -153,7 +154,7 @@ class Positioning:
             if unit.plain_trail is not None:
                 unit.plain_trail.clear()
         kept = set().union(*map(units_of, state.pins.values()))
-        return kept | drop(state, lambda pin: pin.set_ns <= before_ns)
+        return kept | drop(state, lambda pin: is_about(pin, before_ns))
 
     def fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> FixVerdict:
         """Whether the fix is used, and why not."""

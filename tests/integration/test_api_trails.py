@@ -158,3 +158,29 @@ async def test_a_station_without_a_log_says_so(tmp_path: Path, clock: ManualCloc
         assert answer.status_code == 503
         assert "no log" in answer.json()["detail"]
     station.close()
+
+
+async def test_what_came_since_is_told_until_it_is_worked_out(
+    station: DeskStation, clock: ManualClock, make_position
+) -> None:
+    incident_id = await worked(station, clock, make_position(), closed=True)
+    async with station.client(Role.COMMANDER) as commander:
+        asked = f"/incidents/{incident_id}/trails?kind=smoothed", f"/incidents/{incident_id}"
+
+        async def newest() -> tuple[bool, list[object]]:
+            trails = (await commander.get(asked[0])).json()
+            report = (await commander.get(f"{asked[1]}/assessment")).json()
+            assert trails["is_newest"] == report["is_newest"]
+            return trails["is_newest"], trails["trails"]
+
+        is_newest, first = await newest()
+        assert is_newest
+        closed_ms = (await commander.get(asked[1])).json()["closed_ms"]
+        clock.advance(60.0)
+        pin = {"unit_id": "FF-01", "t_ms": closed_ms - 30_000, "north_m": 30.0, "east_m": -2.0}
+        assert (await commander.post("/pins", json=pin | {"std_m": 0.5})).status_code == 201
+        assert await newest() == (False, first)
+        clock.advance(31.0)
+        is_newest, again = await newest()
+        assert is_newest
+        assert again != first

@@ -139,7 +139,7 @@ def test_what_closed_lately_is_smoothed_without_being_asked(
     past.kept.put("i1", "gone", 0, {}, {}, None)
     past.hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
     assert past.kept.of("i1") == ("gone", 0, {})
-    monkeypatch.setattr(past.kept, "has", lambda _: False)
+    monkeypatch.setattr(past.kept, "has", lambda *_: False)
     past.hindsight.catch_up(past.records.incidents(), past.records.tracks_of)
     made = past.kept.of("i1")
     assert made is not None

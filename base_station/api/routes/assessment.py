@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 from fastapi import APIRouter
 
 from base_station.api.forms import Id
@@ -20,5 +21,7 @@ def assess_incident(incident_id: Id, station: Station, _: Viewer) -> IncidentRep
     """What was promised at the time, and how it stands up to what is known afterwards."""
     incident = incident_or_404(station, incident_id)
     live = station.records.tracks_of(incident)
-    report = hindsight_of(station).assess(incident, live)
-    return with_people(report, wearers(station.roster, incident))
+    hindsight = hindsight_of(station)
+    report = hindsight.assess(incident, live)
+    named = with_people(report, wearers(station.roster, incident))
+    return msgspec.structs.replace(named, is_newest=hindsight.is_newest(incident))

@@ -43,6 +43,7 @@ class Trails(Answer, frozen=True):
     incident_id: str
     kind: TrailKind
     made_ms: int  # when it was worked out
+    is_newest: bool  # False: more of it is coming out of a journal, and is worked out soon
     trails: tuple[Trail, ...]
 
 
@@ -61,6 +62,7 @@ def incident_trails(
         incident_id,
         kind,
         to_ms(made_ns),
+        kind is TrailKind.FUSED or hindsight_of(station).is_newest(incident),
         tuple(Trail(unit_id, _points(track, every_s)) for unit_id, track in tracks.items()),
     )
     return Response(msgspec.json.encode(body), media_type="application/json")

@@ -51,6 +51,7 @@ export interface Assessment {
   units: UnitAssessment[];
   stated: Figures | null; // over all units
   against_smoothed: Figures | null;
+  is_newest: boolean; // else more of it is coming out of a journal, and is worked out soon
 }
 
 /** The terms of the standard, in a few words. */

@@ -46,12 +46,17 @@ export function AssessmentDialog() {
   );
 }
 
+const LATE =
+  "A unit’s journal or a pin has told more of this incident since. The station works it out " +
+  "again once nothing more has come for half a minute: open this again then.";
+
 function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
   if (report === "asked") return <p>The station works it out. That may take some seconds …</p>;
   if (report === "failed") return <p class="warned">The station could not work it out.</p>;
   if (report.units.length === 0) return <p>Nobody’s position was shown in this incident.</p>;
   return (
     <>
+      {!report.is_newest && <p class="warned">{LATE}</p>}
       <Lights report={report} />
       <Errors report={report} />
       <dl class="terms">
