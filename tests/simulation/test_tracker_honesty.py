@@ -7,7 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import Honesty, ending, ending_of, honesty_table, inertial
+from edge.bench.honesty import (
+    Honesty,
+    ending,
+    ending_of,
+    honesty_table,
+    inertial,
+    nees_bounds,
+)
 from edge.bench.walk_errors import rms, track
 from edge.simulation import Simulation
 from edge.simulation.imu import GRAVITY_MPS2
@@ -18,8 +25,7 @@ from edge.tracker.port import Reason
 from tests.walking import walk
 
 SEEDS = range(12)
-# 95 % of the mean of twelve chi-square values with two degrees of freedom: chi2(24) / 12.
-NEES_BOUNDS = (12.401 / 12, 39.364 / 12)
+NEES_BOUNDS = nees_bounds(len(SEEDS))
 # Of the root mean square of twelve standard normal values: sqrt(chi2(12) / 12).
 RATIO_BOUNDS = (0.606, 1.394)
 
@@ -66,10 +72,16 @@ def test_a_gap_is_stated_in_full_however_well_the_foot_lands():
 
 
 def test_the_table_says_which_sensors():
-    table = honesty_table([Honesty("straight", False, 3, 1.0, 2.0, 0.5, 1.9, 0.95)])
+    table = honesty_table([Honesty("straight", False, 24, 1.0, 2.0, 0.5, 1.9, 0.95)])
     assert [next(iter(column.cells)) for column in table.columns] == [
-        "straight", "data sheet", "1.0", "2.0", "0.50", "1.90", "95",
+        "straight", "data sheet", "1.0", "2.0", "0.50", "1.90", "1.28-2.88", "95",
     ]  # fmt: skip
+
+
+def test_the_bounds_are_those_of_the_chi_square_distribution():
+    """By a table of it: chi2(24) / 12 and chi2(200) / 100."""
+    assert nees_bounds(12) == pytest.approx((12.401 / 12, 39.364 / 12), abs=0.01)
+    assert nees_bounds(100) == pytest.approx((162.728 / 100, 241.058 / 100), abs=0.001)
 
 
 @pytest.mark.parametrize("rate_hz", [60.0, 200.0])
