@@ -24,6 +24,7 @@ from base_station.pins.debriefing import looks_back
 from base_station.pins.late_history import note_late
 from base_station.positioning.positioning import Positioning
 from base_station.site.plan import read_plan
+from base_station.units import heat_told
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
@@ -249,7 +250,8 @@ def _open(state: StationState, by: str, action: OpenIncident) -> Iterable[UnitSt
         unit.trail.clear()
         unit.trust = TrustTally()
         unit.inside_since_ns = None
-        unit.heat_dose = 0.0
+        unit.heat_dose = unit.late_heat_dose = 0.0
+        heat_told.forget_all_but_last(unit.heat_told)
         unit.not_used.clear()
         accountability.begin(state, unit, by)
     return state.units.values()

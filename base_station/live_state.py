@@ -20,6 +20,7 @@ from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan, Ring
 from base_station.site.storeys import Storey
 from base_station.units.boot_state import BootState
+from base_station.units.heat_told import HeatStretch
 from base_station.units.sender import STALE_AFTER_S, Link, Sender
 from base_station.units.trail import TRAIL_POINTS, TrailStep, extend_trail, fill_trail
 from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
@@ -110,6 +111,8 @@ class UnitState(Sender):
     temperature: Temperature | None = None
     temperature_ns: int = 0
     heat_dose: float = 0.0  # in this incident; 1: the equipment's heat budget is used up
+    late_heat_dose: float = 0.0  # of that, what came out of the journal
+    heat_told: list[HeatStretch] = msgspec.field(default_factory=list)
     position: Position | None = None
     position_ns: int = 0
     degraded_since_ns: int | None = None

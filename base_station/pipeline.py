@@ -40,7 +40,7 @@ from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
 from base_station.units.boot_state import captured_ns, told_ns
 from base_station.units.sender import News, Sender
-from base_station.units.updates import note
+from base_station.units.updates import note, note_late_temperature
 from shared.channels import Channel, Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S
 from shared.errors import UserError
@@ -192,6 +192,9 @@ class StationPipeline:
             outputs = self._observe(unit, message)
         elif isinstance(message, Position) and unit.registered:
             outputs = self._recall(unit, message)
+        elif isinstance(message, Temperature):
+            opened_ns = 0 if state.incident is None else state.incident.opened_ns
+            note_late_temperature(unit, message, opened_ns, state.t_ns)
         if event.backfilled and unit.registered:
             outputs.extend(self._touch_past(unit, message))
         kind = type(message)

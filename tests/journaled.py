@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from base_station.events import Output
 from base_station.pipeline import StationPipeline
 from shared.channels import backfilled_key, channel_of
@@ -23,12 +25,13 @@ class JournaledScript(Script):
         self._journals.setdefault(unit_id, []).append(message)
         return []
 
-    def fetch(self, unit_id: str) -> list[Output]:
+    def fetch(self, unit_id: str, pieces: int = 2) -> list[Output]:
         """What waits in its journal comes, the newest piece first."""
         held = self._journals.pop(unit_id)
-        half = len(held) // 2
+        size = math.ceil(len(held) / pieces)
         outputs: list[Output] = []
-        for message in (*held[half:], *held[:half]):
-            key = backfilled_key(unit_id, channel_of(message).suffix)
-            outputs += self.record(key, encode(message))
+        for begin in reversed(range(0, len(held), size)):
+            for message in held[begin : begin + size]:
+                key = backfilled_key(unit_id, channel_of(message).suffix)
+                outputs += self.record(key, encode(message))
         return outputs

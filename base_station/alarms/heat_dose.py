@@ -29,9 +29,11 @@ class HeatDose:
             return None
         if unit.heat_dose < self.used_up:
             return Clear(unit.temperature_ns, "another incident")
+        is_late = unit.heat_dose - unit.late_heat_dose < self.used_up
+        told = ", as only its journal told, so some time ago" if is_late else ""
         return Finding(
             "used up",
             SOON,
-            f"The equipment of {unit.name} has used up its heat budget: it may fail",
+            f"The equipment of {unit.name} has used up its heat budget{told}: it may fail",
             seen_ns=unit.temperature_ns,
         )

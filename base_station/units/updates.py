@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from base_station.live_state import Fault, UnitState
+from base_station.units import heat_told
 from base_station.units.boot_state import told_ns
-from base_station.units.thermal import dose_of
-from shared.clock import NS_PER_S
 from shared.messages import (
     EventKind,
     Header,
@@ -18,8 +17,6 @@ from shared.messages import (
     UnitEvent,
 )
 from shared.quality import Quality
-
-LONGEST_DOSE_STEP_S = 10.0  # of silence that still counts as being as hot as before
 
 
 def note(unit: UnitState, message: Message, t_ns: int) -> None:
@@ -72,15 +69,28 @@ def _is_pressed(unit: UnitState) -> bool:
 
 
 def _note_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
-    before = unit.temperature
-    if before is not None and before.header.boot_id == temperature.header.boot_id:
-        elapsed_s = (temperature.header.t_mono_ns - before.header.t_mono_ns) / NS_PER_S
-        told_s = min(max(elapsed_s, 0.0), LONGEST_DOSE_STEP_S)  # its clock may be set back
-        silent_s = max(elapsed_s - LONGEST_DOSE_STEP_S, 0.0)
-        # Nobody knows of the rest of a silence, but that it was hot before it and after it.
-        cooler_degc = min(before.ambient_degc, temperature.ambient_degc)
-        unit.heat_dose += dose_of(before.ambient_degc, told_s) + dose_of(cooler_degc, silent_s)
+    header = temperature.header
+    unit.heat_dose += heat_told.follow(
+        unit.heat_told, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+    )
     unit.temperature, unit.temperature_ns = temperature, t_ns
+
+
+def note_late_temperature(
+    unit: UnitState, temperature: Temperature, since_ns: int, t_ns: int
+) -> None:
+    """Out of the journal: it says nothing of now, and what the equipment took at its time counts
+    from ``since_ns`` on.
+    """
+    header = temperature.header
+    said_ns = told_ns(unit.boots, header, t_ns)
+    if said_ns is None or said_ns < since_ns:
+        return
+    added = heat_told.fill(
+        unit.heat_told, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+    )
+    unit.heat_dose += added
+    unit.late_heat_dose += added
 
 
 def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:

@@ -6,7 +6,11 @@ import pytest
 
 from base_station.live_state import UnitState
 from base_station.units.thermal import dose_of
+from shared.channels import TEMPERATURE, backfilled_key
+from shared.codec import encode
 from shared.messages import Temperature
+from shared.messages.station import CloseIncident, OpenIncident
+from tests.journaled import JournaledScript
 from tests.station_script import Script
 
 U = "FF-01"
@@ -73,3 +77,92 @@ def test_the_time_between_two_runs_of_a_unit_is_not_known(script: Script) -> Non
     script.boot_ids[U] = 8
     script.temperature(U, 300.0)
     assert unit(script).heat_dose == 0.0
+
+
+def degc_at(second: int) -> float:
+    """Into the fire and out again, twice."""
+    return {0: 20.0, 1: 120.0, 2: 280.0, 3: 90.0}[second // 15 % 4]
+
+
+def told(lost: range, boots: dict[int, int], pieces: int = 2) -> JournaledScript:
+    """Two minutes of temperatures, of which some come late."""
+    script = JournaledScript()
+    script.register(U)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(120):
+        script.now_s += 1.0
+        script.boot_ids[U] = boots.get(second, script.boot_ids.get(U, 7))
+        script.out_of_reach = {U} if second in lost else set()
+        script.temperature(U, degc_at(second))
+    script.out_of_reach = set()
+    script.status(U)
+    if lost:
+        script.fetch(U, pieces)
+    return script
+
+
+@pytest.mark.parametrize("pieces", [1, 2, 5])
+@pytest.mark.parametrize("lost", [range(20, 70), range(10), range(50, 120), range(33, 36)], ids=str)
+@pytest.mark.parametrize("boots", [{}, {40: 8}], ids=["one run", "two runs"])
+def test_what_a_journal_brings_counts_as_what_came_live(
+    lost: range, boots: dict[int, int], pieces: int
+) -> None:
+    all_live, some_late = told(range(0), boots), told(lost, boots, pieces)
+    assert unit(all_live).heat_dose > 0.4
+    assert unit(some_late).heat_dose == pytest.approx(unit(all_live).heat_dose)
+    shown = unit(some_late).temperature
+    assert shown is not None
+    assert shown.ambient_degc == (degc_at(119) if 119 not in lost else degc_at(lost[0] - 1))
+
+
+def heat_alarms(script: Script) -> list[tuple[str, str]]:
+    return [(one.rule, one.text) for one in script.alarms if one.rule.startswith("heat")]
+
+
+def test_a_budget_that_was_used_up_out_of_reach_is_told_as_what_it_is() -> None:
+    """No heat of now, and the equipment may fail all the same."""
+    script = JournaledScript()
+    script.register(U)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(200):
+        script.now_s += 1.0
+        script.out_of_reach = {U} if 20 <= second < 180 else set()
+        script.temperature(U, 300.0 if 60 <= second < 150 else 20.0)
+        script.tick()
+    assert heat_alarms(script) == []
+    script.fetch(U)
+    script.wait(5)
+    assert heat_alarms(script) == [
+        (
+            "heat-dose",
+            f"The equipment of unit {U} has used up its heat budget, as only its journal told, "
+            "so some time ago: it may fail",
+        )
+    ]
+
+
+def test_what_was_before_this_incident_does_not_count_in_it() -> None:
+    script = told(range(20, 70), {})
+    before = unit(script).heat_dose
+    late = script.header(U, captured_s=script.now_s + 5.0)
+    script.act(CloseIncident("i1"))
+    script.now_s += 60.0
+    script.temperature(U, 20.0)
+    script.act(OpenIncident("i2", "Dock Street"))
+    script.now_s += 10.0
+    script.temperature(U, 20.0)
+    assert before > 0.0
+    assert unit(script).heat_dose == 0.0
+    for header, counts in ((late, False), (script.header(U, script.now_s - 5.0), True)):
+        hot = encode(Temperature(header, 300.0))
+        script.record(backfilled_key(U, TEMPERATURE.suffix), hot)
+        assert (unit(script).heat_dose > 0.0) == counts
+
+
+def test_stretches_that_are_known_take_no_more_room_the_longer_it_lasts() -> None:
+    script = told(range(20, 70), {})
+    assert len(unit(script).heat_told) == 1
+    for _ in range(500):
+        script.now_s += 11.0
+        script.temperature(U, 20.0)
+    assert len(unit(script).heat_told) <= 200
