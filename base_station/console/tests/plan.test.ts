@@ -2,8 +2,8 @@ import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
-import { colourOf, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
-import { nameAt, UNDER, type Pixel } from "../src/plan/names";
+import { colourOf, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
+import { placeNames, type Box, type Named, type Pixel, type Place } from "../src/plan/names";
 import { pinLabelStyle } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
 import type { PinView, Plan, TrailPoint } from "../src/wire";
@@ -71,10 +71,10 @@ describe("floorsOf", () => {
 
   it("lists the plan's floors and those where somebody is, top floor first", () => {
     const floors = floorsOf(PLAN, people, new Map([["x", alarm("x")]]));
-    expect(floors.map((one) => [one.name, one.people, one.urgency])).toEqual([
-      ["1", 2, "immediate"],
-      ["G", 0, "normal"],
-      ["B1", 1, "normal"],
+    expect(floors.map((one) => [one.name, one.people, one.endangered])).toEqual([
+      ["1", 2, 1],
+      ["G", 0, 0],
+      ["B1", 1, 0],
     ]);
   });
 
@@ -108,16 +108,24 @@ describe("floorRemark", () => {
   });
 });
 
-describe("where the name of somebody stands on the plan", () => {
+describe("where names stand on the plan", () => {
   const screen: Pixel = [500, 400];
-  /** Left, right and lower edge of a name of 120 pixels. */
-  const edges = (mark: Pixel) => {
-    const [right, down] = nameAt(mark, 120, screen);
-    return [mark[0] + right - 60, mark[0] + right + 60, mark[1] + down + 8];
+  const named = (mark: Pixel, change: Partial<Named> = {}): Named => {
+    return { mark, widthPx: 120, strong: false, before: null, ...change };
   };
+  const placed = (people: Named[], covered: Box[] = []) => placeNames(people, screen, covered);
+  /** What the name of somebody covers, with 8 pixels of a line above and below its middle. */
+  const boxOf = ({ mark: [x, y], widthPx }: Named, place: Place | null | undefined): Box => {
+    const [right, down] = place?.offset ?? [NaN, NaN];
+    const [middle, line] = [x + right, y + down];
+    return [middle - widthPx / 2, line - 8, middle + widthPx / 2, line + 8];
+  };
+  const meet = ([a1, b1, a2, b2]: Box, [c1, d1, c2, d2]: Box) =>
+    a1 < c2 && c1 < a2 && b1 < d2 && d1 < b2;
+  const markOf = ({ mark: [x, y] }: Named): Box => [x - 13, y - 13, x + 13, y + 13];
 
   it("is under the mark where there is room", () => {
-    expect(nameAt([250, 200], 120, screen)).toEqual(UNDER);
+    expect(placed([named([250, 200])])).toEqual([{ side: "below", offset: [0, 25] }]);
   });
 
   it.each<Pixel>([
@@ -126,22 +134,58 @@ describe("where the name of somebody stands on the plan", () => {
     [250, 398],
     [3, 398],
     [497, 0],
+    [250, 0],
   ])("is on the screen where the mark is at %i, %i", (x, y) => {
-    const [left, right, lower] = edges([x, y]) as [number, number, number];
-    expect(left).toBeGreaterThanOrEqual(0);
-    expect(right).toBeLessThanOrEqual(500);
-    expect(lower).toBeLessThanOrEqual(400);
+    const one = named([x, y]);
+    const [left, top, right, bottom] = boxOf(one, placed([one])[0]);
+    expect([left >= 0, top >= 0, right <= 500, bottom <= 400]).toEqual([true, true, true, true]);
   });
 
-  it("begins on the screen where it is longer than that", () => {
-    const [right] = nameAt([250, 200], 700, screen);
-    expect(250 + right - 350).toBeGreaterThanOrEqual(0);
+  it("begins on the screen where it is longer than that, and only of who must be named", () => {
+    const long = named([250, 200], { widthPx: 700, strong: true });
+    expect(boxOf(long, placed([long])[0])[0]).toBeGreaterThanOrEqual(0);
+    expect(placed([{ ...long, strong: false }])).toEqual([null]);
   });
 
-  it("stays with a mark that is beside the screen", () => {
+  it("is not said of who is beside the screen", () => {
     for (const mark of [[-1, 200], [501, 200], [250, -1], [250, 401]] as const) {
-      expect(nameAt(mark, 120, screen)).toEqual(UNDER);
+      expect(placed([named(mark, { strong: true })])).toEqual([null]);
     }
+  });
+
+  it("lies over nobody's mark, no other name and no button", () => {
+    const people = [named([250, 200]), named([270, 220]), named([230, 226]), named([252, 171])];
+    const button: Box = [150, 150, 235, 215];
+    const places = placed(people, [button]);
+    const boxes = people.flatMap((one, i) => (places[i] ? [boxOf(one, places[i])] : []));
+    expect(boxes.length).toBeGreaterThan(0);
+    for (const box of boxes) {
+      const others = [...people.map(markOf), ...boxes.filter((one) => one !== box), button];
+      expect(others.filter((one) => meet(box, one))).toEqual([]);
+    }
+  });
+
+  it("of two in danger at one place is read beside the other", () => {
+    const two = [named([250, 200], { strong: true }), named([256, 203], { strong: true })];
+    const [one, other] = placed(two).map((place, i) => boxOf(two[i] as Named, place));
+    expect(meet(one as Box, other as Box)).toBe(false);
+  });
+
+  it("of who is in danger stands, whoever else has to go without", () => {
+    const calm = Array.from({ length: 20 }, (_, i) => named([200 + 5 * i, 190 + (i % 3) * 10]));
+    const danger = named([250, 200], { strong: true });
+    const places = placed([...calm, danger]);
+    const box = boxOf(danger, places[20]);
+    expect(box.every(Number.isFinite)).toBe(true);
+    calm.forEach((one, i) => {
+      if (places[i]) expect(meet(boxOf(one, places[i]), box)).toBe(false);
+      if (places[i]) expect(meet(boxOf(one, places[i]), markOf(danger))).toBe(false);
+    });
+  });
+
+  it("stays on its side while it can", () => {
+    expect(placed([named([250, 200], { before: "above" })])[0]?.side).toBe("above");
+    expect(placed([named([250, 3], { before: "above" })])[0]?.side).toBe("below");
   });
 });
 
@@ -158,7 +202,7 @@ describe("the name of somebody on the plan", () => {
     headingKnown: false,
   } as const;
   const colours = { text: "#000000", halo: "#ffffff" } as Colours;
-  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours, UNDER).getText();
+  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours, [0, 25]).getText();
 
   it("shows danger also where the place is old", () => {
     const looks = { quiet: "grey", immediate: "red", soon: "amber" } as Colours;
@@ -172,10 +216,10 @@ describe("the name of somebody on the plan", () => {
     expect(seen({ urgency: "soon" })).toBe("amber AB");
   });
 
-  it("gives way to others, but not where somebody is in danger or chosen", () => {
-    expect(nameOf({})?.getDeclutterMode()).toBe("declutter");
-    expect(nameOf({ urgency: "immediate" })?.getDeclutterMode()).toBe("obstacle");
-    expect(nameOf({ chosen: true })?.getDeclutterMode()).toBe("obstacle");
+  it("is always said of who is in danger or chosen", () => {
+    expect(isStrong({ ...mark })).toBe(false);
+    expect(isStrong({ ...mark, urgency: "immediate" })).toBe(true);
+    expect(isStrong({ ...mark, chosen: true })).toBe(true);
   });
 
   it("says which floor and how old", () => {

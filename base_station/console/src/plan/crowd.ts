@@ -15,6 +15,7 @@ import type { Colours } from "./colours";
 import { isOld, outline, regionAt } from "./ellipse";
 import { floorRemark } from "./floors";
 import {
+  isStrong,
   labelFont,
   labelOf,
   labelStyle,
@@ -23,7 +24,7 @@ import {
   trailStyle,
   type Mark,
 } from "./marks";
-import { nameAt, UNDER, type Pixel } from "./names";
+import { placeNames, type Box, type Pixel, type Place, type Side } from "./names";
 import { siteCoordinate } from "./site";
 import { trailLines } from "./trail";
 
@@ -42,14 +43,26 @@ export interface Scene {
 /** What part of the plan is on the screen. */
 export interface Screen {
   size: Pixel;
+  covered: readonly Box[]; // by what lies over the plan
   pixelOf(coordinate: number[]): Pixel | null; // null: nothing is drawn yet
 }
 
 const HEADING_KNOWN_RAD = 0.8;
 const CROWDED = 12;
+const BESIDE: Pixel = [-1, -1]; // the screen: nothing is drawn yet
 
-/** The features of one person. */
+/** Somebody who is to be drawn. */
+interface Shown {
+  unit: UnitView;
+  position: PositionView;
+  looks: Mark;
+  centre: [number, number];
+  figure: Figure;
+}
+
+/** The features of one person, and on which side the name stands. */
 interface Figure {
+  named: Side | null;
   trail: Feature<MultiLineString>;
   region: Feature<Polygon>;
   mark: Feature<Point>;
@@ -70,15 +83,20 @@ export class Crowd {
   ];
 
   show(scene: Scene): void {
-    const shown = new Set<string>();
+    const shown = new Map<string, Shown>();
     for (const unit of scene.units) {
-      if (unit.position === null || !isShown(unit, unit.position, scene)) continue;
-      shown.add(unit.unit_id);
-      this.draw(unit, unit.position, scene);
+      const { position } = unit;
+      if (position === null || !isShown(unit, position, scene)) continue;
+      const looks = markOf(unit, position, scene);
+      const centre = siteCoordinate(position);
+      shown.set(unit.unit_id, { unit, position, looks, centre, figure: this.figure(unit.unit_id) });
     }
     for (const unitId of this.figures.keys()) {
       if (!shown.has(unitId)) this.forget(unitId);
     }
+    const all = [...shown.values()];
+    const places = placesOf(all, scene.screen);
+    all.forEach((one, i) => draw(one, places[i] ?? null, scene));
   }
 
   /** Where people are, without the regions about them. */
@@ -93,33 +111,19 @@ export class Crowd {
     return feature && at ? { unitId: String(feature.getId()), at } : null;
   }
 
-  private draw(unit: UnitView, position: PositionView, scene: Scene): void {
-    const { trail, region, mark, label } = this.figure(unit.unit_id);
-    const looks = markOf(unit, position, scene);
-    const centre = siteCoordinate(position);
-    const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
-    trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
-    const ellipse = regionAt(position, scene.silentMs);
-    const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
-    region.getGeometry()?.setCoordinates([border]);
-    mark.getGeometry()?.setCoordinates(centre);
-    label.getGeometry()?.setCoordinates(centre);
-    trail.setStyle(trailStyle(looks, scene.colours));
-    region.setStyle(regionStyle(looks, ellipse.major_m, scene.colours));
-    mark.setStyle(markStyle(looks, scene.colours));
-    label.setStyle(labelStyle(looks, scene.colours, placeOfName(looks, centre, scene.screen)));
-  }
-
   private figure(unitId: string): Figure {
     const known = this.figures.get(unitId);
     if (known !== undefined) return known;
     const figure = {
+      named: null,
       trail: new Feature(new MultiLineString([])),
       region: new Feature(new Polygon([])),
       mark: new Feature(new Point([0, 0])),
       label: new Feature(new Point([0, 0])),
     };
-    for (const feature of Object.values(figure)) feature.setId(unitId);
+    for (const feature of [figure.trail, figure.region, figure.mark, figure.label]) {
+      feature.setId(unitId);
+    }
     this.trails.addFeature(figure.trail);
     this.regions.addFeature(figure.region);
     this.marks.addFeature(figure.mark);
@@ -139,10 +143,33 @@ export class Crowd {
   }
 }
 
-function placeOfName(looks: Mark, centre: number[], { size, pixelOf }: Screen): Pixel {
-  const mark = pixelOf(centre);
-  if (mark === null) return UNDER;
-  return nameAt(mark, measureTextWidth(labelFont(looks), labelOf(looks)), size);
+/** One for each; null where the name is left out. */
+function placesOf(all: readonly Shown[], screen: Screen): (Place | null)[] {
+  const pixels = all.map(({ centre }) => screen.pixelOf(centre));
+  const named = all.map(({ looks, figure }, i) => ({
+    mark: pixels[i] ?? BESIDE,
+    widthPx: measureTextWidth(labelFont(looks), labelOf(looks)),
+    strong: isStrong(looks),
+    before: figure.named,
+  }));
+  return placeNames(named, screen.size, screen.covered);
+}
+
+function draw({ unit, position, looks, centre, figure }: Shown, name: Place | null, scene: Scene): void {
+  const { trail, region, mark, label } = figure;
+  const { colours } = scene;
+  const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
+  trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
+  const ellipse = regionAt(position, scene.silentMs);
+  const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
+  region.getGeometry()?.setCoordinates([border]);
+  mark.getGeometry()?.setCoordinates(centre);
+  label.getGeometry()?.setCoordinates(centre);
+  trail.setStyle(trailStyle(looks, colours));
+  region.setStyle(regionStyle(looks, ellipse.major_m, colours));
+  mark.setStyle(markStyle(looks, colours));
+  figure.named = name?.side ?? null;
+  label.setStyle(name === null ? [] : labelStyle(looks, colours, name.offset));
 }
 
 /** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who

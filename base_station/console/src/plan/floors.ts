@@ -1,5 +1,5 @@
 /** Which floors there are and who is on each.  Pure. */
-import { urgencyOf, type Urgency } from "../live/urgency";
+import { urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../view";
 import type { AlarmView, Plan, PositionView, UnitView } from "../wire";
 import { floorName, floorOf, isFloorLikely } from "../words";
@@ -8,10 +8,8 @@ export interface Floor {
   floor: number;
   name: string;
   people: number;
-  urgency: Urgency; // the worst on it
+  endangered: number; // of them
 }
-
-const WORST: readonly Urgency[] = ["immediate", "soon", "watch", "normal"];
 
 /** Top floor first, as in a building: those of the plan, those where somebody is, and the one that is
  * looked at, also when the last one has left it. */
@@ -27,12 +25,11 @@ export function floorsOf(
     .sort((a, b) => b - a)
     .map((floor) => {
       const on = units.filter((unit) => unit.position?.floor === floor);
-      const urgencies = new Set(on.map((unit) => urgencyOf(unit, alarms)));
       return {
         floor,
         name: shortName(floor),
         people: on.length,
-        urgency: WORST.find((urgency) => urgencies.has(urgency)) ?? "normal",
+        endangered: on.filter((unit) => urgencyOf(unit, alarms) === "immediate").length,
       };
     });
 }

@@ -13,8 +13,9 @@ import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { Crowd, type Scene } from "./crowd";
 import { Grid } from "./grid";
+import type { Box, Pixel } from "./names";
 import { PastLayer, type PastScene } from "./pastLayer";
-import { PinLayer, type PinScene, type Standing } from "./pins";
+import { PIN_HALF_PX, PIN_HEIGHT_PX, PinLayer, type PinScene, type Standing } from "./pins";
 import { SITE } from "./site";
 import type { Place } from "./tools";
 
@@ -158,9 +159,32 @@ export class PlanMap {
   private drawPeople(): void {
     if (this.people === null) return;
     const [right = 0, down = 0] = this.map.getSize() ?? [];
-    const pixelOf = (at: number[]) => this.map.getPixelFromCoordinate(at) as [number, number] | null;
-    const screen = { size: [right, down], pixelOf } as const;
+    const pixelOf = (at: number[]) => this.pixelOf(at);
+    const screen = { size: [right, down], covered: this.covered(), pixelOf } as const;
     this.crowd.show({ ...this.people, colours: this.colours, screen });
+  }
+
+  /** What lies over the plan. */
+  private covered(): Box[] {
+    const map = this.map.getTargetElement();
+    if (!map) return []; // it is being closed
+    const { left: x, top: y } = map.getBoundingClientRect();
+    const over = map.parentElement?.querySelectorAll(".zoom, .north, .ol-scale-line") ?? [];
+    const controls = [...over].map((one): Box => {
+      const { left, top, right, bottom } = one.getBoundingClientRect();
+      return [left - x, top - y, right - x, bottom - y];
+    });
+    const pins = this.pins.places().flatMap((at): Box[] => {
+      const [right, down] = this.pixelOf(at) ?? [];
+      if (right === undefined || down === undefined) return [];
+      return [[right - PIN_HALF_PX, down - PIN_HEIGHT_PX, right + PIN_HALF_PX, down + PIN_HALF_PX]];
+    });
+    return [...controls, ...pins];
+  }
+
+  /** Null before anything is drawn. */
+  private pixelOf(at: number[]): Pixel | null {
+    return this.map.getPixelFromCoordinate(at) as [number, number] | null;
   }
 
   /** Not so while another part of a small screen is shown. */

@@ -70,16 +70,15 @@ export function labelFont(mark: Mark): string {
   return `${isStrong(mark) ? "700" : "600"} 14px system-ui, sans-serif`;
 }
 
-function isStrong({ chosen, urgency }: Mark): boolean {
+/** Always named. */
+export function isStrong({ chosen, urgency }: Mark): boolean {
   return chosen || urgency === "immediate";
 }
 
-/** Names keep clear of each other; the plan leaves out what does not fit, but never who is in danger or
- * chosen. */
+/** Names of rooms and pins keep clear of it. */
 export function labelStyle(mark: Mark, colours: Colours, [offsetX, offsetY]: Pixel): Style {
-  const strong = isStrong(mark);
   return new Style({
-    zIndex: strong ? 2 : 1,
+    zIndex: isStrong(mark) ? 2 : 1,
     text: new Text({
       text: labelOf(mark),
       font: labelFont(mark),
@@ -88,7 +87,7 @@ export function labelStyle(mark: Mark, colours: Colours, [offsetX, offsetY]: Pix
       fill: new Fill({ color: colours.text }),
       stroke: new Stroke({ color: colours.halo, width: 4 }),
       padding: [1, 3, 1, 3],
-      declutterMode: strong ? "obstacle" : "declutter",
+      declutterMode: "obstacle",
     }),
   });
 }

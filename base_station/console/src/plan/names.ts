@@ -1,20 +1,92 @@
-/** Where the name of somebody stands: under the mark, and where the screen ends there, still on it.  Pure. */
+/** Where the names of people stand on the plan: beside their marks, wholly on the screen, over nobody's
+ * mark and no other name.  Pure. */
 
-/** In pixels, from the plan's upper left corner; a name's is of its middle, from the mark's. */
+/** Pixels from the plan's upper left corner, or, of a name's middle, from its mark. */
 export type Pixel = readonly [right: number, down: number];
+export type Box = readonly [left: number, top: number, right: number, bottom: number];
 
-const BELOW_PX = 25;
-const HALF_LINE_PX = 10;
+export interface Named {
+  mark: Pixel;
+  widthPx: number; // of the name
+  strong: boolean; // in danger or chosen: named whatever that hides
+  before: Side | null; // where the name stood last: it stays there while it can
+}
+
+export interface Place {
+  side: Side;
+  offset: Pixel;
+}
+
+export type Side = "below" | "above" | "right" | "left";
+
+const SIDES: readonly Side[] = ["below", "above", "right", "left"];
+const MARK_PX = 14;
+const APART_PX = 25;
+const HALF_LINE_PX = 9;
 const EDGE_PX = 4;
 
-export const UNDER: Pixel = [0, BELOW_PX];
+/** One for each, null where somebody is not named: there is no room, or they are beside the screen.
+ * `covered` are what lies over the plan, such as buttons. */
+export function placeNames(
+  people: readonly Named[],
+  screen: Pixel,
+  covered: readonly Box[],
+): (Place | null)[] {
+  const places = people.map((): Place | null => null);
+  const marks = people.map(({ mark }) => around(mark, MARK_PX, MARK_PX));
+  const strongMarks = marks.filter((_, i) => people[i]?.strong);
+  const names: Box[] = [];
+  for (const strong of [true, false]) {
+    people.forEach((one, i) => {
+      if (one.strong !== strong || !isOn(one.mark, screen)) return;
+      const all = sidesFor(one.before).map((side) => placeAt(side, one, screen));
+      const clearOf = (...taken: (readonly Box[])[]) =>
+        all.find(({ offset }) => isClear(boxOf(one, offset), taken.flat(), screen)) ?? null;
+      const inNeed = () =>
+        clearOf(strongMarks, names, covered) ??
+        clearOf(strongMarks, names) ??
+        clearOf() ??
+        placeAt("below", one, screen);
+      const found = clearOf(marks, names, covered) ?? (strong ? inNeed() : null);
+      if (found === null) return;
+      places[i] = found;
+      names.push(boxOf(one, found.offset));
+    });
+  }
+  return places;
+}
 
-/** Whoever is beside the screen is not named on it. */
-export function nameAt(mark: Pixel, widthPx: number, [right, down]: Pixel): Pixel {
-  const [x, y] = mark;
-  if (x < 0 || x > right || y < 0 || y > down) return UNDER;
-  const half = widthPx / 2 + EDGE_PX;
-  const middle = Math.max(Math.min(x, right - half), half); // of two edges the left one: names begin there
-  const hasRoomBelow = y + BELOW_PX + HALF_LINE_PX <= down;
-  return [middle - x, hasRoomBelow ? BELOW_PX : -BELOW_PX];
+function sidesFor(before: Side | null): readonly Side[] {
+  return before === null ? SIDES : [before, ...SIDES.filter((side) => side !== before)];
+}
+
+function placeAt(side: Side, one: Named, screen: Pixel): Place {
+  return { side, offset: offsetTo(side, one, screen) };
+}
+
+/** Below and above, a name is pushed aside where the screen ends; of two ends it keeps to the left one. */
+function offsetTo(side: Side, { mark: [x], widthPx }: Named, [right]: Pixel): Pixel {
+  const half = widthPx / 2;
+  if (side === "right") return [MARK_PX + EDGE_PX + half, 0];
+  if (side === "left") return [-MARK_PX - EDGE_PX - half, 0];
+  const middle = Math.max(Math.min(x, right - half - EDGE_PX), half + EDGE_PX);
+  return [middle - x, side === "below" ? APART_PX : -APART_PX];
+}
+
+function boxOf({ mark: [x, y], widthPx }: Named, [right, down]: Pixel): Box {
+  return around([x + right, y + down], widthPx / 2, HALF_LINE_PX);
+}
+
+function around([x, y]: Pixel, halfWidth: number, halfHeight: number): Box {
+  return [x - halfWidth, y - halfHeight, x + halfWidth, y + halfHeight];
+}
+
+function isOn([x, y]: Pixel, [right, down]: Pixel): boolean {
+  return x >= 0 && x <= right && y >= 0 && y <= down;
+}
+
+function isClear(box: Box, taken: readonly Box[], [right, down]: Pixel): boolean {
+  const [x1, y1, x2, y2] = box;
+  if (x1 < 0 || y1 < 0 || x2 > right || y2 > down) return false;
+  return !taken.some(([a1, b1, a2, b2]) => x1 < a2 && a1 < x2 && y1 < b2 && b1 < y2);
 }

@@ -32,6 +32,9 @@ export interface Standing {
 const RADIUS_95 = 2.447; // standard deviations that hold 95 % in a plane
 const STEM_PX = 20;
 const HEAD_PX = 7;
+/** What a pin covers above its place, and beside it; a beacon is no larger. */
+export const PIN_HEIGHT_PX = STEM_PX + HEAD_PX + 2;
+export const PIN_HALF_PX = HEAD_PX + 2;
 
 export class PinLayer {
   private readonly source = new VectorSource<Feature>();
@@ -59,6 +62,12 @@ export class PinLayer {
   /** Whether a feature of the map is one that can be chosen. */
   standing(feature: Feature): Standing | null {
     return (feature.get("standing") as Standing | undefined) ?? null;
+  }
+
+  /** Where pins and beacons stand. */
+  places(): number[][] {
+    const standing = this.source.getFeatures().filter((one) => this.standing(one) !== null);
+    return standing.map((one) => (one.getGeometry() as Point).getCoordinates());
   }
 
   /** Only what was chosen can be dragged: who moves the plan moves no pin along. */

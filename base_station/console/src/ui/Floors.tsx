@@ -3,7 +3,7 @@ import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
 import { Icon } from "./Icon";
 
-/** One big button a floor, top floor on top, each with the number of people on it. */
+/** One big button a floor, top floor on top, each with the number of people on it, and of those in danger. */
 export function Floors({ picture }: { picture: Picture }) {
   void picture.unitsChanged.value;
   const units = picture.allUnits();
@@ -18,10 +18,10 @@ export function Floors({ picture }: { picture: Picture }) {
           choice={one.floor}
           name={one.name}
           people={one.people}
-          alarmed={one.urgency === "immediate"}
+          endangered={one.endangered}
         />
       ))}
-      <FloorButton choice="all" name="All" people={placed} alarmed={false} />
+      <FloorButton choice="all" name="All" people={placed} endangered={0} />
     </div>
   );
 }
@@ -30,10 +30,11 @@ interface ButtonProps {
   choice: FloorChoice;
   name: string;
   people: number;
-  alarmed: boolean;
+  endangered: number; // of the people
 }
 
-function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
+function FloorButton({ choice, name, people, endangered }: ButtonProps) {
+  const alarmed = endangered > 0;
   return (
     <button
       type="button"
@@ -46,10 +47,17 @@ function FloorButton({ choice, name, people, alarmed }: ButtonProps) {
         {name}
         <span class="spoken">,</span>
       </span>
+      {alarmed && (
+        <span class="floor-people endangered">
+          <Icon name="alarm" />
+          {endangered}
+          <span class="spoken"> in danger, of</span>
+        </span>
+      )}
       <span class="floor-people">
-        <Icon name={alarmed ? "alarm" : "people"} />
+        <Icon name="people" />
         {people}
-        <span class="spoken"> people{alarmed ? ", alarm" : ""}</span>
+        <span class="spoken"> people</span>
       </span>
     </button>
   );
