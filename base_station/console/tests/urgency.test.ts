@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { handedTo, hasAlarm, isOfAnother, openAlarms, sinceMs } from "../src/live/alarms";
+import { handedTo, hasAlarm, isOfAnother, needsOf, openAlarms, sinceMs } from "../src/live/alarms";
 import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
@@ -125,6 +125,20 @@ describe("sinceMs", () => {
     expect(sinceMs(alarm("again", times))).toBe(2_000);
     expect(sinceMs(alarm("taken", { ...times, state: "acknowledged" }))).toBe(5);
   });
+});
+
+it("what cannot wait is the wearer's own, and more than that they have not answered", () => {
+  const ana = unit("1", {
+    person: { person_id: "a", name: "Ana", crew: "", role: "", photo_url: null },
+    alarms: ["fall", "before", "overdue", "battery", "gone"],
+  });
+  const alarms = new Map([
+    ["fall", alarm("fall", { rule: "fall", text: "Ana may have fallen" })],
+    ["before", alarm("before", { rule: "mayday", text: "Mayday from Bo" })],
+    ["overdue", alarm("overdue", { rule: "missed-check-in", text: "Ana: PAR overdue" })],
+    ["battery", alarm("battery", { rule: "battery", priority: 2, text: "The battery of Ana's unit" })],
+  ]);
+  expect(needsOf(ana, alarms).map((one) => one.alarm_id)).toEqual(["fall"]);
 });
 
 describe("handedTo", () => {

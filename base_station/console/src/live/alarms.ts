@@ -41,6 +41,15 @@ export function isOfAnother(alarm: AlarmView, unit: UnitView): boolean {
   return OF_WEARER.includes(alarm.rule) && handedTo(alarm, unit) !== "";
 }
 
+/** What cannot wait of whoever wears the unit now, besides that they have not answered. */
+export function needsOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): AlarmView[] {
+  return unit.alarms
+    .map((alarmId) => alarms.get(alarmId))
+    .filter((alarm) => alarm !== undefined)
+    .filter((alarm) => alarm.priority === 1 && alarm.rule !== "missed-check-in")
+    .filter((alarm) => !isOfAnother(alarm, unit));
+}
+
 /** Of Bo, Bob is not named. */
 function wholeWord(name: string): RegExp {
   const letters = name.replace(/[\\^$.*+?()[\]{}|/]/g, "\\$&");

@@ -1,13 +1,15 @@
 import { attempt, mayAct, picture as shown } from "../sessions";
 import { openDialog } from "../view";
 import * as api from "../api";
+import { needsOf } from "../live/alarms";
 import type { Target } from "../live/commands";
 import { crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
 import { displayName } from "../live/urgency";
-import { clockTime, minutes } from "../words";
+import { alarmWord, clockTime, minutes } from "../words";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { useSteady } from "./haste";
+import { Icon } from "./Icon";
 import { ParMark } from "./ParClock";
 
 /** Ticking people off: one press for each, or for a crew, or for everyone. */
@@ -30,7 +32,7 @@ export function RollCallDialog() {
           </button>
           <ConfirmButton
             label="All heard"
-            question="Has everybody answered?"
+            question={`Has everybody answered${named(inNeed(crews, picture))}?`}
             onConfirm={() => tick({ everyone: true })}
           />
         </p>
@@ -53,16 +55,26 @@ interface CrewProps {
 function Crew({ crew, place, picture }: CrewProps) {
   const steady = useSteady(place);
   const name = crew.crew === "" ? "Without a crew" : crew.crew;
+  const all = () => tick({ crew: crew.crew });
+  const needy = inNeed([crew], picture);
   return (
     <section class={`roll-crew ${crew.par.state}`} aria-label={name}>
       <header>
         <h3>
           {name} <span class="quiet">{crew.people.length} on duty</span>
         </h3>
-        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && (
-          <button type="button" onClick={steady(() => tick({ crew: crew.crew }))}>
+        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && needy.length === 0 && (
+          <button type="button" onClick={steady(all)}>
             {name}: all heard
           </button>
+        )}
+        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && needy.length > 0 && (
+          <ConfirmButton
+            label="All heard"
+            about={name}
+            question={`Have all answered${named(needy)}?`}
+            onConfirm={steady(all)}
+          />
         )}
       </header>
       <ul>
@@ -77,10 +89,19 @@ function Crew({ crew, place, picture }: CrewProps) {
 function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Shown }) {
   const steady = useSteady(place);
   const { unit, duty } = one;
+  const needs = needsOf(unit, picture.alarms.value);
   const name = displayName(unit);
   return (
     <li class={one.par.state}>
-      <strong>{name}</strong>
+      <span class="roll-name">
+        <strong>{name}</strong>
+        {needs.length > 0 && (
+          <span class="in-need">
+            <Icon name="alarm" />
+            {needs.map(alarmWord).join(", ")}
+          </span>
+        )}
+      </span>
       <ParMark unit={unit} picture={picture} />
       <span class="quiet">
         last heard {clockTime(duty.checked_in_ms)} by {duty.checked_in_by}
@@ -101,6 +122,17 @@ function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Sho
       )}
     </li>
   );
+}
+
+/** Whose answer nobody should take for granted. */
+function inNeed(crews: readonly CrewOnDuty[], picture: Shown): string[] {
+  const people = crews.flatMap((crew) => crew.people);
+  const needy = people.filter(({ unit }) => needsOf(unit, picture.alarms.value).length > 0);
+  return needy.map(({ unit }) => displayName(unit));
+}
+
+function named(names: readonly string[]): string {
+  return names.length === 0 ? "" : `, ${names.join(" and ")} too`;
 }
 
 function peopleIn(crews: readonly CrewOnDuty[]): number {
