@@ -395,3 +395,37 @@ PAST_ALARMS: list[dict[str, Any]] = [
     }
     for minutes, one in enumerate(bad_minute().alarms)
 ]
+_FIGURES = dict.fromkeys(("ce50_m", "ve50_m", "se50_m"), 0.4) | dict.fromkeys(
+    ("ce95_m", "ve95_m", "se95_m"), 2.4
+)
+ASSESSMENT = {
+    "incident_id": INCIDENT.incident_id,
+    "made_ms": NOW_MS,
+    "units": [
+        {
+            "unit_id": unit_id(index),
+            "people": [name],
+            "seconds": 188.0,
+            "walked_m": 151.0 + index,
+            "stated": _FIGURES,
+            "against_smoothed": _FIGURES,
+            "floor_probability": 1.0,
+            "floor_right": 0.99,
+            "trust": {
+                "green_s": 168.0,
+                "amber_s": 35.0,
+                "red_s": 4.0,
+                "causes": [["not heard", 35.0], ["place only roughly known", 12.0]],
+            },
+            "pin_residuals": [],
+            "loop_closure_m": 1.5,
+            "loop_closure_percent": 1.0,
+            "reentry_jumps_m": [0.4],
+            "not_used": [["the receiver has no fix", 128]],
+        }
+        for index, name in enumerate(NAMES)
+    ],
+    "stated": _FIGURES,
+    "against_smoothed": _FIGURES,
+    "is_newest": True,
+}

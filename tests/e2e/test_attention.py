@@ -217,6 +217,45 @@ def test_a_name_at_the_edge_of_the_plan_is_whole(stage: Stage, screen: str) -> N
     assert edges == {"left": 0, "right": 0, "top": 0, "bottom": 0}
 
 
+def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
+    """One press for a crew or for all is for those who answered."""
+    page, station = stage.open(scenes.bad_minute())
+    page.locator(".par-clock").click()
+    dialog = page.get_by_role("dialog", name="Roll call (PAR)")
+    down = dialog.get_by_role("listitem").filter(has_text="Jonas Bergman")
+    expect(down).to_contain_text("Fall, No motion")
+    assert flaws(page) == []
+    dialog.get_by_role("button", name="All heard", exact=True).click()
+    expect(
+        dialog.get_by_role("group", name="Has everybody answered, Jonas Bergman too?")
+    ).to_be_visible()
+    assert station.changes() == []
+
+
+def test_a_crew_with_somebody_down_is_ticked_off_on_a_second_word(stage: Stage) -> None:
+    shown = scenes.bad_minute(7)  # two of each crew
+    page, station = stage.open(shown)
+    page.locator(".par-clock").click()
+    crews = page.get_by_role("dialog").get_by_role("region")
+    calm = crews.filter(has_text="Engine 1").get_by_role("button", name="all heard")
+    press(calm)
+    assert station.changes() == ["/check-ins"]
+    confirm_crew = crews.filter(has_text="Jonas Bergman")
+    confirm_crew.get_by_role("button", name="All heard: Engine 2").click()
+    expect(confirm_crew).to_contain_text("Have all answered, Jonas Bergman too?")
+    assert station.changes() == ["/check-ins"]
+    page.wait_for_timeout(600)
+    confirm_crew.get_by_role("button", name="Yes, all heard").click()
+    assert station.changes() == ["/check-ins", "/check-ins"]
+
+
+def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    floors = page.get_by_role("group", name="Floor shown").get_by_role("button")
+    expect(floors.nth(0)).to_have_accessible_name("Floor 1 , 1 in danger, of 20 people")
+    expect(floors.nth(1)).to_have_accessible_name("Floor G , 20 people")
+
+
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())
@@ -476,6 +515,18 @@ def begin_replay(page: Page) -> Locator:
     banner = page.get_by_role("region", name="Replay")
     expect(banner).to_contain_text("This is the past")
     return banner
+
+
+def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    page.get_by_role("button", name="Menu").click()
+    banner = begin_replay(page)
+    expect(banner).to_contain_text("Live now: 4 open alarms")
+    what = banner.get_by_text("This is the past.")
+    expect(what).to_contain_text(scenes.INCIDENT.name)
+    box = what.bounding_box()
+    assert box is not None
+    assert box["height"] < 50, "two lines, and no column of words"
 
 
 def test_what_cannot_wait_is_said_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:

@@ -11,7 +11,7 @@ from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, close, menu
 from tests.e2e.looks import flaws
-from tests.e2e.stage import SCREENS, Stage
+from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
 
 
 def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, list[str]]:
@@ -116,6 +116,20 @@ def test_nothing_of_a_dialog_lies_beside_a_phone(stage: Stage) -> None:
         beyond_px = dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth")
         assert beyond_px <= 0, name
         close(dialog)
+
+
+def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
+    """Its tables lay beside the screen, with a word a line in rows as high as half of it."""
+    answers = {**ANSWERS, f"{PAST}/assessment": scenes.ASSESSMENT}
+    page, _ = stage.open(scenes.bad_minute(), "phone", answers)
+    page.get_by_role("button", name="Menu").click()
+    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
+    dialog = page.get_by_role("dialog", name="How good were the positions?")
+    expect(dialog).to_contain_text("not heard 35 s")
+    assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
+    label = "one => getComputedStyle(one, '::before').content"
+    assert dialog.get_by_role("cell", name="151 m").evaluate(label) == '"Walked "'
+    assert flaws(page) == []
 
 
 def test_no_panel_lies_over_the_plan(stage: Stage) -> None:

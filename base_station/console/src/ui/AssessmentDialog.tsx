@@ -72,11 +72,14 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
   );
 }
 
+const FIGURES = ["CE50", "CE95", "VE95", "SE95"];
+const FLOOR = "Floor right";
+
 function Errors({ report }: { report: Assessment }) {
   return (
-    <table class="assessment">
+    <table class="assessment stacked">
       <caption>Errors in the terms of ISO/IEC 18305</caption>
-      <Columns names={["Person", "Error", "CE50", "CE95", "VE95", "SE95", "Floor right"]} />
+      <Columns names={["Person", "Error", ...FIGURES, FLOOR]} />
       {report.units.map((unit) => (
         <ErrorRows
           key={unit.unit_id}
@@ -106,7 +109,7 @@ function ErrorRows({ name, figures, floors }: ErrorRowsProps) {
         </th>
         <th scope="row">as promised then</th>
         <Cells of={stated} />
-        <td>{share(floors[0])}</td>
+        <td data-label={FLOOR}>{share(floors[0])}</td>
       </tr>
       <tr>
         <th scope="row">
@@ -114,7 +117,7 @@ function ErrorRows({ name, figures, floors }: ErrorRowsProps) {
           {tooSure(stated, known) && <strong class="warned"> more than promised</strong>}
         </th>
         <Cells of={known} />
-        <td>{share(floors[1])}</td>
+        <td data-label={FLOOR}>{share(floors[1])}</td>
       </tr>
     </tbody>
   );
@@ -127,8 +130,11 @@ function share(part: number | null): string {
 /** How far the station itself trusted each place, as it said at the time. */
 function Lights({ report }: { report: Assessment }) {
   return (
-    <table class="assessment">
-      <caption>How far the places could be trusted, by the light beside the name</caption>
+    <table class="assessment stacked">
+      <caption>
+        How far the places could be trusted: amber is “Place uncertain” on the card, red “Do not trust this
+        place”
+      </caption>
       <Columns names={["Person", "Green, amber, red", "For how long", "Why not green"]} />
       <tbody>
         {report.units.map((unit) => (
@@ -138,7 +144,7 @@ function Lights({ report }: { report: Assessment }) {
               <LightBar trust={unit.trust} />
             </td>
             <td>{lightWords(unit.trust)}</td>
-            <td class="detail">
+            <td class="detail" data-label="Why not green">
               {unit.trust.causes.length === 0 && NOTHING}
               {unit.trust.causes.map(([cause, seconds]) => (
                 <div key={cause}>
@@ -184,37 +190,40 @@ function Cells({ of }: { of: Figures | null }) {
   return (
     <>
       {cells(of).map((text, column) => (
-        <td key={column}>{text}</td>
+        <td key={column} data-label={FIGURES[column]}>
+          {text}
+        </td>
       ))}
     </>
   );
 }
 
+const CHECKS = {
+  seconds: "Shown for",
+  walked: "Walked",
+  closure: "Own path missed the beginning by",
+  jumps: "Jumps as GPS came back",
+  pins: "Off from pins",
+  notUsed: "GPS and beacons not used",
+};
+
 function Checks({ report }: { report: Assessment }) {
   return (
-    <table class="assessment">
+    <table class="assessment stacked">
       <caption>What else tells how good they were</caption>
-      <Columns
-        names={[
-          "Person",
-          "Shown for",
-          "Walked",
-          "Own path missed the beginning by",
-          "Jumps as GPS came back",
-          "Off from pins",
-          "GPS and beacons not used",
-        ]}
-      />
+      <Columns names={["Person", ...Object.values(CHECKS)]} />
       <tbody>
         {report.units.map((unit) => (
           <tr key={unit.unit_id}>
             <th scope="row">{wearerOf(unit)}</th>
-            <td>{duration(1000 * unit.seconds)}</td>
-            <td>{Math.round(unit.walked_m)} m</td>
-            <td>{closureOf(unit)}</td>
-            <td>{jumpsOf(unit)}</td>
-            <td class="detail">{unit.pin_residuals.map(pinWords).join("; ") || NOTHING}</td>
-            <td class="detail">
+            <td data-label={CHECKS.seconds}>{duration(1000 * unit.seconds)}</td>
+            <td data-label={CHECKS.walked}>{Math.round(unit.walked_m)} m</td>
+            <td data-label={CHECKS.closure}>{closureOf(unit)}</td>
+            <td data-label={CHECKS.jumps}>{jumpsOf(unit)}</td>
+            <td class="detail" data-label={CHECKS.pins}>
+              {unit.pin_residuals.map(pinWords).join("; ") || NOTHING}
+            </td>
+            <td class="detail" data-label={CHECKS.notUsed}>
               {unit.not_used.map(([reason, count]) => `${count} ${reason}`).join("; ") || NOTHING}
             </td>
           </tr>

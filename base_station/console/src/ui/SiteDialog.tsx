@@ -56,7 +56,7 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
         else asked.value = next;
       }}
     >
-      <p>
+      <p class="whole">
         {anchor === null
           ? "Nobody has said where the plan lies."
           : `The plan’s origin lies at ${placeWords(anchor)}.`}
