@@ -40,7 +40,7 @@ from base_station.pins.sightings import note_sighting
 from base_station.positioning.positioning import Positioning
 from base_station.units.boot_state import captured_ns, told_ns
 from base_station.units.sender import News, Sender
-from base_station.units.updates import note, note_late_temperature
+from base_station.units.updates import note, note_fault, note_late_temperature
 from shared.channels import Channel, Direction, channel_of, tracked_unit
 from shared.clock import NS_PER_S
 from shared.errors import UserError
@@ -205,12 +205,14 @@ class StationPipeline:
 
     def _hear_tracker(self, unit: UnitState, event: Received, channel: Channel) -> list[Output]:
         """Where the wearer is, what strides tell of him, and falls, from the agent that tracks
-        for the unit.  Nothing of it is a sign of life of the unit.
+        for the unit, and what fails of its own.  Nothing of it is a sign of life of the unit.
         """
         state, message = self.state, event.message
         if unit.tracker is None:
             unit.tracker = UnitState(message.header.unit_id)
         news = _news(unit.tracker, event, channel, state.t_ns)
+        if news != "repeat" and isinstance(message, UnitEvent):  # before the unit has said anything
+            note_fault(unit.tracker, message, state.t_ns)
         if news == "repeat" or not unit.is_tracked_remotely:
             return []
         outputs: list[Output] = []
@@ -218,8 +220,9 @@ class StationPipeline:
             outputs.extend(self._observe(unit, message))
         elif isinstance(message, Position) and unit.registered:
             outputs.extend(self._recall(unit, message))
-        elif isinstance(message, UnitEvent) and message.kind is EventKind.FALL:
-            outputs.extend(self._observe(unit, message))
+        elif isinstance(message, UnitEvent):  # of a fault the rule for it judges
+            if message.kind is EventKind.FALL:
+                outputs.extend(self._observe(unit, message))
         elif isinstance(message, Status) and news == "new":
             unit.tracker.status, unit.tracker.status_ns = message, state.t_ns
         else:

@@ -24,6 +24,7 @@ from base_station.alarms.port import AlarmRule
 from base_station.alarms.position_lost import PositionLost
 from base_station.alarms.rest_due import RestDue
 from base_station.alarms.tracker_degraded import TrackerDegraded
+from base_station.alarms.tracker_fault import TrackerFault
 from base_station.alarms.tracker_gone import TrackerGone
 from base_station.alarms.unit_fault import UnitFault
 from base_station.alarms.unknown_unit import UnknownUnit
@@ -42,6 +43,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     PositionLost(),
     GpsUnused(),
     UnitFault(),
+    TrackerFault(),
     UnknownUnit(),
     ClonedUnit(),
     Calibration(),

@@ -18,6 +18,8 @@ from shared.messages import (
 )
 from shared.quality import Quality
 
+_FAULTS = frozenset({EventKind.SENSOR_FAULT, EventKind.STORAGE_FAULT})
+
 
 def note(unit: UnitState, message: Message, t_ns: int) -> None:
     """A unit said this; ``t_ns`` is station time."""
@@ -110,13 +112,18 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
         case EventKind.FALL:
             unit.fall_ns, unit.fall_said_ns, unit.fall_is_dated = t_ns, said_ns, is_dated
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
-            said = event.detail or event.kind.name.lower().replace("_", " ")
-            unit.fault = Fault(t_ns, said)
+            note_fault(unit, event, t_ns)
         case EventKind.STOPPED | EventKind.SOURCE_ENDED:
             if _is_last_word(unit, event.header):  # it may come out of the journal of a run before
                 unit.stopped_ns = t_ns
         case _:
             pass
+
+
+def note_fault(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    """It says that something of its own fails; other events are left alone."""
+    if event.kind in _FAULTS:
+        unit.fault = Fault(t_ns, event.detail or event.kind.name.lower().replace("_", " "))
 
 
 def _told_ns(unit: UnitState, header: Header, t_ns: int) -> int | None:

@@ -79,6 +79,7 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
         due_ns=seen_ns - NS_PER_S, rest_due_ns=seen_ns - NS_PER_S,
     )  # fmt: skip
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
+    unit.tracker = UnitState("FF-01@tracker", fault=Fault(seen_ns, "the disk is full"))
     unit.boots = [
         BootState(boot_id, there_from_ns=seen_ns - 90 * NS_PER_S, there_to_ns=unit.heard_ns)
         for boot_id in (1, 2)

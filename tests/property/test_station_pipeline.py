@@ -205,7 +205,7 @@ def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
         assert all(change.state is not AlarmState.RESOLVED for change in life[:-1])
         assert len({change.raised_ns for change in life}) == 1
         assert all(change.priority in {1, 2, 3} and change.text for change in life)
-    latched = {"mayday", "fall", "unit-fault"}
+    latched = {"mayday", "fall", "unit-fault", "tracker-fault"}
     for life in lives.values():
         if life[0].rule in latched and life[-1].state is AlarmState.RESOLVED:
             assert life[-1].by.startswith("chief")

@@ -12,10 +12,10 @@ from base_station.events import TrailFilled, UnitTouched, event_of
 from base_station.fusion import FUSERS
 from base_station.live.projector import Projector
 from base_station.pipeline import StationPipeline
-from shared.channels import NO_TRACKER, POSITION, STATUS, backfilled_key, tracker_id
+from shared.channels import EVENT, NO_TRACKER, POSITION, STATUS, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.messages import Activity, AlarmChange, AlarmState, EventKind, Header
+from shared.messages import Activity, AlarmChange, AlarmState, EventKind, Header, UnitEvent
 from tests.station_script import Script, new_pipeline
 
 U = "FF-01"
@@ -288,3 +288,33 @@ def test_the_store_hears_of_the_unit_and_of_no_agent(script: Remote) -> None:
     assert projection is not None
     assert dict(projection.heard).keys() == {U}
     assert {one.header.unit_id for one in projection.descriptions} == {U}
+
+
+def faults(script: Remote, *, rule: str = "tracker-fault") -> list[str]:
+    return [one.text for one in script.alarms if one.rule == rule]
+
+
+@pytest.mark.parametrize("is_late", [False, True])
+def test_a_fault_of_the_agent_is_told_as_the_agents(script: Remote, is_late: bool) -> None:
+    walk(script)
+    event = UnitEvent(script.header(AGENT), EventKind.STORAGE_FAULT, "its disk is full")
+    if is_late:
+        walk(script)
+        script.record(backfilled_key(AGENT, EVENT.suffix), encode(event))
+    else:
+        script.say(event)
+    walk(script, 3)
+    assert faults(script) == [f"The agent that tracks for unit {U} ({U}): its disk is full"]
+    assert faults(script, rule="unit-fault") == []
+    assert script.unit.fault is None
+
+
+def test_what_an_agent_said_before_its_unit_was_heard_is_told_when_that_is() -> None:
+    """An agent that starts says at once what it lacks, and a unit what it is only now and then."""
+    script = Remote(tracker="eskf")
+    script.event(AGENT, EventKind.STORAGE_FAULT, "its disk is full")
+    script.wait(2)
+    assert faults(script) == [], "nobody tracks for it"
+    script.describe(NO_TRACKER)
+    script.wait(2)
+    assert len(faults(script)) == 1
