@@ -97,6 +97,23 @@ _FIND = """
       box.bottom <= map.top + 1 || box.top >= map.bottom - 1;
     if (!apart) found.push(`lies over the plan: ${said(one)}`);
   }
+  for (const one of document.querySelectorAll(".plan :is(.zoom, .north)")) {
+    const box = one.getBoundingClientRect();
+    if (isShown(one) && (box.top < map.top || box.bottom > map.bottom + 1))
+      found.push(`sticks out of the plan: ${said(one)}`);
+  }
+  for (const one of document.querySelectorAll(".command-state")) {
+    const next = one.closest("td")?.nextElementSibling;
+    if (next && one.getBoundingClientRect().right > next.getBoundingClientRect().left + 1 &&
+        one.getBoundingClientRect().bottom > next.getBoundingClientRect().top + 1)
+      found.push(`runs into what stands beside it: ${said(one)}`);
+  }
+  for (const one of root.querySelectorAll("button")) {
+    if (!isShown(one) || one.childElementCount > 0 || !/^\\p{L}{1,8}$/u.test(one.textContent)) continue;
+    const word = document.createRange();
+    word.selectNodeContents(one);
+    if (word.getClientRects().length > 1) found.push(`a word on two lines: ${said(one)}`);
+  }
   const onMap = [...document.querySelectorAll(".plan :is(.zoom, .north, .ol-scale-line)")];
   for (const [i, one] of onMap.filter(isShown).entries())
     for (const other of onMap.filter(isShown).slice(i + 1)) {

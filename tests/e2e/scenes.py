@@ -235,6 +235,20 @@ def pin(pin_id: str, index: int, state: str, north_m: float, text: str) -> wire.
     )
 
 
+def answered() -> wire.Snapshot:
+    """A roll call that everybody has answered."""
+    shown = bad_minute()
+    answers = tuple(
+        msgspec.structs.replace(
+            one, state="acknowledged", acknowledged_ms=NOW_MS, acknowledged_by="Featherstonehaugh"
+        )
+        for one in shown.commands[0].units
+    )
+    return msgspec.structs.replace(
+        shown, commands=(msgspec.structs.replace(shown.commands[0], units=answers),)
+    )
+
+
 def switched_off() -> wire.Snapshot:
     """Two units that were switched off in order ten minutes ago; the alarm about one is open."""
     units = [unit(index) for index in range(5)]

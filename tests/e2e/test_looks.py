@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, close, menu
 from tests.e2e.looks import flaws
 from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
+
+
+def strip(page: Page) -> Locator:
+    return page.get_by_role("region", name="Open alarms")
 
 
 def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, list[str]]:
@@ -132,10 +136,42 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
     assert flaws(page) == []
 
 
+@pytest.mark.parametrize("name", ["Beacon", "All start here"])
+def test_on_a_phone_the_plan_can_be_clicked_while_a_panel_asks_for_it(
+    stage: Stage, name: str
+) -> None:
+    """It was as high as a finger, and zoomed out to half a kilometre."""
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    page.get_by_role("button", name="Plan").first.click()
+    page.get_by_role("button", name=name, exact=True).click()
+    page.wait_for_timeout(1000)  # the plan has come to rest
+    box = page.locator(".map").bounding_box()
+    assert box is not None
+    assert box["height"] >= 150
+    scale = page.locator(".ol-scale-line-inner")
+    assert int((scale.inner_text()).removesuffix(" m")) <= 20
+    expect(strip(page).get_by_role("listitem").first).to_be_in_viewport(ratio=1)
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("button", name=name, exact=True)).to_be_focused()
+
+
+def test_users_and_answers_are_read_on_a_phone(stage: Stage) -> None:
+    users = [{"username": "chief", "role": "administrator", "created_ms": 0, "sessions": 1}]
+    page, _ = stage.open(scenes.answered(), "phone", {**ANSWERS, "/users": users})
+    page.get_by_role("button", name="PAR", exact=True).click()
+    expect(page.get_by_role("dialog")).to_contain_text("acknowledged")
+    assert flaws(page) == []
+    close(page.get_by_role("dialog"))
+    page.get_by_role("button", name="Menu").click()
+    menu(page, "Account").get_by_role("button", name="Users").click()
+    expect(page.get_by_role("dialog", name="Users")).to_contain_text("chief")
+    assert flaws(page) == []
+
+
 def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     tools = page.get_by_role("group", name="On the plan")
-    for name in ("Trails", "Pins 2", "Beacon"):
+    for name in ("Trails", "Pins 2", "Beacon", "All start here"):
         tools.get_by_role("button", name=name).click()
         assert on_every_screen(page, flaws) == {}, name
         assert barriers(page) == [], name

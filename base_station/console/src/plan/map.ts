@@ -13,6 +13,7 @@ import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { Crowd, type Scene } from "./crowd";
 import { Grid } from "./grid";
+import { fitMargins, leastMargins } from "./margins";
 import type { Box, Pixel } from "./names";
 import { PastLayer, type PastScene } from "./pastLayer";
 import { PIN_HALF_PX, PIN_HEIGHT_PX, PinLayer, type PinScene, type Standing } from "./pins";
@@ -21,16 +22,10 @@ import type { Place } from "./tools";
 
 const TAP_PX = 26;
 const CLOSE_M_PER_PX = 0.06;
-const MARGIN_PX = 40;
-const LOWER_MARGIN_PX = 60; // names and the scale
-const RIGHT_MARGIN_PX = 70; // the zoom buttons
 const MOVE_MS = 250;
 const AROUND_M = 2;
 /** Nobody alone fills the screen with the few metres about them. */
 const FITTED_M_PER_PX = 0.02;
-/** Nearer to an edge a mark is cut, or lies under the zoom buttons; a fit leaves a little more. */
-const EDGE_PX = 25;
-const RIGHT_EDGE_PX = RIGHT_MARGIN_PX - 2;
 
 /** What a person does on the plan. */
 export interface PlanEvents {
@@ -195,11 +190,17 @@ export class PlanMap {
   private showsEverybody(): boolean {
     const crowd = this.crowd.extent();
     if (crowd === null || !crowd.every(Number.isFinite)) return true;
+    const size = this.map.getSize();
     const mPerPx = this.view.getResolution() ?? 0;
-    const [west = 0, south = 0, east = 0, north = 0] = buffer(crowd, EDGE_PX * mPerPx);
-    const beside = (RIGHT_EDGE_PX - EDGE_PX) * mPerPx;
-    const needed = [west, south, east + beside, north];
-    return containsExtent(this.view.calculateExtent(this.map.getSize()), needed);
+    const [top, right, bottom, left] = leastMargins(size ?? []);
+    const [west = 0, south = 0, east = 0, north = 0] = crowd;
+    const needed = [
+      west - left * mPerPx,
+      south - bottom * mPerPx,
+      east + right * mPerPx,
+      north + top * mPerPx,
+    ];
+    return containsExtent(this.view.calculateExtent(size), needed);
   }
 
   /** Show everything there is; false where there is nothing yet. */
@@ -211,7 +212,7 @@ export class PlanMap {
     if (!all.every(Number.isFinite)) return false;
     this.chosen = false;
     this.view.fit(buffer(all, AROUND_M), {
-      padding: [MARGIN_PX, RIGHT_MARGIN_PX, LOWER_MARGIN_PX, MARGIN_PX],
+      padding: [...fitMargins(this.map.getSize() ?? [])],
       minResolution: FITTED_M_PER_PX,
       ...(smoothly ? moving() : {}),
     });

@@ -104,7 +104,7 @@ function nameIn(target: string): string {
 
 function Deliveries({ command, picture }: { command: CommandView; picture: Picture }) {
   return (
-    <table class="deliveries">
+    <table class="deliveries stacked">
       <caption>
         {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by})
       </caption>
