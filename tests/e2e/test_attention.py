@@ -256,6 +256,19 @@ def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> Non
     expect(floors.nth(1)).to_have_accessible_name("Floor G , 20 people")
 
 
+def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    page.get_by_role("button", name="Beacon", exact=True).click()
+    panel = page.get_by_role("form", name="Beacon")
+    panel.get_by_label("Its number").fill("17")
+    menu(page, "Units")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(panel.get_by_label("Its number")).to_have_value("17")
+    page.keyboard.press("Escape")
+    expect(panel).to_have_count(0)
+
+
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())

@@ -2,6 +2,7 @@ import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 import { mayAct } from "../sessions";
 import type { Picture } from "../live/picture";
+import { dialog } from "../view";
 import { putDown, toggle, tool, type Tool } from "../plan/tools";
 import { AnchorPanel } from "./AnchorPanel";
 import { BeaconPanel } from "./BeaconPanel";
@@ -67,7 +68,7 @@ export function ToolPanel({ picture }: { picture: Picture }) {
     if (now === null) return undefined;
     if (!held) putDown(); // what it was for is gone, or nobody may do it now: it must take no clicks
     const leave = (event: KeyboardEvent) => {
-      if (event.key === "Escape") putDown();
+      if (event.key === "Escape" && dialog.peek() === null) putDown(); // else it ends the dialog
     };
     document.addEventListener("keydown", leave);
     return () => document.removeEventListener("keydown", leave);
