@@ -183,6 +183,11 @@ class UnitState(Sender):
         ]
 
     @property
+    def began_ns(self) -> int:
+        """When the run of its program began that is shown; what was before tells nothing of now."""
+        return self.boots[-1].there_from_ns if self.boots else 0
+
+    @property
     def is_tracked_remotely(self) -> bool:
         """It says itself that it does not track; nobody may do it for another unit."""
         return self.description is not None and self.description.tracker == NO_TRACKER

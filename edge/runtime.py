@@ -18,7 +18,6 @@ import msgspec
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
 from edge.commands import CommandDesk
-from edge.journal.previous_boot import FAILED
 from edge.journal.spool import Spool
 from edge.journal.writer import JournalWriter
 from edge.link import Link
@@ -36,6 +35,7 @@ from shared.codec import decode
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
 from shared.messages import Command, EventKind, Heartbeat, UnitEvent
+from shared.messages.event import FAILED
 from shared.service_manager import ServiceManager
 
 logger = logging.getLogger(__name__)

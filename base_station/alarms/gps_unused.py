@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.alarms.port import SOON, Clear, Finding, Verdict, switched_off
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
@@ -23,8 +23,10 @@ class GpsUnused:
     heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        gps = unit.gps
-        if gps is None:
+        off, gps = switched_off(unit), unit.gps
+        if off is not None:
+            return off
+        if gps is None or gps.t_ns < unit.began_ns:
             return None
         if gps.faulty_since_ns is None:
             return Clear(gps.t_ns, "what the receiver says can be true again")

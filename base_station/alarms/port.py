@@ -34,6 +34,13 @@ class Clear(msgspec.Struct, frozen=True):
     about: int | None = None  # of whose matter it is evidence, where that counts
 
 
+def switched_off(unit: UnitState) -> Clear | None:
+    """Of a unit that was switched off in order nobody expects what its alarm is about."""
+    if unit.stopped_ns is None:
+        return None
+    return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)
+
+
 Verdict = Finding | Clear | None  # None: nothing is known either way
 _NUMBER = re.compile(r"\d+")
 

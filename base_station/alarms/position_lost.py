@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.alarms.port import SOON, Clear, Finding, Verdict, switched_off
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
@@ -23,8 +23,10 @@ class PositionLost:
     heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        fused = unit.fused
-        if fused is None:
+        off, fused = switched_off(unit), unit.fused
+        if off is not None:
+            return off
+        if fused is None or fused.t_meas_ns < unit.began_ns:
             return None
         seen_ns = fused.header.t_utc_ns
         if unit.unplaced_since_ns is None:

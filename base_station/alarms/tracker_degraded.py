@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.alarms.port import SOON, Clear, Finding, Verdict, switched_off
 from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
@@ -24,8 +24,10 @@ class TrackerDegraded:
     heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        position = unit.position
-        if position is None:
+        off, position = switched_off(unit), unit.position
+        if off is not None:
+            return off
+        if position is None or unit.position_ns < unit.began_ns:
             return None
         if unit.degraded_since_ns is None:
             return Clear(unit.position_ns, "the tracker is sure again")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base_station.alarms.port import SOON, Clear, Finding, Verdict
+from base_station.alarms.port import SOON, Clear, Finding, Verdict, switched_off
 from base_station.live_state import UnitState
 from base_station.units.sender import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
@@ -30,8 +30,9 @@ class TrackerGone:
             return None
         if not unit.is_tracked_remotely:
             return Clear(unit.heard_ns, "the unit tracks itself")
-        if unit.stopped_ns is not None:
-            return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)
+        off = switched_off(unit)
+        if off is not None:
+            return off
         heard_ns = None if unit.tracker is None else unit.tracker.heard_ns
         if heard_ns is not None and (t_ns - heard_ns) / NS_PER_S < self.live_within_s:
             return Clear(heard_ns, "its tracking agent speaks again")

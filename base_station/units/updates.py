@@ -113,8 +113,9 @@ def _note_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
             unit.fall_ns, unit.fall_said_ns, unit.fall_is_dated = t_ns, said_ns, is_dated
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
             note_fault(unit, event, t_ns)
-        case EventKind.STOPPED | EventKind.SOURCE_ENDED:
-            if _is_last_word(unit, event.header):  # it may come out of the journal of a run before
+        case EventKind.STOPPED:
+            # One that has failed is missing; and it may come out of the journal of a run before.
+            if event.is_stop_in_order and _is_last_word(unit, event.header):
                 unit.stopped_ns = t_ns
         case _:
             pass

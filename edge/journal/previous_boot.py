@@ -16,8 +16,6 @@ from shared.messages import CommandReply, EventKind, JournalBoot, Message, UnitE
 
 logger = logging.getLogger(__name__)
 
-FAILED = "failed"  # the detail of a stop that nobody wanted
-
 
 def mayday_before(spool: Spool) -> bool:
     """Whether a mayday was latched when the boot before this one came to a sudden end.
@@ -71,9 +69,7 @@ def answers_before(spool: Spool) -> list[CommandReply]:
 
 def _was_stopped(event: Message) -> bool:
     """In order, so that the unit starts afresh."""
-    return (
-        isinstance(event, UnitEvent) and event.kind is EventKind.STOPPED and event.detail != FAILED
-    )
+    return isinstance(event, UnitEvent) and event.is_stop_in_order
 
 
 def _before(spool: Spool) -> list[JournalBoot]:

@@ -11,6 +11,8 @@ from shared.messages.known import known
 from shared.messages.muster.v1 import event_pb2
 from shared.messages.quantise import signed32, unsigned_known
 
+FAILED = "failed"  # the detail of a stop that nobody wanted
+
 
 class EventKind(IntEnum):
     UNKNOWN = 0
@@ -29,6 +31,11 @@ class UnitEvent(msgspec.Struct, frozen=True):
     header: Header
     kind: EventKind
     detail: str = ""
+
+    @property
+    def is_stop_in_order(self) -> bool:
+        """Somebody switched the unit off; one that has failed says that it stops, too."""
+        return self.kind is EventKind.STOPPED and self.detail != FAILED
 
     def to_wire(self) -> event_pb2.UnitEvent:
         return event_pb2.UnitEvent(

@@ -12,7 +12,6 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
-from edge.journal.previous_boot import FAILED
 from edge.journal.spool import Spool
 from edge.link import Link
 from edge.samples import SensorBatch
@@ -23,6 +22,7 @@ from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos
 from shared.codec import decode
 from shared.errors import BusError, RecordingError, StoreError
 from shared.messages import EventKind, UnitEvent
+from shared.messages.event import FAILED
 from tests.waiting import PATIENCE_S, until
 
 

@@ -11,7 +11,6 @@ import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
 from edge.journal.previous_boot import (
-    FAILED,
     answers_before,
     mayday_before,
     position_rate_before,
@@ -33,6 +32,7 @@ from shared.messages import (
     Header,
     UnitEvent,
 )
+from shared.messages.event import FAILED
 
 STARTED, STOPPED = EventKind.STARTED, EventKind.STOPPED
 MAYDAY, CANCELLED, FALL = EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.FALL
