@@ -109,7 +109,8 @@ _FIND = """
       found.push(`runs into what stands beside it: ${said(one)}`);
   }
   for (const one of root.querySelectorAll("button")) {
-    if (!isShown(one) || one.childElementCount > 0 || !/^\\p{L}{1,8}$/u.test(one.textContent)) continue;
+    const isText = isShown(one) && one.childElementCount === 0;
+    if (!isText || !/^\\p{L}{1,8}$/u.test(one.textContent)) continue;
     const word = document.createRange();
     word.selectNodeContents(one);
     if (word.getClientRects().length > 1) found.push(`a word on two lines: ${said(one)}`);

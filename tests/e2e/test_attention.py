@@ -269,6 +269,34 @@ def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -
     expect(panel).to_have_count(0)
 
 
+def test_what_is_looked_at_by_keys_stays_until_somebody_asks_for_all(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    scale = page.locator(".ol-scale-line-inner")
+    expect(scale).to_have_text("10 m")
+    page.get_by_role("application", name="Plan of the site").focus()
+    for _ in range(3):
+        page.keyboard.press("+")
+        page.wait_for_timeout(400)
+    close_up = scale.inner_text()
+    station.change(now_ms=scenes.NOW_MS + 1000)
+    page.wait_for_timeout(1500)
+    assert scale.inner_text() == close_up != "10 m"
+    page.get_by_role("button", name="Fit").click()
+    expect(scale).to_have_text("10 m")
+
+
+def test_who_is_given_a_unit_is_told_to_wear_another(stage: Stage) -> None:
+    """Chosen by a slip, they would be looked for where that unit is."""
+    page, _ = stage.open(scenes.quiet())
+    worn_by = menu(page, "Units").get_by_label("Who wears FF-01")
+    worn_by.focus()
+    options = worn_by.get_by_role("option")
+    expect(options.filter(has_text="Jonas Bergman")).to_have_text(
+        "Jonas Bergman (Engine 2), wears FF-02"
+    )
+    expect(options.filter(has_text="Astrid Lindqvist")).to_have_text("Astrid Lindqvist (Engine 1)")
+
+
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())

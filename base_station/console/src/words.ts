@@ -146,7 +146,7 @@ export function insideMs(unit: UnitView, nowMs: number): number | null {
 }
 
 export function insideWord(unit: UnitView): string {
-  return unit.switched_off ? "Was inside" : "Inside for";
+  return unit.switched_off && unit.inside_since_ms !== null ? "Was inside" : "Inside for";
 }
 
 const HEAT: Record<string, string> = {

@@ -125,6 +125,7 @@ describe("words", () => {
     expect(words.insideMs(off, 660_000)).toBe(60_000);
     expect(words.insideWord(off)).toBe("Was inside");
     expect(words.insideMs(unit("a"), 660_000)).toBeNull();
+    expect(words.insideWord(unit("a", { switched_off: true }))).toBe("Inside for");
   });
 
   it("tell a unit that was switched off from one that is not heard", () => {

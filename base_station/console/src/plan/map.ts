@@ -22,6 +22,7 @@ import type { Place } from "./tools";
 
 const TAP_PX = 26;
 const CLOSE_M_PER_PX = 0.06;
+const MOVING_KEYS = /^(Arrow.*|[+-])$/;
 const MOVE_MS = 250;
 const AROUND_M = 2;
 /** Nobody alone fills the screen with the few metres about them. */
@@ -81,6 +82,9 @@ export class PlanMap {
     for (const kind of ["wheel", "pointerdown"]) {
       target.addEventListener(kind, () => (this.chosen = true), { passive: true });
     }
+    target.addEventListener("keydown", ({ key }) => {
+      if (MOVING_KEYS.test(key)) this.chosen = true;
+    });
     this.map.on("moveend", () => this.drawPeople()); // names keep to what is on the screen
     this.map.on("singleclick", (event) => {
       if (this.events.click(placeOf(event.coordinate))) return;

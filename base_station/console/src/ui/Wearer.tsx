@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt } from "../sessions";
+import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { UnitView } from "../wire";
 import { useChosen } from "./useChosen";
@@ -25,11 +25,23 @@ export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.
       <option value="">nobody</option>
       {listed.map((person) => (
         <option key={person.person_id} value={person.person_id}>
-          {person.crew === "" ? person.name : `${person.name} (${person.crew})`}
+          {nameAndCrew(person)}
+          {wornElsewhere(person.person_id, unit.unit_id)}
         </option>
       ))}
     </select>
   );
+}
+
+function nameAndCrew({ name, crew }: api.Person): string {
+  return crew === "" ? name : `${name} (${crew})`;
+}
+
+/** Whoever is given another unit wears the one before no more: ", wears FF-02". */
+function wornElsewhere(personId: string, unitId: string): string {
+  const units = live.peek()?.picture.allUnits() ?? [];
+  const other = units.find(({ unit_id, person }) => unit_id !== unitId && person?.person_id === personId);
+  return other === undefined ? "" : `, wears ${other.label || other.unit_id}`;
 }
 
 /** On the card of a unit that nobody wears yet. */
