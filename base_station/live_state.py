@@ -39,7 +39,8 @@ from shared.messages import (
 from shared.messages.station import TakeOver
 
 FORGOTTEN = "(forgotten)"  # in place of what was said of a person
-WEARERS_KEPT = 20  # of a unit; the log has all of them
+WEARERS_KEPT = 20  # of a unit, beside those whom an alarm may be about; the log has all of them
+STILL_NS = 300 * NS_PER_S  # after so long at the latest it is told who does not move
 
 
 class Person(msgspec.Struct, frozen=True):
@@ -173,8 +174,29 @@ class UnitState(Sender):
         """Whoever wears it does so no more."""
         if self.person is not None:
             former = FormerWearer(self.person.name, self.worn_since_ns, t_ns)
-            self.worn_before = [*self.worn_before[1 - WEARERS_KEPT :], former]
+            wearers = [*self.worn_before, former]
+            told_of = [one for one in wearers[:-WEARERS_KEPT] if self._tells_of(one)]
+            self.worn_before = [*told_of, *wearers[-WEARERS_KEPT:]]
         self.person, self.worn_since_ns, self.inside_since_ns = None, t_ns, None
+
+    def _tells_of(self, worn: FormerWearer) -> bool:
+        """Whether a press, a fall or a rest that it told last was in that time: whose that was does
+        not change with the next wearers.
+        """
+        said_ns = [
+            said_ns
+            for t_ns, said_ns in (
+                (self.mayday_ns, self.mayday_said_ns),
+                (self.fall_ns, self.fall_said_ns),
+            )
+            if t_ns is not None
+        ]
+        if any(worn.from_ns <= one < worn.until_ns for one in said_ns):
+            return True
+        if self.status is None:
+            return False
+        still_ns = self.status_ns - round(self.status.motionless_s * NS_PER_S)
+        return worn.from_ns < still_ns + STILL_NS and still_ns < worn.until_ns
 
     def forget_wearers(self) -> None:
         """That somebody wore it then is left of those before."""

@@ -6,6 +6,7 @@ import msgspec
 import pytest
 
 from base_station.bench.rig import said
+from base_station.live_state import WEARERS_KEPT
 from shared.channels import EVENT, NO_TRACKER, backfilled_key, tracker_id
 from shared.clock import NS_PER_S
 from shared.codec import encode
@@ -359,3 +360,34 @@ def test_who_is_to_rest_is_so_with_another_unit(script: Script) -> None:
     script.act(Assign("FF-02", "Ana", "Ana", "", ""))
     script.wait(3)
     assert open_texts(script) == {"Ana has worked for 1 min: send to rest"}
+
+
+STANDING = {
+    "mayday": lambda script: script.event(U, EventKind.MAYDAY),
+    "fall": lambda script: script.event(U, EventKind.FALL),
+    "no-motion": lambda script: script.status(U, motionless_s=40.0),
+}
+
+
+@pytest.mark.parametrize("rule", STANDING)
+@pytest.mark.parametrize("known", [False, True])
+def test_an_alarm_stays_the_same_however_often_the_unit_is_handed_over(
+    script: Script, rule: str, known: bool
+) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(60, lambda: script.status(U))
+    began_s = script.now_s - 40.0
+    STANDING[rule](script)
+    (alarm,) = (one for one in script.alarms if one.rule == rule)
+    if known:
+        script.act(AcknowledgeAlarm(alarm.alarm_id))
+    script.wait(1)
+    before = len(script.alarms)
+    for number in range(3 * WEARERS_KEPT):
+        script.act(Assign(U, str(number), f"P{number}", "", ""))
+        still_s = script.now_s - began_s if rule == "no-motion" else 0.0
+        script.status(U, motionless_s=still_s, mayday=rule == "mayday")
+        script.wait(20)
+    assert [one.text for one in script.alarms[before:] if one.rule == rule] == []
+    worn_before = script.pipeline.state.units[U].worn_before
+    assert len(worn_before) <= 2 * WEARERS_KEPT, "and nothing grows"
