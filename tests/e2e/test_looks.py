@@ -136,21 +136,25 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
     assert flaws(page) == []
 
 
+@pytest.mark.parametrize("screen", ["phone", "phone on its side"])
 @pytest.mark.parametrize("name", ["Beacon", "All start here"])
 def test_on_a_phone_the_plan_can_be_clicked_while_a_panel_asks_for_it(
-    stage: Stage, name: str
+    stage: Stage, name: str, screen: str
 ) -> None:
     """It was as high as a finger, and zoomed out to half a kilometre."""
-    page, _ = stage.open(scenes.bad_minute(), "phone")
+    page, _ = stage.open(scenes.bad_minute(), screen)
     page.get_by_role("button", name="Plan").first.click()
     page.get_by_role("button", name=name, exact=True).click()
     page.wait_for_timeout(1000)  # the plan has come to rest
-    box = page.locator(".map").bounding_box()
-    assert box is not None
-    assert box["height"] >= 150
+    for part in (".map", ".tool-panel"):
+        box = page.locator(part).bounding_box()
+        assert box is not None
+        assert box["height"] >= 140, part
+        assert box["width"] >= 290, part
     scale = page.locator(".ol-scale-line-inner")
     assert int((scale.inner_text()).removesuffix(" m")) <= 20
-    expect(strip(page).get_by_role("listitem").first).to_be_in_viewport(ratio=1)
+    expect(strip(page).get_by_role("button", name="Acknowledge").first).to_be_in_viewport(ratio=1)
+    assert flaws(page) == []
     page.keyboard.press("Escape")
     expect(page.get_by_role("button", name=name, exact=True)).to_be_focused()
 

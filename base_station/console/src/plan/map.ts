@@ -86,6 +86,9 @@ export class PlanMap {
       if (MOVING_KEYS.test(key)) this.chosen = true;
     });
     this.map.on("moveend", () => this.drawPeople()); // names keep to what is on the screen
+    this.map.on("change:size", () => {
+      if (this.fitted && !this.chosen && this.isSeen()) this.fit(false);
+    });
     this.map.on("singleclick", (event) => {
       if (this.events.click(placeOf(event.coordinate))) return;
       const standing = this.standingAt(event.pixel);
