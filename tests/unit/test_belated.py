@@ -9,18 +9,19 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.rig import said
 from base_station.db.models import Incident
 from base_station.db.projecting import project_into
 from base_station.db.records import Records, TrackSample
 from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
-from base_station.events import PastTouched
+from base_station.events import Output, PastTouched
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import QUIET_NS, Hindsight
 from base_station.past.playback import Archive
 from base_station.past.rebuild import project_log
-from shared.channels import SIGHTING, backfilled_key
+from shared.channels import NO_TRACKER, SIGHTING, backfilled_key, tracker_id
 from shared.clock import ManualClock
 from shared.codec import encode
 from shared.messages import Sighting, SightingKind
@@ -34,13 +35,35 @@ INSIDE_S, OUT_OF_REACH_S = 150, 150
 QUIET_S = QUIET_NS / 1e9 + 15.0  # what is projected may be so late
 
 
+AGENT = tracker_id("FF-01")
+
+
+class TrackedByAgent(JournaledScript):
+    """An agent tracks for FF-01."""
+
+    def position(
+        self, unit_id: str, north_m: float, east_m: float, **changes: object
+    ) -> list[Output]:
+        speaker = AGENT if unit_id == "FF-01" else unit_id
+        return super().position(speaker, north_m, east_m, **changes)
+
+
 class Station:
     """Two walk; one of them is out of reach for the second half of the incident."""
 
-    def __init__(self, folder: Path, never_heard: str = "", out_of_reach: str = "FF-01") -> None:
-        self.script = JournaledScript()
+    def __init__(
+        self,
+        folder: Path,
+        never_heard: str = "",
+        out_of_reach: str = "FF-01",
+        script: JournaledScript | None = None,
+    ) -> None:
+        self.script = script or JournaledScript()
         self.walk = Walk("FF-01", "FF-02", turn_rad=0.5, script=self.script)
         self.begin_ns = self.script.t_ns
+        if isinstance(script, TrackedByAgent):
+            header = script.header("FF-01")
+            script.say(said.description(header, tracker=NO_TRACKER))
         for unit_id in self.walk.units:
             self.walk.start(unit_id)
         self.script.out_of_reach = {never_heard}
@@ -176,6 +199,20 @@ def test_what_its_unit_and_the_station_do_since_does_not_matter(
     assert ends_s(station, trail) == pytest.approx(INSIDE_S + OUT_OF_REACH_S, abs=1.0)
     for then_s in (10.0, 200.0, 290.0):
         assert station.apart_m(in_time, then_s) < 0.05
+
+
+def test_what_a_tracking_agent_brings_late_is_in_it(tmp_path: Path, in_time: Station) -> None:
+    """The unit itself was heard all the time."""
+    station = Station(tmp_path, out_of_reach=AGENT, script=TrackedByAgent())
+    assert ends_s(station, station.trail()) == pytest.approx(INSIDE_S, abs=1.0)
+    station.script.now_s += 60.0
+    station.script.out_of_reach.clear()
+    station.script.status(AGENT)
+    station.script.fetch(AGENT)
+    station.wait(QUIET_S)
+    for then_s in (10.0, 200.0, 290.0):
+        assert station.apart_m(in_time, then_s) < 0.05
+    station.store.close()
 
 
 def test_who_was_never_heard_while_it_was_open_has_a_trail(
