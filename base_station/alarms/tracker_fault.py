@@ -22,13 +22,14 @@ class TrackerFault:
     heeds: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        fault = None if unit.tracker is None else unit.tracker.fault
-        if fault is None or not unit.is_tracked_remotely:
+        agent = unit.tracker
+        if agent is None or agent.fault is None or not unit.is_tracked_remotely:
             return None
+        fault = agent.fault
         return Finding(
             "fault",
             SOON,
-            f"The agent that tracks for {unit.name} ({unit.unit_id}): {fault.text}",
+            f"The agent that tracks for {unit.name} ({agent.unit_id}): {fault.text}",
             seen_ns=fault.t_ns,
             onset_ns=fault.t_ns,
             latched=True,

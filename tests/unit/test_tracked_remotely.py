@@ -304,7 +304,7 @@ def test_a_fault_of_the_agent_is_told_as_the_agents(script: Remote, is_late: boo
     else:
         script.say(event)
     walk(script, 3)
-    assert faults(script) == [f"The agent that tracks for unit {U} ({U}): its disk is full"]
+    assert faults(script) == [f"The agent that tracks for unit {U} ({AGENT}): its disk is full"]
     assert faults(script, rule="unit-fault") == []
     assert script.unit.fault is None
 

@@ -181,20 +181,25 @@ export function gpsWord(reason: string | null): string {
 /** The level of an alarm that only informs: the unit's silence is no loss. */
 export const SWITCHED_OFF = "switched off";
 
-/** What the station puts before a unit's own words (base_station/alarms/unit_fault.py). */
-const BEFORE_FAULT = "'s unit: ";
+/** What the station puts before the own words of a unit, or of the agent that tracks for one
+ * (base_station/alarms/unit_fault.py, tracker_fault.py). */
+const BEFORE_FAULT: Readonly<Record<string, string>> = {
+  "unit-fault": "'s unit: ",
+  "tracker-fault": "@tracker): ",
+};
 const LONGEST_FAULT = 70;
 
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost".  A unit
  * may have several faults, so each says which it is. */
 export function alarmWord(alarm: AlarmView): string {
   if (alarm.level === SWITCHED_OFF) return "Switched off"; // its link is not lost
-  const faultAt = alarm.text.indexOf(BEFORE_FAULT);
-  if (alarm.rule === "unit-fault" && faultAt >= 0) {
-    return `Unit fault: ${shortened(alarm.text.slice(faultAt + BEFORE_FAULT.length), LONGEST_FAULT)}`;
-  }
   const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
+  const before = BEFORE_FAULT[alarm.rule];
+  if (before !== undefined && alarm.text.includes(before)) {
+    const own = alarm.text.slice(alarm.text.indexOf(before) + before.length);
+    return `${word}: ${shortened(own, LONGEST_FAULT)}`;
+  }
   return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
 }
 

@@ -113,6 +113,9 @@ describe("words", () => {
     expect(long).toMatch(/^Unit fault: x+…$/);
     expect(long.length).toBeLessThan(100);
     expect(fault("as another version says it")).toBe("Unit fault");
+    const text = "The agent that tracks for Ana (FF-01@tracker): its disk is full";
+    const agents = alarm("x", { rule: "tracker-fault", level: "fault", text });
+    expect(words.alarmWord(agents)).toBe("Tracker fault: its disk is full");
   });
 
   it("say for how long somebody is inside, and of who switched off was, until then", () => {
