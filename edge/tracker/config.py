@@ -156,11 +156,19 @@ class EskfConfig(NamedTuple):
     start_still_std_mps: float = 0.02  # when it starts at rest
     start_window_s: float = 0.1
 
-    # A gap: what may have happened meanwhile (gaps.py).
-    gap_bridged_s: float = 0.28  # most of a swing
+    # A hole shorter than a stride (like_strides.py, bridging.py).
+    like_side_s: float = 0.05  # on either side of a hole, by which like strides are found
+    like_apart_s: float = 0.2  # what is nearer is of the same stride
+    like_longest_s: float = 0.35  # hole
+    like_rate_s: float = 17.0  # ... over which all of a rate would be missed, as by noise
+    like_force_s: float = 5.0  # the same of a force
+    like_differing: float = 1.5  # what the variance among like strides counts beside
+    gap_bridged_s: float = 0.28  # most of a swing: longer ones only as in like strides
     gap_around_s: float = 0.5  # where rate and force are looked at
     gap_rate_s: float = 0.07  # for which a rate goes its way
     gap_force_s: float = 0.05  # the same of a force
+
+    # A longer gap (gaps.py).
     gap_speed_std_mps: float = 1.5
     gap_turn_std_radps: float = 1.0
 

@@ -19,7 +19,8 @@ from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.conditioning import admit_parts, limits_of, new_gate, regular_time
 from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.filter import filter_sample
-from edge.tracker.gaps import begins_anew
+from edge.tracker.gaps import begins_anew, is_too_long
+from edge.tracker.like_strides import seek_like_strides
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
@@ -38,7 +39,7 @@ from edge.tracker.state import (
 from edge.tracker.zero_velocity import measure_motion, stride_minimum
 from shared.earth_field import EarthField
 
-RING_S = 4.0  # of samples in the ring at the described rate
+RING_S = 8.0  # of samples in the ring at the described rate: some strides
 MIN_RING_HZ = 200.0  # room for a description that understates the rate
 KEEP_OF_LAG = 0.66  # a release in swing keeps rows younger than this share of the lag
 
@@ -147,14 +148,18 @@ def work(
         memory.measured = k + 1
     while memory.filtered < memory.measured:
         k = memory.filtered
-        begins = begins_anew(ring, k, config)
-        if begins:
+        if is_too_long(ring, k, config):
             _release_all(ring, trail, memory)
-        ahead_s = config.lookahead_s + (config.lag_s if begins else 0.0)
-        if not final and not _is_past(ring, memory.measured, k, ahead_s):
+        if not final and not _is_past(ring, memory.measured, k, config.lookahead_s):
+            break
+        seek_like_strides(ring, memory, k, config)
+        begins = begins_anew(ring, memory, k, config)
+        ahead_s = config.lookahead_s + config.lag_s
+        if begins and not final and not _is_past(ring, memory.measured, k, ahead_s):
             break
         slot = k & (len(ring) - 1)
         if begins:
+            _release_all(ring, trail, memory)
             memory.began_at, memory.began_s = k, ring[slot].t_s
         ring[slot].stride_minimum_m2ps4 = stride_minimum(ring, memory, k, config)
         filter_sample(ring, trail, memory, state[0], k, config)

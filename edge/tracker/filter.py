@@ -8,6 +8,7 @@ from numba import njit
 
 from edge.tracker.alignment import level
 from edge.tracker.barometric_height import heed_pressure
+from edge.tracker.bridging import doubt_hole, walk_on
 from edge.tracker.clipping import bridge_clipping, bridge_force
 from edge.tracker.conditioning import BAD_SAMPLES
 from edge.tracker.config import EskfConfig
@@ -23,7 +24,7 @@ from edge.tracker.error_model import (
 from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
-from edge.tracker.gaps import begins_anew, doubt_hole, open_hole_s, stand_over
+from edge.tracker.gaps import begins_anew, open_hole_s, stand_over
 from edge.tracker.intervals import lacks_samples, mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
@@ -127,25 +128,28 @@ def _predict(
     before = (k - 1) & mask
     dt_s = ring[slot].t_s - ring[before].t_s
     ring[slot].interval_s = 0.0
-    if begins_anew(ring, k, config):
+    if begins_anew(ring, progress, k, config):
         ring[slot].interval_s = -1.0
         stand_over(ring, progress, state, k, dt_s, config)
         return
     if dt_s == 0.0:
         return
     mean_readings(ring, progress, state, k, config)
-    advance(
-        state.position_n_m,
-        state.velocity_n_mps,
-        state.quaternion_nb,
-        state.rotation_nb,
-        state.accel_mps2,
-        state.gyro_radps,
-        config.gravity_mps2,
-        dt_s,
-        state.force_n_mps2,
-        state.angle_rad,
-    )
+    if progress.like_count:
+        walk_on(ring, progress, state, k, dt_s, config)
+    else:
+        advance(
+            state.position_n_m,
+            state.velocity_n_mps,
+            state.quaternion_nb,
+            state.rotation_nb,
+            state.accel_mps2,
+            state.gyro_radps,
+            config.gravity_mps2,
+            dt_s,
+            state.force_n_mps2,
+            state.angle_rad,
+        )
     propagate(state, dt_s)
     turn_walk(state, follow_gain_errors(state, dt_s, config))
     bend_way(state, dt_s)

@@ -39,7 +39,7 @@ def mean_readings(
     last, first = k & mask, (k - 1) & mask
     dt_s = ring[last].t_s - ring[first].t_s
     rise, turn, fall = _bend(ring, progress, k, dt_s)
-    scale = _scale(ring[last].rest_norm_mps2, config)
+    scale = accel_scale(ring[last].rest_norm_mps2, config)
     before, after = (k - 2) & mask, (k + 1) & mask
     state.gyro_bend_var = 0.0
     even = rise > 0.0 and turn == 0.0
@@ -62,7 +62,7 @@ def mean_readings(
 
 
 @njit()
-def _scale(rest_norm_mps2: float, config: EskfConfig) -> float:
+def accel_scale(rest_norm_mps2: float, config: EskfConfig) -> float:
     """Return the factor that puts the accelerometer's scale right as far as rest shows it."""
     off_mps2 = rest_norm_mps2 - config.gravity_mps2
     if abs(off_mps2) <= config.rest_bias_mps2:

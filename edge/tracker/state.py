@@ -22,9 +22,10 @@ MAX_UPDATES = 10  # scalar updates one sample can bring
 COMPASS_SIZE = 13  # states of magnetic_field
 GAIN_ERRORS = 18  # see gain_errors
 BELIEFS = 5
+LIKE_STRIDES = 3  # of which the mean is taken
 
 Ring: TypeAlias = NDArray[Any]  # (slots,) of RING; slots is a power of two
-Trail: TypeAlias = NDArray[Any]  # (slots,) of STEP, for a quarter of the ring's samples
+Trail: TypeAlias = NDArray[Any]  # (slots,) of STEP, for an eighth of the ring's samples
 Step: TypeAlias = Any  # one record of STEP
 Progress: TypeAlias = Any  # one record of PROGRESS
 FilterState: TypeAlias = Any  # one record of FILTER
@@ -224,6 +225,11 @@ FILTER = np.dtype(
         ("angle_rad", np.float64, 3),
         ("gyro_bend_var", np.float64),  # see intervals
         ("force_unseen_var", np.float64),
+        (
+            "hole_means",
+            np.float64,
+            (3, 3),
+        ),  # rate, force, and that in navigation axes; see bridging
     ],
     align=True,
 )
@@ -247,6 +253,11 @@ PROGRESS = np.dtype(
         ("good_ns", np.int64),  # stamp of the last sample that was not bad
         ("began_at", np.int64),  # sample before which nothing is known of the motion
         ("began_s", np.float64),  # ... and its time
+        # Strides like the hole before the sample that is filtered next; see like_strides.
+        ("like_count", np.int64),
+        ("like_at", np.int64, LIKE_STRIDES),  # the sample after which it went on
+        ("like_off_m2ps4", np.float64, LIKE_STRIDES),  # how unlike the samples around are
+        ("like_weight", np.float64, LIKE_STRIDES),
         ("in_stance", np.bool_),
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),
@@ -288,7 +299,16 @@ def span(ring: Ring) -> int:
     Time bounds most looks, but a ring made for a much lower rate than the samples have cannot hold
     the whole look-ahead; the bound is the same however the samples come.
     """
-    return len(ring) // 4
+    return len(ring) // 8
+
+
+@njit()
+def history(ring: Ring) -> int:
+    """Return how many samples before one that is worked on are still in the ring.
+
+    A batch may have been taken in behind what the last stage waits for.
+    """
+    return len(ring) - 2 * span(ring) - 1
 
 
 def new_filter_state() -> NDArray[Any]:

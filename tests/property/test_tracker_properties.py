@@ -66,6 +66,21 @@ def test_nor_where_sensors_clip_that_nobody_told(cuts, share):
         assert np.array_equal(getattr(rows, field.name), getattr(whole, field.name)), field.name
 
 
+@settings(max_examples=5)
+@given(
+    cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40),
+    begin=st.integers(600, len(WALK.imu) - 200),
+    lost=st.integers(3, 70),
+)
+def test_nor_where_samples_were_lost(cuts, begin, lost):
+    """What goes on in the hole is found in what is remembered, however that came."""
+    kept = np.r_[0:begin, begin + lost : len(WALK.imu)]
+    imu = ImuBatch(WALK.imu.t_ns[kept], WALK.imu.accel_mps2[kept], WALK.imu.gyro_radps[kept])
+    rows, whole = run(imu, cuts=[min(cut, len(imu)) for cut in cuts]), run(imu)
+    for field in fields(rows):
+        assert np.array_equal(getattr(rows, field.name), getattr(whole, field.name)), field.name
+
+
 def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
     tracker = EskfTracker(WALK.description)
     released = []
