@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
 import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
-import { colourOf, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
+import { colourOf, filling, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
 import { placeNames, type Box, type Named, type Pixel, type Place } from "../src/plan/names";
 import { pinLabelStyle } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
@@ -22,6 +22,12 @@ const PLAN: Plan = {
 };
 
 describe("the region of a position", () => {
+  it("is the fainter the larger it is, so that it does not hide the plan", () => {
+    expect(filling({ old: false }, 1)).toBe(filling({ old: false }, 3));
+    expect(filling({ old: true }, 36)).toBeGreaterThan(0.15); // all of a house, by its walls
+    expect(filling({ old: true }, 250)).toBeLessThan(0.03);
+  });
+
   it("is as the station stated while the station can be heard", () => {
     expect(regionAt(position(), 0).major_m).toBe(2);
   });

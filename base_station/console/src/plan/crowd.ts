@@ -1,5 +1,6 @@
 /** Everybody on the plan: layers whose features follow the picture. */
-import type { Extent } from "ol/extent";
+import type { Coordinate } from "ol/coordinate";
+import { boundingExtent, type Extent } from "ol/extent";
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";
 import Point from "ol/geom/Point";
@@ -12,7 +13,7 @@ import type { FloorChoice } from "../view";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
 import { initials } from "../words";
 import type { Colours } from "./colours";
-import { isOld, outline, regionAt } from "./ellipse";
+import { isOld, outline } from "./ellipse";
 import { floorRemark } from "./floors";
 import {
   isStrong,
@@ -160,16 +161,20 @@ function draw({ unit, position, looks, centre, figure }: Shown, name: Place | nu
   const { colours } = scene;
   const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
   trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
-  const ellipse = regionAt(position, scene.silentMs);
   const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
   region.getGeometry()?.setCoordinates([border]);
   mark.getGeometry()?.setCoordinates(centre);
   label.getGeometry()?.setCoordinates(centre);
   trail.setStyle(trailStyle(looks, colours));
-  region.setStyle(regionStyle(looks, ellipse.major_m, colours));
+  region.setStyle(regionStyle(looks, radiusOf(border), colours));
   mark.setStyle(markStyle(looks, colours));
   figure.named = name?.side ?? null;
   label.setStyle(name === null ? [] : labelStyle(looks, colours, name.offset));
+}
+
+function radiusOf(border: readonly Coordinate[]): number {
+  const [west = 0, south = 0, east = 0, north = 0] = boundingExtent([...border]);
+  return Math.max(east - west, north - south) / 2;
 }
 
 /** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who

@@ -24,6 +24,8 @@ const ARROW_PX = 10;
 const HATCH_PX = 12;
 const MOST_FILLING = 0.18;
 const FULL_RADIUS_M = 3; // up to here a region has all of its filling
+const MOST_HATCHING = 0.3;
+const FULL_HATCHING_M = 20; // the same of an old one's hatching
 
 export function trailStyle(mark: Mark, colours: Colours): Style {
   const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
@@ -48,11 +50,16 @@ export function lettersOf({ old, urgency, initials }: Mark): string {
 }
 
 /** The larger a region, the fainter its filling: many large ones must not hide the plan. */
+export function filling({ old }: Pick<Mark, "old">, radiusM: number): number {
+  const [most, fullM] = old ? [MOST_HATCHING, FULL_HATCHING_M] : [MOST_FILLING, FULL_RADIUS_M];
+  return (most * fullM) / Math.max(radiusM, fullM);
+}
+
 export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Style {
   const colour = colourOf(mark, colours);
-  const filling = Math.min(MOST_FILLING, MOST_FILLING / Math.max(radiusM / FULL_RADIUS_M, 0.1));
+  const opacity = filling(mark, radiusM);
   return new Style({
-    fill: new Fill({ color: mark.old ? hatching(colour) : faint(colour, filling) }),
+    fill: new Fill({ color: mark.old ? hatching(colour, opacity) : faint(colour, opacity) }),
     stroke: new Stroke({
       color: faint(colour, mark.chosen ? 1 : 0.75),
       width: mark.chosen ? 2.5 : 1.5,
@@ -145,12 +152,12 @@ function drawArrow(
   context.restore();
 }
 
-function hatching(colour: string): CanvasPattern | string {
+function hatching(colour: string, opacity: number): CanvasPattern | string {
   const tile = document.createElement("canvas");
   tile.width = tile.height = HATCH_PX;
   const context = tile.getContext("2d");
-  if (context === null) return faint(colour, 0.2);
-  context.strokeStyle = faint(colour, 0.3);
+  if (context === null) return faint(colour, opacity);
+  context.strokeStyle = faint(colour, opacity);
   context.lineWidth = 1.2;
   context.beginPath();
   for (const x of [-HATCH_PX, 0, HATCH_PX]) {
@@ -158,5 +165,5 @@ function hatching(colour: string): CanvasPattern | string {
     context.lineTo(x + HATCH_PX, 0);
   }
   context.stroke();
-  return context.createPattern(tile, "repeat") ?? faint(colour, 0.2);
+  return context.createPattern(tile, "repeat") ?? faint(colour, opacity);
 }
