@@ -164,7 +164,7 @@ class EskfConfig(NamedTuple):
     like_force_s: float = 5.0  # the same of a force
     like_differing: float = 1.5  # what the variance among like strides counts beside
     gap_bridged_s: float = 0.28  # most of a swing: longer ones only as in like strides
-    gap_around_s: float = 0.5  # where rate and force are looked at
+    gap_around_s: float = 0.45  # where rate and force are looked at; no further than lookahead_s
     gap_rate_s: float = 0.07  # for which a rate goes its way
     gap_force_s: float = 0.05  # the same of a force
 
