@@ -33,12 +33,12 @@ class TrackerDegraded:
             return Clear(unit.position_ns, "the tracker is sure again")
         if unit.position_ns - unit.degraded_since_ns < self.after_s * NS_PER_S:
             return None
-        lost = position.quality is Quality.LOST
+        lost = position.path_quality is Quality.LOST
         return Finding(
             "lost" if lost else "degraded",
             SOON,
             f"The tracker of {unit.name}'s unit {'is lost' if lost else 'is unsure'}"
-            f" ({in_words(position.reasons)})",
+            f" ({in_words(position.reasons & ~Reason.UNCERTAIN)})",
             seen_ns=unit.position_ns,
             onset_ns=unit.degraded_since_ns,
         )

@@ -212,7 +212,7 @@ class GpsInertialFuser:
     ) -> Estimate:
         """``height`` with its variance."""
         memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
-        tracker = memory.last.quality if memory.last is not None else Quality.GOOD
+        tracker = memory.last.path_quality if memory.last is not None else Quality.GOOD
         split = self._horizontal.is_split
         quality, reason = quality_of(
             self._kind, placed, tracker, assumed=memory.assumed, split=split

@@ -42,7 +42,7 @@ def note(unit: UnitState, message: Message, t_ns: int) -> None:
 
 def _note_position(unit: UnitState, position: Position, t_ns: int) -> None:
     unit.position, unit.position_ns = position, t_ns
-    if position.quality is Quality.GOOD:
+    if position.path_quality is Quality.GOOD:
         unit.degraded_since_ns = None
     elif unit.degraded_since_ns is None:
         unit.degraded_since_ns = t_ns

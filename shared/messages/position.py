@@ -54,6 +54,21 @@ class Position(msgspec.Struct, frozen=True):
     reasons: Reason
     magnetic_north: MagneticNorth | None = None  # None: not known
 
+    @property
+    def path_quality(self) -> Quality:
+        """How far its last steps can be trusted.
+
+        That a long way has added up to much is nothing against them; whoever ties the way to
+        places knows how sure these are.
+        """
+        if self.quality is Quality.GOOD or not self.reasons & Reason.UNCERTAIN:
+            return self.quality
+        others = self.reasons & ~Reason.UNCERTAIN
+        if not others:
+            return Quality.GOOD
+        # Of what is against its steps only a stance that is missing makes a path lost.
+        return self.quality if others & Reason.NO_STANCE else min(self.quality, Quality.DEGRADED)
+
     def to_wire(self) -> position_pb2.Position:
         north = self.magnetic_north
         return position_pb2.Position(

@@ -109,7 +109,7 @@ class PathHistory(msgspec.Struct):
         if begins_run:
             self._begin_run(position.header.boot_id, t_ns)
         restarted = bool(self.points) and begins_run
-        flags = 0 if position.quality is Quality.GOOD else DOUBTFUL
+        flags = 0 if position.path_quality is Quality.GOOD else DOUBTFUL
         flags |= RESTART * restarted | BREAK * (jumped and not restarted)
         if not self.points:
             self.points.append(_point_of(position, t_ns, flags))
@@ -143,7 +143,7 @@ class PathHistory(msgspec.Struct):
         near = points[max(row - 1, 0) : row + 1]
         if min(abs(point.t_ns - t_ns) for point in near) < FILL_NS:
             return
-        late = _point_of(position, t_ns, 0 if position.quality is Quality.GOOD else DOUBTFUL)
+        late = _point_of(position, t_ns, 0 if position.path_quality is Quality.GOOD else DOUBTFUL)
         _show(late, estimate, floor)
         if joins(late, row):
             points.insert(row, late)

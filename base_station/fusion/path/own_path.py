@@ -36,7 +36,7 @@ class OwnPath:
                 (position.north_m, position.east_m, position.down_m),
                 (position.std_north_m, position.std_east_m, position.heading_std_rad),
                 duration_s,
-                position.quality is Quality.GOOD,
+                position.path_quality is Quality.GOOD,
             )
         )
 

@@ -1,0 +1,78 @@
+"""That a long way has added up to much doubt is nothing against the steps of now."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.bench.rig import said
+from base_station.fusion import FUSERS
+from base_station.fusion.port import Start
+from shared.messages import Header
+from shared.messages.station import SetStart
+from shared.quality import Quality, Reason
+from tests.station_script import Script
+
+U = "FF-01"
+FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of walking
+
+
+@pytest.mark.parametrize(
+    ("quality", "reasons", "path_quality"),
+    [
+        (Quality.GOOD, Reason.NONE, Quality.GOOD),
+        (Quality.GOOD, Reason.MAG_DISTURBED, Quality.GOOD),
+        (Quality.DEGRADED, Reason.UNCERTAIN, Quality.GOOD),
+        (Quality.LOST, Reason.UNCERTAIN, Quality.GOOD),
+        (Quality.LOST, Reason.NONE, Quality.LOST),
+        (Quality.DEGRADED, Reason.SAMPLE_GAP, Quality.DEGRADED),
+        (Quality.LOST, Reason.NO_STANCE, Quality.LOST),
+        (Quality.LOST, Reason.UNCERTAIN | Reason.SAMPLE_GAP, Quality.DEGRADED),
+        (Quality.LOST, Reason.UNCERTAIN | Reason.NO_STANCE, Quality.LOST),
+    ],
+)
+def test_only_what_is_against_its_steps_is_against_a_path(quality, reasons, path_quality):
+    position = said.position(Header(U, 1, 1, 0), quality=quality, reasons=reasons)
+    assert position.path_quality is path_quality
+
+
+def test_whoever_has_walked_far_is_placed_as_well_as_the_fuser_knows():
+    def estimate(quality, reasons):
+        fuser = FUSERS[0].new()
+        fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+        for second in range(60):
+            fuser.advance(
+                said.position(
+                    Header(U, 1, second + 1, second * 1_000_000_000),
+                    north_m=abs(second % 40.0 - 20.0),
+                    distance_m=float(second),
+                    std_north_m=20.0 + second,
+                    std_east_m=20.0 + second,
+                    quality=quality,
+                    reasons=reasons,
+                )
+            )
+        return fuser.estimate()
+
+    assert estimate(*FAR) == estimate(Quality.GOOD, Reason.NONE)
+    doubted = estimate(Quality.DEGRADED, Reason.BAD_SAMPLES)
+    assert doubted.std_north_m > 3.0 * estimate(*FAR).std_north_m
+
+
+def test_nobody_is_alarmed_by_a_long_walk():
+    quality, far = FAR
+    script = Script()
+    script.register(U)
+    script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
+
+    def walk(reasons):
+        north_m = abs(script.now_s % 40.0 - 20.0)
+        told = {"quality": quality, "reasons": reasons, "distance_m": script.now_s}
+        script.position(U, north_m, 0.0, **told)
+
+    script.wait(60, lambda: walk(far))
+    assert script.alarms == []
+    shown_before = script.fused[-1].quality
+    script.wait(60, lambda: walk(far | Reason.NO_STANCE))
+    assert (shown_before, script.fused[-1].quality) == (Quality.GOOD, Quality.LOST)
+    (raised, *_) = [one for one in script.alarms if one.rule == "tracker-degraded"]
+    assert raised.text.endswith("is lost (no stance)")
