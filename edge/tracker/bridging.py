@@ -19,10 +19,9 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, POSITION, VELOCITY
-from edge.tracker.intervals import accel_scale
+from edge.tracker.intervals import accel_scale, go_on
 from edge.tracker.like_strides import last_good, lost_periods
 from edge.tracker.state import FilterState, Progress, Ring, reach, span
-from edge.tracker.strapdown import advance
 
 
 @njit()
@@ -41,18 +40,7 @@ def walk_on(
         for i in range(3):
             state.gyro_radps[i] -= state.gyro_bias_radps[i]
             state.accel_mps2[i] = scale * state.accel_mps2[i] - state.accel_bias_mps2[i]
-        advance(
-            state.position_n_m,
-            state.velocity_n_mps,
-            state.quaternion_nb,
-            state.rotation_nb,
-            state.accel_mps2,
-            state.gyro_radps,
-            config.gravity_mps2,
-            dt_s / periods,
-            state.force_n_mps2,
-            state.angle_rad,
-        )
+        go_on(state, dt_s / periods, config)
         for i in range(3):
             state.hole_means[0, i] += state.gyro_radps[i] / periods
             state.hole_means[1, i] += state.accel_mps2[i] / periods

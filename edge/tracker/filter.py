@@ -24,8 +24,8 @@ from edge.tracker.error_model import (
 from edge.tracker.first_rest import believe_rest, doubt_bias
 from edge.tracker.floor import settle
 from edge.tracker.gain_errors import follow_gain_errors
-from edge.tracker.gaps import begins_anew, open_hole_s, stand_over
-from edge.tracker.intervals import lacks_samples, mean_readings
+from edge.tracker.gaps import open_hole_s, stand_over
+from edge.tracker.intervals import go_on, lacks_samples, mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measurement_update import turn_walk
@@ -34,7 +34,7 @@ from edge.tracker.row_quality import judge, note_faults
 from edge.tracker.stance import glides, stand
 from edge.tracker.state import FilterState, Progress, Ring, Step, Trail, reach
 from edge.tracker.stated_covariance import bend_way, state_position
-from edge.tracker.strapdown import advance, dot, rotation_matrix
+from edge.tracker.strapdown import dot, rotation_matrix
 from edge.tracker.thermal_bias import follow_warmth
 from edge.tracker.zero_velocity import stance_threshold, steady_rate, unrest
 
@@ -128,7 +128,7 @@ def _predict(
     before = (k - 1) & mask
     dt_s = ring[slot].t_s - ring[before].t_s
     ring[slot].interval_s = 0.0
-    if begins_anew(ring, progress, k, config):
+    if k == progress.began_at:  # nothing is known of the motion before it
         ring[slot].interval_s = -1.0
         stand_over(ring, progress, state, k, dt_s, config)
         return
@@ -138,18 +138,7 @@ def _predict(
     if progress.like_count:
         walk_on(ring, progress, state, k, dt_s, config)
     else:
-        advance(
-            state.position_n_m,
-            state.velocity_n_mps,
-            state.quaternion_nb,
-            state.rotation_nb,
-            state.accel_mps2,
-            state.gyro_radps,
-            config.gravity_mps2,
-            dt_s,
-            state.force_n_mps2,
-            state.angle_rad,
-        )
+        go_on(state, dt_s, config)
     propagate(state, dt_s)
     turn_walk(state, follow_gain_errors(state, dt_s, config))
     bend_way(state, dt_s)

@@ -19,6 +19,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.state import FilterState, Progress, Ring
+from edge.tracker.strapdown import advance
 
 EVEN = (0.7, 1.4)  # spacings so alike are the same, for stamps jitter more than sensors do
 BRIDGED = 3.5  # periods; what more than two missing samples hid is no cubic
@@ -124,3 +125,20 @@ def _add_cross(total: Floats, a: Floats, b: Floats, weight: float) -> None:
     total[0] += weight * (a[1] * b[2] - a[2] * b[1])
     total[1] += weight * (a[2] * b[0] - a[0] * b[2])
     total[2] += weight * (a[0] * b[1] - a[1] * b[0])
+
+
+@njit()
+def go_on(state: FilterState, dt_s: float, config: EskfConfig) -> None:
+    """Move position, velocity and attitude by the mean readings of an interval."""
+    advance(
+        state.position_n_m,
+        state.velocity_n_mps,
+        state.quaternion_nb,
+        state.rotation_nb,
+        state.accel_mps2,
+        state.gyro_radps,
+        config.gravity_mps2,
+        dt_s,
+        state.force_n_mps2,
+        state.angle_rad,
+    )

@@ -20,6 +20,7 @@ from edge.tracker.state import LIKE_STRIDES, Progress, Ring, history, reach, spa
 LOOKS = 12  # samples on a side that are compared, whatever the rate
 EVEN = 0.6  # periods by which samples may lie nearer or further where none is missing
 LEAST = 2  # strides: of one alone nobody knows how alike strides are
+LEAST_SIDE = 2  # samples
 
 
 @njit()
@@ -30,7 +31,7 @@ def seek_like_strides(ring: Ring, progress: Progress, k: int, config: EskfConfig
     dt_s = ring[k & mask].t_s - ring[(k - 1) & mask].t_s
     if k == 0 or not lacks_samples(ring, k & mask, dt_s) or dt_s > config.like_longest_s:
         return
-    wide = max(LEAST, int(config.like_side_s / ring[k & mask].period_s))
+    wide = max(LEAST_SIDE, int(config.like_side_s / ring[k & mask].period_s))
     before, periods = last_good(ring, k), lost_periods(ring, k)
     if k + wide >= min(progress.measured, reach(ring, k)) or before < wide:
         return
