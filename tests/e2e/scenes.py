@@ -293,6 +293,18 @@ def at_the_edges() -> wire.Snapshot:
     return msgspec.structs.replace(picture(units, *falls), plan=None)
 
 
+def pins_at_the_edges() -> wire.Snapshot:
+    """Pins that contradict the rest, each of which says whose it is, beside the same people."""
+    places_m = ((8.0, -20.0), (8.0, 20.0), (20.0, 8.0), (-20.0, 8.0))
+    pins = tuple(
+        msgspec.structs.replace(
+            pin(str(index), index, "conflict", north_m, "It is 11.2 m away"), east_m=east_m
+        )
+        for index, (north_m, east_m) in enumerate(places_m)
+    )
+    return msgspec.structs.replace(at_the_edges(), pins=pins)
+
+
 def taken(one: wire.AlarmView) -> wire.AlarmView:
     """The same alarm once somebody has acknowledged it."""
     return msgspec.structs.replace(one, state="acknowledged", by="chief")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from urllib.parse import quote
@@ -11,7 +12,7 @@ import msgspec
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from base_station.views.wire import AnchorView
+from base_station.views.wire import AnchorView, Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, confirm, menu, painted, painted_at_edges, press
 from tests.e2e.looks import flaws
@@ -208,8 +209,11 @@ def test_who_took_an_alarm_leaves_room_for_what_it_is_about(stage: Stage) -> Non
 
 
 @pytest.mark.parametrize("screen", ["laptop", "tablet", "phone"])
-def test_a_name_at_the_edge_of_the_plan_is_whole(stage: Stage, screen: str) -> None:
-    page, _ = stage.open(scenes.at_the_edges(), screen)
+@pytest.mark.parametrize("scene", [scenes.at_the_edges, scenes.pins_at_the_edges])
+def test_a_name_at_the_edge_of_the_plan_is_whole(
+    stage: Stage, scene: Callable[[], Snapshot], screen: str
+) -> None:
+    page, _ = stage.open(scene(), screen)
     if screen == "phone":
         page.get_by_role("button", name="Plan").first.click()
     page.wait_for_timeout(1500)  # the plan has come to rest

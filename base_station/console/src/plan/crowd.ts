@@ -25,7 +25,16 @@ import {
   trailStyle,
   type Mark,
 } from "./marks";
-import { placeNames, type Box, type Pixel, type Place, type Side } from "./names";
+import {
+  BESIDE,
+  boxesOf,
+  placeNames,
+  type Box,
+  type Named,
+  type Place,
+  type Screen,
+  type Side,
+} from "./names";
 import { siteCoordinate } from "./site";
 import { trailLines } from "./trail";
 
@@ -41,16 +50,8 @@ export interface Scene {
   screen: Screen;
 }
 
-/** What part of the plan is on the screen. */
-export interface Screen {
-  size: Pixel;
-  covered: readonly Box[]; // by what lies over the plan
-  pixelOf(coordinate: number[]): Pixel | null; // null: nothing is drawn yet
-}
-
 const HEADING_KNOWN_RAD = 0.8;
 const CROWDED = 12;
-const BESIDE: Pixel = [-1, -1]; // the screen: nothing is drawn yet
 
 /** Somebody who is to be drawn. */
 interface Shown {
@@ -83,7 +84,8 @@ export class Crowd {
     new VectorLayer({ source: this.labels, declutter: true }),
   ];
 
-  show(scene: Scene): void {
+  /** Answers what people and their names cover of the screen. */
+  show(scene: Scene): Box[] {
     const shown = new Map<string, Shown>();
     for (const unit of scene.units) {
       const { position } = unit;
@@ -96,8 +98,10 @@ export class Crowd {
       if (!shown.has(unitId)) this.forget(unitId);
     }
     const all = [...shown.values()];
-    const places = placesOf(all, scene.screen);
+    const named = namedOf(all, scene.screen);
+    const places = placeNames(named, scene.screen.size, scene.screen.covered);
     all.forEach((one, i) => draw(one, places[i] ?? null, scene));
+    return named.flatMap((one, i) => boxesOf(one, places[i] ?? null));
   }
 
   /** Where people are, without the regions about them. */
@@ -144,16 +148,13 @@ export class Crowd {
   }
 }
 
-/** One for each; null where the name is left out. */
-function placesOf(all: readonly Shown[], screen: Screen): (Place | null)[] {
-  const pixels = all.map(({ centre }) => screen.pixelOf(centre));
-  const named = all.map(({ looks, figure }, i) => ({
-    mark: pixels[i] ?? BESIDE,
+function namedOf(all: readonly Shown[], screen: Screen): Named[] {
+  return all.map(({ centre, looks, figure }) => ({
+    mark: screen.pixelOf(centre) ?? BESIDE,
     widthPx: measureTextWidth(labelFont(looks), labelOf(looks)),
     strong: isStrong(looks),
     before: figure.named,
   }));
-  return placeNames(named, screen.size, screen.covered);
 }
 
 function draw({ unit, position, looks, centre, figure }: Shown, name: Place | null, scene: Scene): void {

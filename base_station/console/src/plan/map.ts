@@ -99,6 +99,7 @@ export class PlanMap {
 
   showPins(scene: Omit<PinScene, "colours">): void {
     this.pins.show({ ...scene, colours: this.colours });
+    this.drawPeople(); // names of people and pins keep clear of pins
   }
 
   showPast(scene: PastScene): void {
@@ -163,7 +164,8 @@ export class PlanMap {
     const [right = 0, down = 0] = this.map.getSize() ?? [];
     const pixelOf = (at: number[]) => this.pixelOf(at);
     const screen = { size: [right, down], covered: this.covered(), pixelOf } as const;
-    this.crowd.show({ ...this.people, colours: this.colours, screen });
+    const taken = this.crowd.show({ ...this.people, colours: this.colours, screen });
+    this.pins.name({ ...screen, covered: [...screen.covered, ...taken] }, this.colours);
   }
 
   /** What lies over the plan. */

@@ -5,6 +5,16 @@
 export type Pixel = readonly [right: number, down: number];
 export type Box = readonly [left: number, top: number, right: number, bottom: number];
 
+/** What part of the plan is on the screen. */
+export interface Screen {
+  size: Pixel;
+  covered: readonly Box[]; // by what lies over the plan
+  pixelOf(coordinate: number[]): Pixel | null; // null: nothing is drawn yet
+}
+
+/** The screen: nothing is drawn yet. */
+export const BESIDE: Pixel = [-1, -1];
+
 export interface Named {
   mark: Pixel;
   widthPx: number; // of the name
@@ -71,6 +81,12 @@ function offsetTo(side: Side, { mark: [x], widthPx }: Named, [right]: Pixel): Pi
   if (side === "left") return [-MARK_PX - EDGE_PX - half, 0];
   const middle = Math.max(Math.min(x, right - half - EDGE_PX), half + EDGE_PX);
   return [middle - x, side === "below" ? APART_PX : -APART_PX];
+}
+
+/** What somebody's mark covers, and the name where there is one. */
+export function boxesOf(one: Named, place: Place | null): Box[] {
+  const mark = around(one.mark, MARK_PX, MARK_PX);
+  return place === null ? [mark] : [mark, boxOf(one, place.offset)];
 }
 
 function boxOf({ mark: [x, y], widthPx }: Named, [right, down]: Pixel): Box {

@@ -6,10 +6,12 @@ import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
+import { measureTextWidth } from "ol/render/canvas";
 import type { FloorChoice } from "../view";
 import type { BeaconView, PinView } from "../wire";
 import { clockTime, onPlan } from "../words";
 import { faint, type Colours } from "./colours";
+import { BESIDE, placeNames, type Named, type Pixel, type Screen, type Side } from "./names";
 import { siteCoordinate } from "./site";
 import type { Place } from "./tools";
 
@@ -29,6 +31,15 @@ export interface Standing {
   id: string;
 }
 
+/** A pin that says whose it is. */
+interface Labelled {
+  pinId: string;
+  text: string;
+  chosen: boolean;
+  at: [number, number];
+}
+
+const LABEL_FONT = "600 13px system-ui, sans-serif";
 const RADIUS_95 = 2.447; // standard deviations that hold 95 % in a plane
 const STEM_PX = 20;
 const HEAD_PX = 7;
@@ -40,13 +51,15 @@ export class PinLayer {
   private readonly source = new VectorSource<Feature>();
   private readonly labels = new VectorSource<Feature>();
   private chosen: string | null = null;
+  private labelled: Labelled[] = [];
+  private sides = new Map<string, Side>(); // on which each label stands
   readonly layer = new VectorLayer({ source: this.source });
-  /** Below those of people, which they keep clear of. */
+  /** Below those of people. */
   readonly labelLayer = new VectorLayer({ source: this.labels, declutter: true });
 
   show(scene: PinScene): void {
     this.source.clear(true);
-    this.labels.clear(true);
+    this.labelled = [];
     this.chosen = scene.chosen;
     for (const beacon of scene.beacons) {
       if (isOn(beacon.floor, scene.floor)) this.addBeacon(beacon, scene);
@@ -57,6 +70,32 @@ export class PinLayer {
       this.addPin(pin, { north_m: pin.north_m, east_m: pin.east_m }, scene);
     }
     scene.clicked.forEach((place, i) => this.addClick(place, i, scene));
+  }
+
+  /** Say whose pins they are, on the part of the plan that is on the screen and where nobody stands or
+   * is named; one that was chosen says so whatever it hides. */
+  name({ size, covered, pixelOf }: Screen, colours: Colours): void {
+    const named = this.labelled.map(({ pinId, text, chosen, at }): Named => {
+      const [right, down] = pixelOf(at) ?? BESIDE;
+      return {
+        mark: [right, down - STEM_PX],
+        widthPx: measureTextWidth(LABEL_FONT, text),
+        strong: chosen,
+        before: this.sides.get(pinId) ?? "above",
+      };
+    });
+    const places = placeNames(named, size, covered);
+    this.labels.clear(true);
+    this.sides = new Map();
+    this.labelled.forEach(({ pinId, text, at }, i) => {
+      const place = places[i] ?? null;
+      if (place === null) return;
+      this.sides.set(pinId, place.side);
+      const [right, down] = place.offset;
+      const label = new Feature({ geometry: new Point(at) });
+      label.setStyle(textStyle(text, [right, down - STEM_PX], colours, "obstacle"));
+      this.labels.addFeature(label);
+    });
   }
 
   /** Whether a feature of the map is one that can be chosen. */
@@ -91,10 +130,8 @@ export class PinLayer {
     );
     this.source.addFeature(mark);
     if (!chosen && pin.state !== "conflict") return;
-    const label = new Feature({ geometry: new Point(siteCoordinate(at)) });
-    const name = scene.names.get(pin.unit_id) ?? pin.unit_id;
-    label.setStyle(pinLabelStyle(pin, name, chosen, scene.colours));
-    this.labels.addFeature(label);
+    const text = pinWords(pin, scene.names.get(pin.unit_id) ?? pin.unit_id);
+    this.labelled.push({ pinId: pin.pin_id, text, chosen, at: siteCoordinate(at) });
   }
 
   private addBeacon(beacon: BeaconView, scene: PinScene): void {
@@ -108,7 +145,7 @@ export class PinLayer {
         zIndex: chosen ? 3 : 1,
         renderer: (where, state) => drawDiamond(where as number[], state, colour, scene.colours),
       }),
-      textStyle(onPlan(beacon.label || beacon.beacon_id), 17, scene.colours),
+      textStyle(onPlan(beacon.label || beacon.beacon_id), [0, 17], scene.colours),
     ]);
     this.source.addFeature(mark);
   }
@@ -121,7 +158,7 @@ export class PinLayer {
         zIndex: 4,
         renderer: (where, state) => drawCross(where as number[], state, colours.chosen),
       }),
-      textStyle(String(index + 1), -18, colours),
+      textStyle(String(index + 1), [0, -18], colours),
     ]);
     this.source.addFeature(mark);
   }
@@ -147,26 +184,25 @@ function pinColour(pin: PinView, colours: Colours): string {
   return pin.state === "waiting" ? colours.quiet : colours.chosen;
 }
 
-/** Nobody is there now: it says that it is a pin, and gives way to who is, unless it was chosen. */
-export function pinLabelStyle(pin: PinView, name: string, chosen: boolean, colours: Colours): Style {
+/** Nobody is there now: it says that it is a pin. */
+export function pinWords(pin: PinView, name: string): string {
   const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
-  const above = -STEM_PX - 2 * HEAD_PX - 4;
-  const mode = chosen ? "obstacle" : "declutter";
-  return textStyle(`Pin: ${onPlan(name)}, ${when}`, above, colours, mode);
+  return `Pin: ${onPlan(name)}, ${when}`;
 }
 
 function textStyle(
   text: string,
-  offsetY: number,
+  [offsetX, offsetY]: Pixel,
   colours: Colours,
-  declutterMode: "declutter" | "obstacle" | "none" = "none",
+  declutterMode: "obstacle" | "none" = "none",
 ): Style {
   return new Style({
     zIndex: 4,
     text: new Text({
       text,
       declutterMode,
-      font: "600 13px system-ui, sans-serif",
+      font: LABEL_FONT,
+      offsetX,
       offsetY,
       fill: new Fill({ color: colours.text }),
       stroke: new Stroke({ color: colours.halo, width: 4 }),
