@@ -2,9 +2,14 @@
 
 The radio loses stretches of it, and a journal brings them later, in pieces.  What is added for a
 silence is then taken back for what was really so, in whatever order that comes.
+
+How many stretches are told apart is bounded.  Beyond that the shortest silence counts as known:
+what was taken for it stands, and what a journal brings of it later changes nothing.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import msgspec
 
@@ -13,7 +18,7 @@ from shared.clock import NS_PER_S
 
 LONGEST_STEP_S = 10.0  # of silence that still counts as being as hot as before
 JOINED_NS = 3 * NS_PER_S // 2  # nothing is missing between readings so near, one a second
-MOST = 200  # stretches; of the oldest nothing more is filled in
+MOST = 500  # stretches
 
 
 class HeatStretch(msgspec.Struct):
@@ -53,7 +58,7 @@ def fill(told: list[HeatStretch], boot_id: int, t_ns: int, degc: float) -> float
     told.insert(row, new)
     _join(told, row + 1)
     _join(told, row)
-    del told[:-MOST]
+    _bound(told)
     return added
 
 
@@ -90,12 +95,37 @@ def _join(told: list[HeatStretch], row: int) -> None:
     """With the one before, where nothing is missing between them."""
     if not 0 < row < len(told):
         return
-    before, after = told[row - 1], told[row]
-    if before.boot_id == after.boot_id and 0 <= after.first_ns - before.last_ns <= JOINED_NS:
-        before.last_ns, before.last_degc = after.last_ns, after.last_degc
-        del told[row]
+    silent_ns = _silence_ns(told[row - 1], told[row])
+    if silent_ns is not None and silent_ns <= JOINED_NS:
+        _merge(told, row)
 
 
 def _append(told: list[HeatStretch], new: HeatStretch) -> None:
     told.append(new)
-    del told[:-MOST]
+    _bound(told)
+
+
+def _bound(told: list[HeatStretch]) -> None:
+    """Of runs without a silence between any two stretches the oldest is let go."""
+    if len(told) <= MOST:
+        return
+    silences = ((_silence_ns(*both), row) for row, both in enumerate(pairwise(told), start=1))
+    known = [(silent_ns, row) for silent_ns, row in silences if silent_ns is not None]
+    if known:
+        _merge(told, min(known)[1])
+    else:
+        del told[0]
+
+
+def _silence_ns(before: HeatStretch, after: HeatStretch) -> int | None:
+    """None: they are of two runs, or the unit's clock was set back between them."""
+    if before.boot_id != after.boot_id or after.first_ns < before.last_ns:
+        return None
+    return after.first_ns - before.last_ns
+
+
+def _merge(told: list[HeatStretch], row: int) -> None:
+    """With the one before; nothing more is filled in between them."""
+    before, after = told[row - 1], told[row]
+    before.last_ns, before.last_degc = after.last_ns, after.last_degc
+    del told[row]

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from base_station.live_state import UnitState
+from base_station.units.heat_told import MOST, HeatStretch, fill, follow
 from base_station.units.thermal import dose_of
 from shared.channels import TEMPERATURE, backfilled_key
+from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.messages import Temperature
 from shared.messages.station import CloseIncident, OpenIncident
@@ -159,10 +161,49 @@ def test_what_was_before_this_incident_does_not_count_in_it() -> None:
         assert (unit(script).heat_dose > 0.0) == counts
 
 
+def on_a_link_that_stutters(lost: set[int]) -> JournaledScript:
+    """For longer than can be told stretch by stretch, with a fire at the beginning."""
+    script = JournaledScript()
+    script.register(U)
+    script.act(OpenIncident("i1", "Mill Lane"))
+    for second in range(6 * MOST):
+        script.now_s += 1.0
+        script.out_of_reach = {U} if second in lost else set()
+        script.temperature(U, 280.0 if 100 <= second < 140 else 20.0)
+    script.out_of_reach = set()
+    script.status(U)
+    return script
+
+
+@pytest.mark.parametrize(
+    "in_the_fire", [range(90, 150), range(92, 150, 3)], ids=["out of reach", "stuttering"]
+)
+def test_on_a_link_that_stutters_for_long_the_fire_at_its_beginning_counts_once(
+    in_the_fire: range,
+) -> None:
+    script = on_a_link_that_stutters({*in_the_fire, *range(200, 6 * MOST, 3)})
+    assert len(unit(script).heat_told) == MOST
+    script.fetch(U, 50)
+    # Give or take a second at either end of it.
+    assert unit(script).heat_dose == pytest.approx(40.0 / 60.0, abs=2.0 / 60.0)
+    assert len(unit(script).heat_told) <= MOST
+
+
+@pytest.mark.parametrize("late_s", [5.0, 11.0 * MOST - 5.0])
+def test_a_reading_of_a_silence_that_is_counted_as_known_changes_nothing(late_s: float) -> None:
+    """What was taken for it stands: it is neither counted again nor taken back."""
+    stretches: list[HeatStretch] = []
+    for row in range(2 * MOST):
+        follow(stretches, 7, row * 11 * NS_PER_S, 300.0)
+    assert len(stretches) == MOST
+    assert fill(stretches, 7, round(late_s * NS_PER_S), 300.0) == 0.0
+    assert fill(stretches, 7, round(late_s * NS_PER_S), 20.0) == 0.0
+
+
 def test_stretches_that_are_known_take_no_more_room_the_longer_it_lasts() -> None:
     script = told(range(20, 70), {})
     assert len(unit(script).heat_told) == 1
-    for _ in range(500):
+    for _ in range(MOST + 300):
         script.now_s += 11.0
         script.temperature(U, 20.0)
-    assert len(unit(script).heat_told) <= 200
+    assert len(unit(script).heat_told) == MOST
