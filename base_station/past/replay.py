@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from base_station.live.picture import Picture
 from base_station.live.sinks import LiveSink, PhotoUrls, Trails
 from base_station.past.playback import Archive, Playback
+from base_station.program.recurring_trouble import RecurringTrouble
 from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import UserError
@@ -19,6 +20,7 @@ from shared.errors import UserError
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
 WHOLE_NS = NS_PER_S  # live, consoles hear of the station and of trails that were filled as often
+GRACE_S = 2.0  # for its thread to end
 PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
 
 _log = logging.getLogger(__name__)
@@ -45,15 +47,18 @@ class ReplaySession:
         photo_urls: PhotoUrls,
         clock: Clock,
     ) -> None:
-        """It plays from the window's beginning.  Raises UserError for an impossible speed."""
+        """It plays from the window's beginning.  Raises UserError for an impossible speed.
+
+        The disk is left to the thread: while it hangs, whoever asks for a replay is not kept.
+        """
         self._window = window
         self._clock = clock
         self._archive = archive
-        self._was_changed = archive.watch()
-        self._looked_ns = clock.monotonic_ns()
-        self._playback = Playback(archive)
-        self._picture = Picture(self._playback.pipeline, sink, photo_urls)
-        self._whole_ns = clock.monotonic_ns()
+        self._was_changed: Callable[[], bool]
+        self._trouble = RecurringTrouble(_log, "whether the past was changed cannot be seen")
+        self._playback: Playback
+        self._picture = Picture(archive.make_pipeline(None), sink, photo_urls)
+        self._looked_ns = self._whole_ns = clock.monotonic_ns()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = _checked_speed(speed)
@@ -121,9 +126,10 @@ class ReplaySession:
         return self._closed.is_set()
 
     def close(self) -> None:
+        """Its thread ends soon; one that waits for a disk that hangs, when that answers."""
         self._closed.set()
         self._news.set()
-        self._thread.join()
+        self._thread.join(GRACE_S)
 
     # ---- in the thread
 
@@ -135,6 +141,7 @@ class ReplaySession:
             self._closed.set()
 
     def _go_on(self) -> None:
+        self._open()
         while not self._closed.is_set():
             self._follow_changes()
             self._follow_seek()
@@ -145,19 +152,29 @@ class ReplaySession:
             self._news.wait(DELTA_S if self._playing else PAUSED_S)
             self._news.clear()
 
+    def _open(self) -> None:
+        """The log as it is now, from its beginning."""
+        self._was_changed = self._archive.watch()
+        self._playback = Playback(self._archive)
+
     def _follow_changes(self) -> None:
         """Where somebody was forgotten since, it shows the past as the log has it now."""
         now_ns = self._clock.monotonic_ns()
         if now_ns - self._looked_ns < WHOLE_NS:
             return
         self._looked_ns = now_ns
-        if not self._was_changed():
+        if not self._is_changed():
             return
-        self._was_changed = self._archive.watch()
-        self._playback = Playback(self._archive)
+        self._open()
         with self._lock:
             if self._seek_ns is None:
                 self._seek_ns = self._at_ns
+
+    def _is_changed(self) -> bool:
+        """What cannot be looked at now is looked at again."""
+        with self._trouble:
+            return self._was_changed()
+        return False
 
     def _follow_seek(self) -> None:
         with self._lock:
