@@ -47,6 +47,8 @@ class LiveFeed:
         self._bytes = 0
         self._late: deque[tuple[str, bytes]] = deque()
         self._late_bytes = 0
+        self._undealt = False  # of what was delivered
+        self._all_taken = False  # and who took it has not come again
         self._woken = False
         self._closed = False
         self._overflowed_ns = 0
@@ -60,8 +62,10 @@ class LiveFeed:
 
     @property
     def late_waits(self) -> bool:
-        """Whether anything that was delivered has not been taken yet."""
-        return bool(self._late)
+        """Whether anything that was delivered may not be in the log yet: it waits here, or whoever
+        took it has not come for more.
+        """
+        return self._undealt
 
     @property
     def follows(self) -> bool:
@@ -84,6 +88,7 @@ class LiveFeed:
         with self._changed:
             if not self._has_late_room(1.0):  # and then for a good while, not for a record or two
                 self._changed.wait_for(lambda: self._has_late_room(0.5) or self._closed)
+            self._undealt, self._all_taken = True, False
             if _is_alert(key):
                 self._append(key, payload)
                 return
@@ -97,6 +102,7 @@ class LiveFeed:
         something comes, ``wake`` or the timeout.
         """
         with self._changed:
+            self._undealt = self._undealt and not self._all_taken
             self._changed.wait_for(lambda: self._queue or self._late or self._woken, timeout_s)
             if self._queue and not self._late:  # what comes in quick succession is taken together
                 self._changed.wait_for(lambda: self._woken, min(_GATHER_S, timeout_s))
@@ -107,6 +113,7 @@ class LiveFeed:
             records += self._take_late()
             if not had_room and self._has_late_room(0.5):
                 self._changed.notify_all()
+            self._all_taken = not self._late
             return records
 
     def wake(self) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from threading import Thread
 
+import pytest
+
 from base_station.clocks.steady import SteadyClock
 from base_station.feed import LiveFeed, LogFeed
 from shared.channels import EVENT, POSITION
@@ -141,10 +143,28 @@ def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() ->
     assert taken.count(b"late") == count
 
 
-def test_what_was_taken_waits_no_more() -> None:
+@pytest.mark.parametrize("key", [KEY, ALERT])
+def test_what_was_delivered_waits_until_who_took_it_comes_again(key: str) -> None:
+    """It is in no log before: nobody may forget it, nor take it for brought."""
     feed = LiveFeed(ManualClock())
-    feed.deliver(KEY, b"late")
+    waited = [feed.late_waits]
+    feed.deliver(key, b"fetched")
+    waited.append(feed.late_waits)
     feed.take(60.0)
+    waited.append(feed.late_waits)
+    feed.take(0.0)
+    waited.append(feed.late_waits)
+    assert waited == [False, True, True, False]
+
+
+def test_what_is_delivered_meanwhile_waits_too() -> None:
+    feed = LiveFeed(ManualClock())
+    feed.deliver(KEY, b"fetched")
+    feed.take(60.0)
+    feed.deliver(KEY, b"while that is dealt with")
+    feed.take(60.0)
+    assert feed.late_waits
+    feed.take(0.0)
     assert not feed.late_waits
 
 
