@@ -35,6 +35,9 @@ _FIND = """
   if (document.scrollingElement.scrollWidth > innerWidth)
     found.push(`the page is ${document.scrollingElement.scrollWidth} px wide`);
 
+  if (document.scrollingElement.scrollHeight > innerHeight)
+    found.push(`the page is ${document.scrollingElement.scrollHeight} px high`);
+
   for (const one of root.querySelectorAll("button, select, input, summary, a")) {
     if (!isShown(one)) continue;
     const box = one.getBoundingClientRect();

@@ -40,6 +40,11 @@ class PlayedStation:
         page.route("**/*", self._answer)
         page.route_web_socket("**/*", self._speak)
 
+    @property
+    def picture(self) -> Snapshot:
+        """As it is now."""
+        return self._picture
+
     def open(self) -> None:
         self._page.goto(ADDRESS)
 
@@ -73,6 +78,12 @@ class PlayedStation:
         for socket in self._sockets:
             socket.close(code=NOT_LOGGED_IN)
         self._sockets.clear()
+
+    def restart(self) -> None:
+        """Its connections end, and the page comes back."""
+        sockets, self._sockets = self._sockets, []
+        for socket in sockets:
+            socket.close()
 
     def fall_silent(self) -> None:
         """The link to the station is cut."""

@@ -305,6 +305,24 @@ def pins_at_the_edges() -> wire.Snapshot:
     return msgspec.structs.replace(at_the_edges(), pins=pins)
 
 
+ALONE = "There is no standby: what is done now is on this station alone"
+
+
+def overdue() -> wire.Snapshot:
+    """One has not been heard from in time; a station that has to say something of itself."""
+    units = [unit(index) for index in range(5)]
+    missed = alarm(
+        0, "missed-check-in", 1, f"{NAMES[0]}: PAR overdue, not heard from for 20 min", 9
+    )
+    missed = msgspec.structs.replace(missed, level="overdue")
+    duty = units[0].duty
+    assert duty is not None
+    late = msgspec.structs.replace(duty, due_ms=NOW_MS - 9000)
+    units[0] = with_alarms(units[0], missed, duty=late)
+    health = msgspec.structs.replace(long_names().health, problems=(ALONE, "b"))
+    return msgspec.structs.replace(picture(units, missed), health=health)
+
+
 def taken(one: wire.AlarmView) -> wire.AlarmView:
     """The same alarm once somebody has acknowledged it."""
     return msgspec.structs.replace(one, state="acknowledged", by="chief")

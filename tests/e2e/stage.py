@@ -15,6 +15,8 @@ SCREENS = {
     "tablet upright": (768, 1024),
     "phone": (390, 844),
     "phone on its side": (844, 390),
+    "large at 200 %": (960, 540),
+    "laptop at 200 %": (683, 384),
 }
 PAST = f"/incidents/{scenes.INCIDENT.incident_id}"
 ANSWERS = answers(

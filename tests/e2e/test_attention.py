@@ -74,6 +74,32 @@ def test_whoever_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -
     expect(page.locator(".card-actions")).to_be_in_viewport(ratio=1)
 
 
+def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) -> None:
+    """And however long the card grows while it is looked at."""
+    page, station = stage.open(scenes.crowd(), "large at 200 %")
+    page.locator(".card", has_text="Tomas Novak").get_by_role("button").first.click()
+    actions = page.get_by_role("group", name="For Tomas Novak")
+    expect(actions).to_be_in_viewport(ratio=1)
+    lost = station.picture.units[3]
+    fault = scenes.alarm(3, "unit-fault", 2, f"Tomas Novak's unit: {scenes.FAULTS[1]}", 1)
+    station.change(alarms=(fault,), units=(scenes.with_alarms(lost, fault),))
+    expect(page.locator(".card.chosen")).to_contain_text(scenes.FAULTS[1])
+    expect(actions).to_be_in_viewport(ratio=1)
+    expect(actions.get_by_role("button", name="Message")).to_be_in_viewport(ratio=1)
+
+
+def test_who_is_overdue_is_said_to_be_so_once(stage: Stage) -> None:
+    page, station = stage.open(scenes.overdue())
+    card = page.locator(".card", has_text=scenes.NAMES[0])
+    expect(card).to_contain_text(re.compile(r"PAR \d+:\d+ over"))
+    expect(card.get_by_label("Open alarms of this person")).to_have_count(0)
+    heard = scenes.unit(0).duty
+    late = station.picture.units[0]
+    station.change(units=(msgspec.structs.replace(late, duty=heard),))
+    open_alarms = card.get_by_label("Open alarms of this person")
+    expect(open_alarms.get_by_role("listitem")).to_have_text(["Missed check-in"])
+
+
 def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
     """The button to acknowledge is followed at its place by the one to resolve."""
     page, station = stage.open(scenes.bad_minute())

@@ -39,6 +39,7 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
         scenes.past,
         scenes.stored,
         scenes.switched_off,
+        scenes.overdue,
     ],
 )
 def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
@@ -210,3 +211,56 @@ def test_in_the_past_a_phone_has_room_for_the_plan(
     footer = page.locator(".footer").bounding_box()
     assert footer is not None
     assert min(box["y"] + box["height"], footer["y"]) - box["y"] >= least_px
+
+
+def test_what_is_wrong_with_the_station_is_read_whole(stage: Stage) -> None:
+    page, _ = stage.open(scenes.overdue())
+    sentence = page.get_by_role("button", name="Station health").locator(".sentence")
+    expect(sentence).to_have_text(scenes.ALONE)
+    cut = "one => one.scrollHeight > one.clientHeight + 1 ? [one.innerText] : []"
+    assert on_every_screen(page, lambda _: sentence.evaluate(cut)) == {}
+
+
+ROW_PX = 52  # of buttons, with what is between two rows
+
+
+def test_in_the_past_a_tablet_shows_who_is_in_trouble_and_not_only_buttons(stage: Stage) -> None:
+    page, _ = stage.open(scenes.overdue(), "tablet")
+    page.get_by_role("button", name="Menu").click()
+    menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
+    bar = page.get_by_role("region", name="Replay")
+    expect(bar).to_contain_text("Live now: 1 open alarm")
+    expect(bar).to_contain_text(scenes.ALONE)
+    assert flaws(page) == []
+    heights_px = [
+        (page.locator(part).bounding_box() or {"height": 1000})["height"]
+        for part in (".transport", ".replay-bar")
+    ]
+    assert heights_px[0] < ROW_PX
+    assert heights_px[1] < 3 * ROW_PX
+
+
+@pytest.mark.parametrize("name", ["Beacon", "All start here"])
+def test_on_a_tablet_the_plan_can_be_clicked_while_a_panel_asks_for_it(
+    stage: Stage, name: str
+) -> None:
+    page, _ = stage.open(scenes.bad_minute(20), "tablet")
+    page.get_by_role("button", name=name, exact=True).click()
+    box = page.locator(".map").bounding_box()
+    assert box is not None
+    assert box["height"] >= 140
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("button", name=name, exact=True)).to_be_focused()
+
+
+def test_forced_colours_leave_to_be_seen_what_is_chosen_and_who_is_in_danger(stage: Stage) -> None:
+    """The browser takes every colour away, and with them all that only colours say."""
+    page, _ = stage.open(scenes.bad_minute())
+    page.emulate_media(forced_colors="active")
+    ground = "one => getComputedStyle(one).backgroundColor"
+    floors = page.get_by_role("group", name="Floor shown").get_by_role("button")
+    assert len({floors.nth(place).evaluate(ground) for place in range(3)}) == 2
+    border = "one => getComputedStyle(one).borderTopWidth"
+    cards, rows = page.locator(".card"), strip(page).get_by_role("listitem")
+    for danger, other in ((cards.first, cards.nth(1)), (rows.first, rows.last)):
+        assert danger.evaluate(border) != other.evaluate(border)

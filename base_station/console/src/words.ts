@@ -181,6 +181,9 @@ export function gpsWord(reason: string | null): string {
 /** The level of an alarm that only informs: the unit's silence is no loss. */
 export const SWITCHED_OFF = "switched off";
 
+/** The rule of the alarm that nobody has heard from somebody in time. */
+export const MISSED_CHECK_IN = "missed-check-in";
+
 /** What the station puts before the own words of a unit, or of the agent that tracks for one
  * (base_station/alarms/unit_fault.py, tracker_fault.py). */
 const BEFORE_FAULT: Readonly<Record<string, string>> = {
@@ -193,6 +196,7 @@ const LONGEST_FAULT = 70;
  * may have several faults, so each says which it is. */
 export function alarmWord(alarm: AlarmView): string {
   if (alarm.level === SWITCHED_OFF) return "Switched off"; // its link is not lost
+  if (alarm.rule === MISSED_CHECK_IN) return "Missed check-in"; // it has no other level
   const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
   const word = rule.charAt(0).toUpperCase() + rule.slice(1);
   const before = BEFORE_FAULT[alarm.rule];

@@ -100,6 +100,7 @@ describe("words", () => {
     ["link-lost", "lost", "Link lost"],
     ["link-lost", "switched off", "Switched off"],
     ["mayday", "mayday", "Mayday"],
+    ["missed-check-in", "overdue", "Missed check-in"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
     expect(words.alarmWord(alarm("x", { rule, level }))).toBe(short);
   });

@@ -1,5 +1,6 @@
 /** Which alarms are open, in the order in which they want a person. */
 import type { AlarmView, UnitView } from "../wire";
+import { MISSED_CHECK_IN } from "../words";
 import { displayName } from "./urgency";
 
 export function isOpen(alarm: AlarmView): boolean {
@@ -34,7 +35,7 @@ export function sinceMs({ state, raised_ms, last_raised_ms }: AlarmView): number
 }
 
 /** What these say is of a person, and stays so when the unit is given on. */
-const OF_WEARER = ["mayday", "fall", "no-motion", "missed-check-in", "rest-due"];
+const OF_WEARER = ["mayday", "fall", "no-motion", MISSED_CHECK_IN, "rest-due"];
 
 /** Whether it is of somebody who wore the unit before. */
 export function isOfAnother(alarm: AlarmView, unit: UnitView): boolean {
@@ -46,7 +47,7 @@ export function needsOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>):
   return unit.alarms
     .map((alarmId) => alarms.get(alarmId))
     .filter((alarm) => alarm !== undefined)
-    .filter((alarm) => alarm.priority === 1 && alarm.rule !== "missed-check-in")
+    .filter((alarm) => alarm.priority === 1 && alarm.rule !== MISSED_CHECK_IN)
     .filter((alarm) => !isOfAnother(alarm, unit));
 }
 

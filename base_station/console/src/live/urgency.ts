@@ -1,6 +1,6 @@
 /** Who needs attention first, and a list that does not jump while somebody reads it.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
-import { SWITCHED_OFF } from "../words";
+import { MISSED_CHECK_IN, SWITCHED_OFF } from "../words";
 
 export type Urgency = "immediate" | "soon" | "watch" | "normal";
 
@@ -31,7 +31,7 @@ function rankOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): number 
   if (urgency !== "immediate") return RANK[urgency];
   const open = unit.alarms.map((id) => alarms.get(id));
   if (unit.status?.mayday || open.some((one) => one?.rule === "mayday")) return MAYDAY;
-  const inNeed = open.some((one) => (one?.priority ?? 1) === 1 && one?.rule !== "missed-check-in");
+  const inNeed = open.some((one) => (one?.priority ?? 1) === 1 && one?.rule !== MISSED_CHECK_IN);
   return inNeed ? IN_NEED : RANK.immediate;
 }
 

@@ -14,7 +14,7 @@ import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
 import { BriefFacts, Facts } from "./Facts";
 import { activityIcon, Icon, type IconName } from "./Icon";
-import { ParMark } from "./ParClock";
+import { isOverdue, ParMark } from "./ParClock";
 import { Photo } from "./Photo";
 import { AskWearer } from "./Wearer";
 
@@ -53,7 +53,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
           <Activity unit={unit} picture={picture} />
         </span>
       </button>
-      <OpenAlarms unit={unit} alarms={picture.alarms.value} />
+      <OpenAlarms unit={unit} picture={picture} />
       {unit.cloned && <TwoMachines />}
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
       {short ? (
@@ -74,7 +74,10 @@ function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
   const card = useRef<HTMLLIElement>(null);
   const asked = chosen ? centring.value : 0;
   useLayoutEffect(() => {
-    if (asked > 0) card.current?.scrollIntoView({ block: "nearest" });
+    if (asked === 0 || card.current === null) return;
+    const list = card.current.closest(".people");
+    const isLonger = list !== null && card.current.offsetHeight > list.clientHeight;
+    card.current.scrollIntoView({ block: isLonger ? "start" : "nearest" }); // by its name
   }, [asked]);
   return card;
 }
@@ -111,8 +114,12 @@ function activityOrNone(unit: UnitView): IconName {
   return unit.status === null ? "linkLost" : activityIcon(unit.status.activity);
 }
 
-function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<string, AlarmView> }) {
-  const open = unit.alarms.map((id) => alarms.get(id)).filter((alarm) => alarm !== undefined);
+function OpenAlarms({ unit, picture }: { unit: UnitView; picture: Picture }) {
+  const overdue = isOverdue(unit, picture);
+  const open = unit.alarms
+    .map((id) => picture.alarms.value.get(id))
+    .filter((alarm) => alarm !== undefined)
+    .filter((alarm) => !(overdue && saysOverdue(alarm, unit)));
   if (open.length === 0) return null;
   return (
     <ul class="card-alarms" aria-label="Open alarms of this person">
@@ -125,6 +132,11 @@ function OpenAlarms({ unit, alarms }: { unit: UnitView; alarms: ReadonlyMap<stri
       ))}
     </ul>
   );
+}
+
+/** Which the mark beside the name says already, and by how much. */
+function saysOverdue(alarm: AlarmView, unit: UnitView): boolean {
+  return alarm.rule === words.MISSED_CHECK_IN && !isOfAnother(alarm, unit);
 }
 
 /** How far the position can be trusted: nothing to say while that is well.  That nothing is heard of a

@@ -28,6 +28,12 @@ export function ParClock({ picture }: { picture: Picture }) {
   );
 }
 
+/** Whether the mark of this person says so. */
+export function isOverdue({ duty }: UnitView, picture: Picture): boolean {
+  if (duty === null) return false;
+  return parOf(duty, picture.incident.value, picture.nowMs.value).state === "overdue";
+}
+
 /** On a card: how long until this person is to be heard from. */
 export function ParMark({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const { duty } = unit;

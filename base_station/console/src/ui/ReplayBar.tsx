@@ -19,16 +19,22 @@ export function ReplayBar({ replay, live }: Props) {
       <span class="replay-what">
         {replay.incident.name}, {dateAndTime(replay.incident.opened_ms)}. This is the past.
       </span>
-      <button type="button" class="about-positions" onClick={() => assess(replay.incident)}>
-        How good were the positions?
+      <button
+        type="button"
+        class="about-positions"
+        aria-label="How good were the positions?"
+        title="How good were the positions?"
+        onClick={() => assess(replay.incident)}
+      >
+        How good?
       </button>
       {besideLive.value && (
         <>
           <LiveAlarms live={live} />
-          <LiveProblems live={live} />
           <button type="button" class="primary" onClick={stopReplay}>
             Back to live
           </button>
+          <LiveProblems live={live} />
         </>
       )}
       {state && <Transport key={replay.id} replay={replay} state={state} />}

@@ -39,9 +39,11 @@ export function Transport({ replay, state }: Props) {
       <span class="going" role="status">
         {state.seeking ? `Going to ${clockTime(at)} …` : ""}
       </span>
-      <span>
-        {countdown(at - start)} of {countdown(end - start)}
-      </span>
+      {!state.seeking && (
+        <span>
+          {countdown(at - start)} of {countdown(end - start)}
+        </span>
+      )}
       <GoTo alarms={alarms} seek={seek} />
       <Speed state={state} choose={(speed) => change({ speed })} />
     </div>
@@ -97,19 +99,17 @@ function GoTo({ alarms, seek }: SeekProps) {
 function Speed({ state, choose }: { state: ReplayView; choose: (speed: number) => void }) {
   const speeds = [...new Set([...SPEEDS, state.speed])].sort((a, b) => a - b);
   return (
-    <label>
-      Speed
-      <select
-        value={String(state.speed)}
-        onChange={(event) => choose(Number(event.currentTarget.value))}
-      >
-        {speeds.map((speed) => (
-          <option key={speed} value={String(speed)}>
-            {speed}×
-          </option>
-        ))}
-      </select>
-    </label>
+    <select
+      aria-label="Speed"
+      value={String(state.speed)}
+      onChange={(event) => choose(Number(event.currentTarget.value))}
+    >
+      {speeds.map((speed) => (
+        <option key={speed} value={String(speed)}>
+          {speed}×
+        </option>
+      ))}
+    </select>
   );
 }
 
