@@ -45,10 +45,11 @@ function PasswordForm({ username }: { username: string }) {
       class="row"
       onSubmit={(event) => {
         const { old = "", fresh = "" } = fields(event);
-        const changed = api.changeOwnPassword(old, fresh).then(() => {
+        const changed = api.changeOwnPassword(old, fresh).then(async () => {
+          await leave(); // its sessions have ended
           notice.value = "The password is changed. Log in with the new one.";
         });
-        void attempt(changed).then(leave);
+        void attempt(changed);
       }}
     >
       <input name="username" autocomplete="username" value={username} readOnly hidden />

@@ -5,10 +5,11 @@ import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
+import { Waiting } from "./Waiting";
 
 /** Who did what, newest first. */
 export function AuditDialog() {
-  const { entries, older } = usePages(api.audit, (entry) => entry.t_ms);
+  const { entries, loaded, older } = usePages(api.audit, (entry) => entry.t_ms);
   const [people] = useLoaded(api.people);
   const names = new Map((people.value ?? []).map((person) => [person.person_id, person.name]));
   return (
@@ -28,6 +29,7 @@ export function AuditDialog() {
           ))}
         </tbody>
       </table>
+      {!loaded.value && <Waiting />}
       {older && (
         <button type="button" onClick={older}>
           Older entries

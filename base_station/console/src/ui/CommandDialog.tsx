@@ -66,7 +66,11 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       <p>{SAYS[kind]}</p>
       <label>
         To
-        <select value={to.value} onChange={(event) => (to.value = event.currentTarget.value)}>
+        <select
+          autofocus={kind !== "text"}
+          value={to.value}
+          onChange={(event) => (to.value = event.currentTarget.value)}
+        >
           {[...targets].map(([target, name]) => (
             <option key={target} value={target}>
               {name}
@@ -77,7 +81,7 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
       {kind === "text" && (
         <label class="long">
           Message
-          <input name="text" required maxLength={120} />
+          <input name="text" required maxLength={120} autofocus />
         </label>
       )}
       <button class={kind === "evacuate" ? "danger" : "primary"}>

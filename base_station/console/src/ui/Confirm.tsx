@@ -41,3 +41,12 @@ export function useFocusBack(isAsked: boolean): RefObject<HTMLButtonElement | nu
   }, [isAsked]);
   return button;
 }
+
+/** For a form that comes in the place of the button that asked for it. */
+export function useFirstField(isAsked = true): RefObject<HTMLFormElement | null> {
+  const form = useRef<HTMLFormElement>(null);
+  useEffect(() => {
+    if (isAsked) form.current?.querySelector("input")?.focus();
+  }, [isAsked]);
+  return form;
+}

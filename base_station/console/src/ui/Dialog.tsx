@@ -1,6 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { dialog } from "../view";
+import { LinkLost } from "./LinkBanner";
 import { Notice } from "./Notice";
 import { UrgentNow } from "./UrgentNow";
 
@@ -26,6 +27,7 @@ export function Dialog({ title, wide = false, children }: Props) {
         <button type="button" onClick={() => element.current?.close()}>
           Close
         </button>
+        <LinkLost />
         <UrgentNow />
         <Notice />
       </header>

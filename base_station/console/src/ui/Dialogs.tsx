@@ -1,3 +1,4 @@
+import { useLayoutEffect } from "preact/hooks";
 import { dialog } from "../view";
 import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
@@ -12,6 +13,7 @@ import { UnitsDialog } from "./UnitsDialog";
 import { UsersDialog } from "./UsersDialog";
 
 export function Dialogs() {
+  useFocusBack(dialog.value !== null);
   switch (dialog.value) {
     case "incidents":
       return <IncidentsDialog />;
@@ -40,4 +42,19 @@ export function Dialogs() {
     default:
       return null;
   }
+}
+
+/** Keys go on where the dialog was opened, from whichever other dialog that led to it; where the menu
+ * has closed over that entry, at the menu. */
+function useFocusBack(isOpen: boolean): void {
+  useLayoutEffect(() => {
+    if (!isOpen) return undefined;
+    const opener = document.activeElement; // the dialog takes the focus later
+    return () => {
+      for (const one of [opener, document.querySelector(".menu-button")]) {
+        if (document.activeElement !== document.body) return;
+        if (one instanceof HTMLElement) one.focus();
+      }
+    };
+  }, [isOpen]);
 }

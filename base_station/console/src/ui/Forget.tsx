@@ -3,6 +3,7 @@ import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import { notice } from "../view";
 import * as api from "../api";
+import { useFirstField, useFocusBack } from "./Confirm";
 import { fields } from "./useLoaded";
 
 const LOOK_EVERY_MS = 500;
@@ -19,6 +20,8 @@ interface Props {
  * log is long, and goes on without this page. */
 export function Forget({ name, subjectId, warning, forget, done }: Props) {
   const asked = useSignal(false);
+  const button = useFocusBack(asked.value);
+  const form = useFirstField(asked.value);
   const underWay = useSignal<api.Forgetting | null>(null);
   const look = async () => {
     const all = await api.forgettings().catch(() => null); // away: it is asked again
@@ -43,7 +46,7 @@ export function Forget({ name, subjectId, warning, forget, done }: Props) {
   if (underWay.value !== null) return <UnderWay name={name} one={underWay.value} />;
   if (!asked.value) {
     return (
-      <button type="button" aria-label={`Forget ${name}`} onClick={() => (asked.value = true)}>
+      <button type="button" ref={button} aria-label={`Forget ${name}`} onClick={() => (asked.value = true)}>
         Forget
       </button>
     );
@@ -51,6 +54,7 @@ export function Forget({ name, subjectId, warning, forget, done }: Props) {
   return (
     <form
       class="forget"
+      ref={form}
       onSubmit={(event) => {
         const { typed = "" } = fields(event);
         void attempt(forget(typed)).then((begun) => (underWay.value = begun));

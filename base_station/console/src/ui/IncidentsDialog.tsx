@@ -7,12 +7,14 @@ import { dateAndTime, minutes } from "../words";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
+import { useDone } from "./Done";
 import { Forget } from "./Forget";
 import { useOnce } from "./haste";
 import { OpenReplays } from "./OpenReplays";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
+import { Waiting } from "./Waiting";
 
 const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Positions"];
 
@@ -89,6 +91,7 @@ export function IncidentsDialog() {
           ))}
         </tbody>
       </table>
+      {!loaded.value && <Waiting />}
       {loaded.value && entries.value.length === 0 && (
         <p class="quiet">None yet. What a unit says is kept all the same.</p>
       )}
@@ -116,7 +119,7 @@ function OpenForm({ done }: { done: () => void }) {
     >
       <label>
         Name of the new incident
-        <input name="name" required maxLength={80} />
+        <input name="name" required maxLength={80} autofocus />
       </label>
       {usual.value && <TimesFields times={usual.value} />}
       <button class="primary">Open incident</button>
@@ -126,15 +129,19 @@ function OpenForm({ done }: { done: () => void }) {
 
 /** Other times while the incident runs. */
 function TimesForm({ incident }: { incident: IncidentView }) {
+  const done = useDone("The times are changed.");
   return (
     <form
       class="row"
+      onInput={done.unsay}
       onSubmit={(event) => {
-        void attempt(api.setTimes(incident.incident_id, timesOf(fields(event))));
+        const changed = api.setTimes(incident.incident_id, timesOf(fields(event)));
+        void attempt(changed.then(done.say));
       }}
     >
       <TimesFields times={incident} />
       <button>Change times</button>
+      {done.words}
     </form>
   );
 }

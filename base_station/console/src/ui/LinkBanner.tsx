@@ -1,12 +1,47 @@
+import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { useSignal } from "@preact/signals";
 import type { Picture } from "../live/picture";
+import { live } from "../sessions";
 import { clockTime, duration } from "../words";
 import { Icon } from "./Icon";
 import { OtherConsole } from "./StandbyBar";
 
 /** When the station cannot be heard, nothing on the screen may look as if it were now. */
 export function LinkBanner({ picture }: { picture: Picture }) {
+  const lost = useLost(picture);
+  if (lost === null) return null;
+  const standby = picture.health.peek()?.standby;
+  const shown = picture.ready.value
+    ? `This picture is from ${clockTime(picture.heardMs.peek())} and is not being updated.`
+    : "";
+  return (
+    <div class="link-banner" role="alert">
+      {lost}
+      <span>{shown} Trying to connect again.</span>
+      {standby && <OtherConsole standby={standby} />}
+    </div>
+  );
+}
+
+/** The same in a dialog, behind which the banner stands. */
+export function LinkLost() {
+  const watched = live.value?.picture;
+  return watched === undefined ? null : <LostInDialog picture={watched} />;
+}
+
+function LostInDialog({ picture }: { picture: Picture }) {
+  const lost = useLost(picture);
+  return (
+    <div role="alert" class={lost === null ? "" : "link-banner"}>
+      {lost}
+      {lost !== null && <span>Nothing here is being updated.</span>}
+    </div>
+  );
+}
+
+/** That it is lost, and since when; null while it is not. */
+function useLost(picture: Picture): JSX.Element | null {
   const link = picture.link.value;
   const age = useSignal("");
   const sinceMs = link.kind === "down" ? link.sinceMs : null;
@@ -18,18 +53,12 @@ export function LinkBanner({ picture }: { picture: Picture }) {
     return () => clearInterval(timer);
   }, [sinceMs]);
   if (sinceMs === null) return null;
-  const standby = picture.health.peek()?.standby;
-  const shown = picture.ready.value
-    ? `This picture is from ${clockTime(picture.heardMs.peek())} and is not being updated.`
-    : "";
   return (
-    <div class="link-banner" role="alert">
+    <>
       <Icon name="linkLost" />
       <strong>
         Connection to the station lost <span aria-live="off">{age} ago</span>.
       </strong>
-      <span>{shown} Trying to connect again.</span>
-      {standby && <OtherConsole standby={standby} />}
-    </div>
+    </>
   );
 }

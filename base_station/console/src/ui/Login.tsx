@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 import { begin } from "../sessions";
 import { notice } from "../view";
 import * as api from "../api";
@@ -8,6 +9,8 @@ export function Login() {
   const problem = useSignal("");
   const busy = useSignal(false);
   const cameFrom = arrival(location.hash);
+  const name = useRef<HTMLInputElement>(null);
+  useEffect(() => name.current?.focus(), []);
 
   async function submit(event: SubmitEvent) {
     event.preventDefault();
@@ -31,7 +34,7 @@ export function Login() {
         {notice.value !== null && <p role="status">{notice.value}</p>}
         <label>
           User
-          <input name="username" autocomplete="username" required autofocus />
+          <input name="username" autocomplete="username" required ref={name} />
         </label>
         <label>
           Password

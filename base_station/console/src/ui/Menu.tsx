@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 import { mayAct, user } from "../sessions";
 import { openDialog, type DialogName } from "../view";
 
@@ -12,16 +13,34 @@ const FOR_COMMANDERS: readonly [DialogName, string][] = [
 /** What is managed and not watched; behind one button where there is no room. */
 export function Menu() {
   const open = useSignal(false);
+  const whole = useRef<HTMLDivElement>(null);
+  const button = useRef<HTMLButtonElement>(null);
+  useEffect(() => {
+    if (!open.value) return undefined;
+    // Open, it lies over the alarms: it goes with whatever is done beside it.
+    const leave = ({ target }: Event) => {
+      if (target instanceof Node && !whole.current?.contains(target)) open.value = false;
+    };
+    const kinds = ["pointerdown", "focusin"];
+    kinds.forEach((kind) => document.addEventListener(kind, leave));
+    return () => kinds.forEach((kind) => document.removeEventListener(kind, leave));
+  }, [open.value]);
+  const escape = ({ key }: KeyboardEvent) => {
+    if (key !== "Escape" || !open.peek()) return;
+    open.value = false;
+    button.current?.focus();
+  };
   const entries = mayAct.value ? [...FOR_EVERYBODY, ...FOR_COMMANDERS] : FOR_EVERYBODY;
   const choose = (name: DialogName) => {
     open.value = false;
     openDialog(name);
   };
   return (
-    <div class="menu">
+    <div class="menu" ref={whole} onKeyDown={escape}>
       <button
         type="button"
         class="menu-button"
+        ref={button}
         aria-expanded={open.value}
         aria-controls="menu"
         onClick={() => (open.value = !open.value)}

@@ -2,11 +2,13 @@ import { useSignal } from "@preact/signals";
 import { attempt, user } from "../sessions";
 import * as api from "../api";
 import { Columns } from "./Columns";
+import { useFirstField, useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
 import { Forget } from "./Forget";
 import { useOnce } from "./haste";
 import { Photo } from "./Photo";
 import { fields, useLoaded } from "./useLoaded";
+import { Waiting } from "./Waiting";
 
 export function PeopleDialog() {
   const [people, again] = useLoaded(api.people);
@@ -21,6 +23,7 @@ export function PeopleDialog() {
           ))}
         </tbody>
       </table>
+      {people.value === null && <Waiting />}
       {people.value?.length === 0 && <p class="quiet">Nobody yet. Add whoever may wear a unit.</p>}
     </Dialog>
   );
@@ -33,6 +36,7 @@ interface RowProps {
 
 function PersonRow({ person, done }: RowProps) {
   const changing = useSignal(false);
+  const button = useFocusBack(changing.value);
   if (changing.value) {
     const ended = () => {
       changing.value = false;
@@ -71,6 +75,7 @@ function PersonRow({ person, done }: RowProps) {
         <div class="row-actions">
           <button
             type="button"
+            ref={button}
             aria-label={`Change ${person.name}`}
             onClick={() => (changing.value = true)}
           >
@@ -92,9 +97,11 @@ function PersonRow({ person, done }: RowProps) {
 }
 
 function ChangeForm({ person, done }: RowProps) {
+  const form = useFirstField();
   return (
     <form
       class="row"
+      ref={form}
       onSubmit={(event) => {
         const { name = "", crew = "", role = "" } = fields(event);
         const changed = api.changePerson(person.person_id, { name, crew, role });
@@ -115,7 +122,7 @@ function PersonFields({ person }: { person?: api.Person }) {
     <>
       <label>
         Name
-        <input name="name" required maxLength={80} defaultValue={person?.name ?? ""} />
+        <input name="name" required maxLength={80} defaultValue={person?.name ?? ""} autofocus />
       </label>
       <label>
         Crew

@@ -3,8 +3,10 @@ import * as api from "../api";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
+import { useDone } from "./Done";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
+import { Waiting } from "./Waiting";
 
 /** Who may log in, and as what. */
 export function UsersDialog() {
@@ -20,6 +22,7 @@ export function UsersDialog() {
           ))}
         </tbody>
       </table>
+      {users.value === null && <Waiting />}
     </Dialog>
   );
 }
@@ -61,6 +64,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
   const role = useChosen(user.role, (chosen) => {
     void attempt(api.changeUser(username, { role: chosen as api.Role })).then(done);
   });
+  const set = useDone("Set.");
   return (
     <tr>
       <th scope="row">
@@ -77,11 +81,12 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
       <td data-label="New password">
         <form
           class="inline"
+          onInput={set.unsay}
           onSubmit={(event) => {
             const form = event.currentTarget;
             const { password = "" } = fields(event);
-            const changed = api.changeUser(username, { password });
-            void attempt(changed.then(() => form.reset())).then(done);
+            const changed = api.changeUser(username, { password }).then(() => form.reset());
+            void attempt(changed.then(set.say)).then(done);
           }}
         >
           <input
@@ -93,6 +98,7 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
             aria-label={`New password of ${username}`}
           />
           <button>Set</button>
+          {set.words}
         </form>
       </td>
       <td data-label="Logged in">

@@ -14,7 +14,9 @@ export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.
   const chosen = useChosen(wornBy, change);
   const isAsked = useSignal(false);
   const ask = () => void (isAsked.value = true);
-  const listed = isAsked.value ? people : people.filter((person) => person.person_id === wornBy);
+  const now = unit.person === null ? [] : [unit.person]; // known before the list is there
+  const all = people.some((person) => person.person_id === wornBy) ? people : [...now, ...people];
+  const listed = isAsked.value ? all : all.filter((person) => person.person_id === wornBy);
   return (
     <select
       aria-label={`Who wears ${unit.unit_id}`}
@@ -33,7 +35,9 @@ export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.
   );
 }
 
-function nameAndCrew({ name, crew }: api.Person): string {
+type Named = Pick<api.Person, "person_id" | "name" | "crew">;
+
+function nameAndCrew({ name, crew }: Named): string {
   return crew === "" ? name : `${name} (${crew})`;
 }
 

@@ -1,6 +1,14 @@
 import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { attempt } from "../sessions";
+import { attempt, live } from "../sessions";
+
+/** Ask at the beginning, and where there was no answer, once the station is heard again. */
+export function useAsked(ask: () => void, isThere: () => boolean): void {
+  const isHeard = live.value?.picture.link.value.kind === "up";
+  useEffect(() => {
+    if (!isThere()) ask();
+  }, [isHeard]);
+}
 
 /** What the station answers, and a way to ask again. */
 export function useLoaded<T>(load: () => Promise<T>): [Signal<T | null>, () => void] {
@@ -10,7 +18,7 @@ export function useLoaded<T>(load: () => Promise<T>): [Signal<T | null>, () => v
       if (answer !== null) loaded.value = answer;
     });
   };
-  useEffect(again, []);
+  useAsked(again, () => loaded.peek() !== null);
   return [loaded, again];
 }
 

@@ -1,7 +1,7 @@
 import { useSignal, type ReadonlySignal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import { PAGE } from "../call";
+import { useAsked } from "./useLoaded";
 
 export interface Pages<T> {
   entries: ReadonlySignal<readonly T[]>; // the newest first
@@ -27,6 +27,6 @@ export function usePages<T>(
     loaded.value = true;
   };
   const again = () => void add([]);
-  useEffect(again, []);
+  useAsked(again, () => loaded.peek());
   return { entries, loaded, older: ended.value ? null : () => void add(entries.peek()), again };
 }

@@ -1,0 +1,57 @@
+"""What a dialog shows while the station has not answered yet, and once it is there again."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Route, expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import menu
+from tests.e2e.stage import ANSWERS, Stage
+
+USERS = [{"username": "chief", "role": "administrator", "created_ms": 0, "sessions": 1}]
+
+
+def never(_: Route) -> None:
+    """An answer that is still on its way."""
+
+
+def test_who_wears_a_unit_is_said_before_the_list_of_people_is_there(stage: Stage) -> None:
+    """An empty field would say that nobody does."""
+    page, _ = stage.open(scenes.quiet())
+    page.route("**/api/v1/people", never)
+    worn_by = menu(page, "Units").get_by_label("Who wears FF-01")
+    expect(worn_by.locator("option:checked")).to_have_text("Astrid Lindqvist (Engine 1)")
+    expect(worn_by).to_have_value("p0")
+
+
+@pytest.mark.parametrize("name", ["People", "Incidents", "Users", "Audit log"])
+def test_a_list_that_is_not_there_yet_does_not_look_empty(stage: Stage, name: str) -> None:
+    page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, "/users": USERS})
+    for path in ("people", "incidents*", "users", "audit*"):
+        page.route(f"**/api/v1/{path}", never)
+    page.wait_for_timeout(100)
+    if name in ("Users", "Audit log"):
+        menu(page, "Account").get_by_role("button", name=name).click()
+    else:
+        menu(page, name)
+    asking = page.get_by_role("dialog", name=name).get_by_role("status")
+    expect(asking.filter(has_text="Asking the station")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "row"),
+    [("People", "people", "Li Na"), ("Incidents", "incidents*", scenes.INCIDENT.name)],
+)
+def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
+    stage: Stage, name: str, path: str, row: str
+) -> None:
+    """It was started again while the dialog was open; whoever looks need not close it."""
+    page, station = stage.open(scenes.quiet())
+    page.route(f"**/api/v1/{path}", lambda route: route.abort())
+    dialog = menu(page, name)
+    notice = dialog.get_by_role("alert").filter(has_text="The station cannot be reached.")
+    expect(notice).to_be_visible()
+    page.unroute(f"**/api/v1/{path}")
+    station.restart()
+    expect(dialog.get_by_role("row", name=row).first).to_be_visible()
