@@ -1,9 +1,10 @@
 """What the station knows of one unit's journal, and what to ask it next.
 
-Pure: reports and answers in, questions out.  Alerts are asked for as soon as a number is missing;
-the rest when it has been missing for a whole report, newest first and in pieces that the link
-carries.  What the station has safely on its own disk is acknowledged, so that the unit may forget
-it when it needs the room.
+Pure: reports and answers in, questions out.  Of what the journal has the newest runs of the unit's
+program are asked for, and more as far as the link carries the answer: there may be thousands.
+Alerts are asked for as soon as a number is missing; the rest when it has been missing for a whole
+report, newest first and in pieces that the link carries.  What the station has safely on its own
+disk is acknowledged, so that the unit may forget it when it needs the room.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
 _INDEX_EVERY_NS = 30 * NS_PER_S
+_INDEX_MORE_NS = NS_PER_S  # where more runs than were asked for may be there
+_INDEXED_BYTES = 32  # of each run in an index
 _ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of them
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
@@ -141,8 +144,10 @@ class UnitJournal:
         self._reported_ns = 0
         self._index_due_ns = 0
         self._pace = Pace()
+        self._index_pace = Pace()
         self._number_bytes = _NUMBER_BYTES
         self._came_bytes = 0  # in answer to the question that is being answered
+        self._has_more = False  # perhaps, than the last index names
         self._told = 0  # replies that make sense, to that question
         self._silent = False  # it did not answer, or nonsense: not before the next report again
         self._acknowledging: tuple[_Boot, int] | None = None
@@ -169,7 +174,7 @@ class UnitJournal:
 
     def note_new_link(self) -> None:
         """The unit was out of reach, and what its link carries now nobody knows."""
-        self._pace = Pace()
+        self._pace, self._index_pace = Pace(), Pace()
 
     def start_over(self) -> None:
         """Only what is reported from now on is there, whatever was fetched."""
@@ -181,7 +186,7 @@ class UnitJournal:
         if self._silent:
             return None
         if self._index_due_ns == 0:
-            return Question("index", urgent=True)
+            return Question("index", (("newest", self._indexed_at_once),), urgent=True)
         asked = self._ask_missing() or self._ask_unanswered()
         return asked if asked or self._alerts_only else self._acknowledge()
 
@@ -191,7 +196,10 @@ class UnitJournal:
         Raises WireError where it makes no sense, or is no answer to this question.
         """
         if question.what in ("index", "acknowledge"):
-            self._learn(JournalIndex.from_bytes(reply), now_ns, is_first=self._told == 0)
+            index = JournalIndex.from_bytes(reply)
+            if question.what == "index":
+                self._came_bytes += len(reply)
+                self._learn(index, now_ns, dict(question.parameters)["newest"])
             self._told += 1
             return None
         chunk = JournalChunk.from_bytes(reply)
@@ -214,6 +222,8 @@ class UnitJournal:
         told, self._told = self._told, 0
         came_bytes, self._came_bytes = self._came_bytes, 0
         self._note_answered(question, told)
+        if question.what == "index":
+            self._note_index(question, came_bytes, took_ns)
         if not told:
             self._silent = True
             if question.what == "range":
@@ -235,12 +245,30 @@ class UnitJournal:
         self._came_bytes += came_bytes
         self.gone += numbers - len(chunk.entries)
 
-    def _learn(self, index: JournalIndex, now_ns: int, *, is_first: bool) -> None:
-        """Two machines under one name both answer."""
+    @property
+    def _indexed_at_once(self) -> int:
+        return min(self._index_pace.answer_bytes // _INDEXED_BYTES, BOOTS)
+
+    def _note_index(self, question: Question, came_bytes: int, took_ns: int) -> None:
+        if not came_bytes:
+            self._index_pace.note_nothing()
+            return
+        self._index_pace.note(came_bytes, took_ns)
+        if self._has_more and self._indexed_at_once > dict(question.parameters)["newest"]:
+            self._index_due_ns = self._reported_ns + _INDEX_MORE_NS
+
+    def _learn(self, index: JournalIndex, now_ns: int, asked: int) -> None:
+        """Two machines under one name both answer.  Of runs that are older than what was asked for
+        an answer says nothing.
+        """
         self._index_due_ns = now_ns + _INDEX_EVERY_NS
-        before = {} if is_first else self._indexed
+        has_more, is_first = len(index.boots) >= asked, self._told == 0
+        self._has_more = has_more or (self._has_more and not is_first)
+        before = self._indexed if has_more or not is_first else {}
         newest = index.boots[-BOOTS:]
-        self._indexed = before | {one.boot_id: None for one in newest}
+        named = {one.boot_id: None for one in newest}
+        known = [*(one for one in before if one not in named), *named]
+        self._indexed = dict.fromkeys(known[-BOOTS:])
         for one in newest:
             boot = self._boots.setdefault(one.boot_id, _Boot())
             boot.first = one.first_seq
@@ -292,7 +320,8 @@ class UnitJournal:
             safe = min(boot.complete) if is_due and len(boot.complete) == _SAFE_REPORTS else 0
             if safe > boot.acknowledged:
                 self._acknowledging = boot, safe
-                return Question("acknowledge", (("epoch", boot_id), ("to", safe)))
+                said = (("epoch", boot_id), ("to", safe), ("newest", 0))
+                return Question("acknowledge", said)
         return None
 
 

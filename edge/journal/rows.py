@@ -70,12 +70,13 @@ def entries(
 
 
 def boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
+    """The newest first."""
     for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
         "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot "
         "WHERE typeof(boot_id) = 'integer' AND typeof(acknowledged_seq) = 'integer' "
         "AND typeof(started_utc_ns) = 'integer' AND boot_id > 0 AND acknowledged_seq >= 0 "
-        "ORDER BY number"
-    ).fetchall():
+        "ORDER BY number DESC"
+    ):
         kept = bounds(connection, number)
         if kept is not None:
             yield JournalBoot(boot_id, *kept, acknowledged_seq, started_utc_ns)

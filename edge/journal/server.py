@@ -11,6 +11,7 @@ from edge.journal.spool import Spool
 from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 
+_MOST_BOOTS = 1000  # of a program that has started again and again there may be any number
 _MAX_MESSAGES = 10_000
 _REPLY_BYTES = 16_384
 _MOST_REPLY_BYTES = _TOTAL_BYTES = 1_048_576  # a reply is made in memory
@@ -29,8 +30,9 @@ class JournalServer(Answers):
         answers |= {what: partial(self._range, what) for what in _WORTHS}
         super().__init__(unit_id, "journal", answers)
 
-    def _index(self, _: Parameters) -> Iterator[bytes]:
-        yield JournalIndex(self._spool.boots()).to_bytes()
+    def _index(self, values: Parameters) -> Iterator[bytes]:
+        newest = int(values.get("newest", _MOST_BOOTS))
+        yield JournalIndex(self._spool.boots(max(0, min(newest, _MOST_BOOTS)))).to_bytes()
 
     def _acknowledge(self, values: Parameters) -> Iterator[bytes]:
         self._spool.acknowledge(int(values["epoch"]), int(values["to"]))

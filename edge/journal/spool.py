@@ -13,6 +13,7 @@ import logging
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing
+from itertools import islice
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -133,12 +134,14 @@ class Spool:
                 else:
                     return
 
-    def boots(self) -> tuple[JournalBoot, ...]:
-        """What can be served, oldest boot first; boots of which nothing is left are not named."""
+    def boots(self, newest: int | None = None) -> tuple[JournalBoot, ...]:
+        """What can be served, oldest boot first, of the ``newest`` or of all of them; boots of
+        which nothing is left are not named.
+        """
         path = self._path
         with in_words(path), closing(connect(path)) as reader:
             try:
-                return tuple(boots(reader))
+                return tuple(islice(boots(reader), newest))[::-1]
             except sqlite3.Error as error:
                 # Where nobody can be told what there is, nothing of it will be asked for.
                 if path == self._path and code_of(error) in DAMAGE:

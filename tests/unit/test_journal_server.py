@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import logging
+from contextlib import closing
 
 import pytest
 
@@ -146,6 +147,21 @@ def test_index_and_acknowledgement(spool):
     assert JournalIndex.from_bytes(index).boots[0].acknowledged_seq == 70
     ask(spool, "acknowledge", "epoch=9;to=60")  # never back
     assert spool.pending == 30
+    (index,) = ask(spool, "acknowledge", "epoch=9;to=80;newest=0")
+    assert JournalIndex.from_bytes(index).boots == ()
+    assert spool.pending == 20
+
+
+def test_of_any_number_of_runs_the_newest_are_named(tmp_path, monkeypatch):
+    monkeypatch.setattr("edge.journal.server._MOST_BOOTS", 20)
+    boot_ids = itertools.count(1)
+    for _ in range(30):
+        with closing(Spool(tmp_path / "many.sqlite", boot_ids.__next__, 0, 10**9)) as many:
+            many.append([Journaled(1, EVENT, 0, b"started")])
+    for question, first in (("", 11), ("newest=3", 28), ("newest=1000", 11), ("newest=-1", 31)):
+        (index,) = ask(many, "index", question)
+        named = [boot.boot_id for boot in JournalIndex.from_bytes(index).boots]
+        assert named == list(range(first, 31))
 
 
 @pytest.mark.parametrize(

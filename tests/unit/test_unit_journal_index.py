@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.journals.unit_journal import Held, UnitJournal
+from base_station.journals.unit_journal import Held, Question, UnitJournal
 from base_station.units.sender import BOOTS
 from shared.clock import NS_PER_S
 from shared.messages import JournalBoot, JournalChunk, JournalIndex
@@ -83,3 +83,55 @@ def test_of_any_number_of_runs_the_newest_are_asked_for() -> None:
         asked.append(epoch)
         answer(journal, question, JournalChunk(epoch, 1, 3, (), urgent_only=True))
     assert asked == [BOOTS + 4 - number for number in range(5)]
+
+
+MANY = 300
+
+
+def index_named(journal: UnitJournal, took_ns: int) -> int:
+    """How many runs are asked for of a unit that has started ``MANY`` times, and answers so."""
+    question = journal.next_question()
+    assert question is not None
+    assert question.what == "index"
+    asked = dict(question.parameters)["newest"]
+    named = range(max(1, MANY - asked + 1), MANY + 1)
+    boots = tuple(JournalBoot(number, 1, 3, 0, 1_700_000_000_000_000_000) for number in named)
+    journal.take(question, JournalIndex(boots).to_bytes(), 1)
+    journal.end(question, took_ns)
+    return asked
+
+
+def fetched(journal: UnitJournal) -> list[int]:
+    """Of which runs everything is fetched, in turn."""
+    return list(dict.fromkeys(question["epoch"] for question in asked_of(journal)))
+
+
+def test_of_a_unit_that_has_started_often_more_is_asked_as_the_link_carries_it() -> None:
+    """What it has of thousands of runs takes a thin link down, and alerts wait behind it."""
+    journal, held = UnitJournal(), (Held(MANY, (Run(1, 3),)),)
+    asked, epochs = [], []
+    for second in range(5):
+        journal.report(held, second * NS_PER_S)
+        asked.append(index_named(journal, NS_PER_S // 100))
+        journal.report(held, second * NS_PER_S)  # what is missing has had the time to come
+        epochs += fetched(journal)
+    assert asked == [32, 64, 128, 256, 512]
+    assert epochs == list(range(MANY - 1, 0, -1)), "the newest first, each once"
+    journal.report(held, 29 * NS_PER_S)
+    assert next_of(journal)[0] == "acknowledge", "that is all of them"
+
+
+def test_over_a_thin_link_few_are_asked_for_and_those_that_are_known_stay_known() -> None:
+    journal, held = UnitJournal(), (Held(MANY, (Run(1, 3),)),)
+    journal.report(held, 0)
+    asked = [index_named(journal, NS_PER_S // 100)]
+    for number in range(1, 5):
+        journal.report(held, 31 * number * NS_PER_S)
+        asked.append(index_named(journal, 4 * NS_PER_S))
+    assert asked == [32, 64, 32, 32, 32]
+    journal.report(held, 200 * NS_PER_S)
+    journal.end(Question("index", (("newest", 32),)), 1)
+    journal.report(held, 201 * NS_PER_S)
+    journal.note_new_link()
+    index_named(journal, 4 * NS_PER_S)
+    assert fetched(journal) == list(range(MANY - 1, MANY - 64, -1))

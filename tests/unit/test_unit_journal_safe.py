@@ -21,7 +21,8 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
         assert question is None
         return
     assert question is not None
-    assert question == Question("acknowledge", (("epoch", BOOT), ("to", 100)), urgent=False)
+    said = (("epoch", BOOT), ("to", 100), ("newest", 0))
+    assert question == Question("acknowledge", said, urgent=False)
     index = JournalIndex((JournalBoot(BOOT, 1, 101, 100, 0),)).to_bytes()
     journal.take(question, index, 1)
     journal.end(question, 1)
@@ -67,7 +68,7 @@ def test_a_run_of_a_single_message_is_acknowledged_too() -> None:
     journal = journal_of(Run(1, 1), last=1)
     for number in range(1, 3):
         journal.report((Held(BOOT, (Run(1, 1),)),), number)
-    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 1})
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 1, "newest": 0})
 
 
 def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() -> None:
@@ -79,7 +80,7 @@ def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() ->
     for number in range(1, 4):
         assert journal.next_question() is None
         journal.report(held, number)
-    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100})
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100, "newest": 0})
 
 
 def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
@@ -96,7 +97,7 @@ def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
     assert journal.gone == 3
     for number in (3, 4):
         journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
-    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8})
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8, "newest": 0})
 
 
 def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
@@ -121,7 +122,7 @@ def test_nothing_is_told_to_be_safe_before_it_is_reported_anew() -> None:
     journal = journal_of(Run(1, 10), last=20)
     held = (Held(BOOT, (Run(1, 10),)),)
     asked_in_turn(journal, held[0], 20)
-    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 20})
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 20, "newest": 0})
     journal.start_over()
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
@@ -158,6 +159,6 @@ def test_what_was_complete_in_memory_only_is_no_report_that_counts() -> None:
     journal.report(held, 6)
     assert journal.next_question() is None
     journal.report(held, 7)
-    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100})
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100, "newest": 0})
     journal.report(held, 8, alerts_only=True)
     assert journal.next_question() is None
