@@ -8,6 +8,7 @@ written down and shown, and not applied.
 from __future__ import annotations
 
 import logging
+import secrets
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from enum import Enum
@@ -16,6 +17,7 @@ from pathlib import Path
 from threading import Event
 
 from base_station.live.sinks import ActionDone, OperatorGate
+from base_station.once import once_id
 from base_station.standby.asking import Answers, ask
 from base_station.standby.places import Record
 from base_station.standby.setting_aside import mark_told, parts, read_part
@@ -91,7 +93,6 @@ class Merging:
         self._deliver = deliver
         self._settled = settled
         self._other = other
-        self._noted: set[DoneApart] = set()  # written down, of parts that are fetched again
 
     def look(self, stop: Event) -> None:
         """One round; ``stop`` ends it early, and the next one begins the part again.
@@ -106,7 +107,7 @@ class Merging:
 
     def _merge(self, station: str, name: bytes, stop: Event) -> None:
         taken = 0
-        noted: dict[DoneApart, Future[ActionDone]] = {}
+        told: dict[DoneApart | ReportProblem, Future[ActionDone]] = {}
         while True:
             question = b"%s %d" % (name, taken)
             batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
@@ -117,22 +118,21 @@ class Merging:
                 break
             for record in records:
                 done = self._take(station, record)
-                if done is not None and done not in self._noted:
-                    noted[done] = self._gate.submit(STATION_ID, done)
+                if done is not None:
+                    told[done] = self._gate.submit(STATION_ID, done, _id_of(name, done))
             taken += len(records)
-        told = list(noted.values())
-        if noted:
+        if told:
             text = (
-                f"While the stations were apart, people acted at {station} ({len(noted)} times), "
+                f"While the stations were apart, people acted at {station} ({len(told)} times), "
                 "and that is not in force here: the audit names it; do again what still matters"
             )
-            told.append(self._gate.submit(STATION_ID, ReportProblem(f"apart {station}", text)))
-        while not (all(one.done() for one in told) and self._settled()):
+            report = ReportProblem(f"apart {station}", text)
+            told[report] = self._gate.submit(STATION_ID, report, _id_of(name, report))
+        while not (all(one.done() for one in told.values()) and self._settled()):
             if stop.wait(_SETTLE_S):
                 return
-        if any(one.exception() for one in told):
+        if any(one.exception() for one in told.values()):
             return  # this station does not lead any more: who does takes it
-        self._noted.update(noted)
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
 
@@ -151,6 +151,12 @@ class Merging:
             if action is not None:
                 return DoneApart(station, t_ns, action.by, _in_words(action))
         return None
+
+
+def _id_of(part: bytes, action: DoneApart | ReportProblem) -> str:
+    """A part that is fetched again, though by a station that has started again, names it once."""
+    said = f"{part.decode()} {action}"
+    return once_id(STATION_ID, said, said.encode(), secrets.token_hex(16))
 
 
 def _persons_action(payload: bytes) -> OperatorAction | None:

@@ -9,7 +9,9 @@ from threading import Event, Thread
 
 import pytest
 
+from base_station import once
 from base_station.live.sinks import ActionDone
+from base_station.live_state import StationState
 from base_station.standby.asking import ask
 from base_station.standby.merging import Merging, PartServer
 from base_station.standby.places import BEGINNING, Record
@@ -43,6 +45,11 @@ class Leading:
         self.written = True
         self.waiting: list[Future[ActionDone]] = []  # for what is done to be written down
         self.bus = router.attach_station()
+        self._state = StationState()  # of what is in its log
+        self.start()
+
+    def start(self) -> None:
+        """Of what it did before it knows what its log has."""
         self._merging = Merging(
             self.bus,
             self,
@@ -56,9 +63,15 @@ class Leading:
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionDone]:
         assert by == STATION_ID
-        self.done.append(action)
         told: Future[ActionDone] = Future()
+        before = ActionDone.before(self._state, action_id)
+        if before is not None:
+            told.set_result(before)
+            return told
+        self.done.append(action)
         if self.written:
+            done = OperatorAction(Header(STATION_ID, 1, 1, 5), action_id, by, action)
+            once.note_done(self._state, done, "")
             told.set_result(ActionDone("x", T0, None))
         else:
             self.waiting.append(told)
@@ -197,12 +210,15 @@ def test_what_people_did_is_left_to_the_station_that_leads_by_then(
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem] * 2
 
 
+@pytest.mark.parametrize("starts_again", [False, True])
 def test_a_part_that_comes_again_names_what_people_did_once(
-    leading: Leading, monkeypatch: pytest.MonkeyPatch
+    leading: Leading, monkeypatch: pytest.MonkeyPatch, starts_again: bool
 ) -> None:
     with monkeypatch.context() as broken:
         broken.setattr("base_station.standby.merging.mark_told", lambda *_: None)
         leading.look()  # the word that it is taken was lost
+    if starts_again:
+        leading.start()
     leading.look()
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem]
 
