@@ -55,3 +55,39 @@ def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
     page.unroute(f"**/api/v1/{path}")
     station.restart()
     expect(dialog.get_by_role("row", name=row).first).to_be_visible()
+
+
+def test_that_a_list_could_not_be_had_is_not_said_of_a_station_that_is_back(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    page.route("**/api/v1/people", lambda route: route.abort())
+    dialog = menu(page, "People")
+    notice = dialog.get_by_role("alert").filter(has_text="The station cannot be reached")
+    expect(notice).to_be_visible()
+    page.unroute("**/api/v1/people")
+    station.restart()
+    expect(notice).to_have_count(0)
+
+
+def test_that_nobody_knows_whether_something_was_done_stays_said(stage: Stage) -> None:
+    """Who orders an evacuation and looks away must find out that it may not have gone out."""
+    page, station = stage.open(scenes.quiet())
+    page.route("**/api/v1/commands", lambda route: route.abort())
+    page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Evacuate now").click()
+    notice = dialog.get_by_role("alert").filter(has_text="look whether it was done")
+    expect(notice).to_be_visible()
+    station.restart()
+    expect(page.get_by_test_id("link")).to_have_text("Connected")
+    page.wait_for_timeout(500)
+    expect(notice).to_be_visible()
+
+
+def test_who_cannot_log_in_for_want_of_an_answer_need_not_look_what_was_done(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    station.end_logins()
+    page.route("**/api/v1/login", lambda route: route.abort())
+    page.get_by_label("User").fill("chief")
+    page.get_by_label("Password").fill("what it is")
+    page.get_by_role("button", name="Log in").click()
+    expect(page.get_by_role("alert")).to_have_text("The station cannot be reached.")

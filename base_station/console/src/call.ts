@@ -10,6 +10,11 @@ export class ApiError extends Error {
   }
 }
 
+/** Nothing was to be done: that is over once the station is heard again. */
+export const UNREACHABLE = "The station cannot be reached.";
+/** The answer may be what was lost, and not what was asked for. */
+const UNSURE = "The station cannot be reached: look whether it was done before you do it again.";
+
 export const BASE = "/api/v1";
 
 /** How long somebody waits before the same is asked again: a connection may have died unnoticed. */
@@ -38,8 +43,12 @@ async function within<T>(ms: number, path: string, init: RequestInit): Promise<T
 
 /** A refusal is an answer. */
 function noAnswer(error: unknown): null {
-  if (error instanceof ApiError && error.status !== 0) throw error;
+  if (!isUnanswered(error)) throw error;
   return null;
+}
+
+export function isUnanswered(error: unknown): boolean {
+  return !(error instanceof ApiError) || error.status === 0;
 }
 
 /** `randomUUID` is there over TLS only. */
@@ -65,7 +74,7 @@ export async function file(path: string): Promise<Blob> {
 
 async function answer(path: string, init: RequestInit): Promise<Response> {
   const response = await fetch(BASE + path, { ...init, credentials: "same-origin" }).catch(() => {
-    throw new ApiError("The station cannot be reached.", 0);
+    throw new ApiError((init.method ?? "GET") === "GET" ? UNREACHABLE : UNSURE, 0);
   });
   if (!response.ok) throw new ApiError(await reason(response), response.status);
   return response;

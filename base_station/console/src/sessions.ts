@@ -1,7 +1,7 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
-import { ApiError } from "./call";
+import { ApiError, UNREACHABLE } from "./call";
 import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
@@ -125,6 +125,11 @@ const liveIsPast = computed(() => live.value !== null && live.value.picture.repl
 
 effect(() => {
   if (liveIsPast.value && live.value !== null) void adopt(live.value);
+});
+
+effect(() => {
+  const isHeard = live.value?.picture.link.value.kind === "up";
+  if (isHeard && notice.peek() === UNREACHABLE) notice.value = null;
 });
 
 async function adopt(session: Session): Promise<void> {

@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { begin } from "../sessions";
 import { notice } from "../view";
 import * as api from "../api";
+import { isUnanswered, UNREACHABLE } from "../call";
 import { arrival } from "../live/arrival";
 
 export function Login() {
@@ -20,7 +21,7 @@ export function Login() {
       begin(await api.login(String(form.get("username")), String(form.get("password"))));
       notice.value = null;
     } catch (error) {
-      problem.value = error instanceof Error ? error.message : String(error);
+      problem.value = isUnanswered(error) ? UNREACHABLE : String((error as Error).message);
     }
     busy.value = false;
   }
