@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -14,6 +15,13 @@ from tests.e2e.stage import ANSWERS, PAST, Stage
 
 USERS = [{"username": "chief", "role": "administrator", "created_ms": 0, "sessions": 1}]
 ALL = {**ANSWERS, "/users": USERS, f"{PAST}/assessment": scenes.ASSESSMENT}
+BASE_MAP = {
+    "image_url": "/icon.svg",
+    **{
+        corner: {"lat_deg": 56.0, "lon_deg": 9.0}
+        for corner in ("upper_left", "upper_right", "lower_left")
+    },
+}
 TABS = 80  # more than any of these dialogs has to go to
 
 
@@ -206,3 +214,25 @@ def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_bac
     expect(dialog.get_by_role("cell").get_by_label(field, exact=True)).to_be_focused()
     dialog.get_by_role("button", name=re.compile("^(No|Leave as it is)$")).press("Enter")
     expect(button).to_be_focused()
+
+
+def test_another_rate_of_positions_is_said_to_be_set(stage: Stage) -> None:
+    """The list says no more which one it was."""
+    page, _ = stage.open(scenes.quiet(), answers=ALL)
+    entry(page, "Units").click()
+    row = page.get_by_role("dialog").get_by_role("row", name="FF-01")
+    row.get_by_label("Positions a second of FF-01").select_option("5")
+    expect(row.get_by_role("status")).to_have_text("5 are asked for.")
+
+
+def test_a_base_map_that_was_set_is_said_to_be(stage: Stage, tmp_path: Path) -> None:
+    page, _ = stage.open(scenes.quiet(), answers={**ALL, "PUT /site/base-map": BASE_MAP})
+    entry(page, "Site").click()
+    dialog = page.get_by_role("dialog")
+    (tmp_path / "map.png").write_bytes(b"")
+    (tmp_path / "map.pgw").write_text("1\n0\n0\n-1\n400000\n6200000\n")
+    dialog.get_by_label("Picture").set_input_files(tmp_path / "map.png")
+    dialog.get_by_label("World file").set_input_files(tmp_path / "map.pgw")
+    dialog.get_by_label("EPSG number").fill("25832")
+    dialog.get_by_role("button", name="Set base map").click()
+    expect(dialog.get_by_role("status").filter(has_text="The base map is set.")).to_be_visible()

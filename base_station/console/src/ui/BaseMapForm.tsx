@@ -4,12 +4,14 @@ import { ApiError } from "../call";
 import { baseMap, crsOf, worldOf } from "../plan/baseMap";
 import { attempt, user } from "../sessions";
 import { ConfirmButton } from "./ConfirmButton";
+import { useDone } from "./Done";
 
 /** A picture of the ground with its world file; both stay on the station. */
 export function BaseMapForm() {
   const image = useSignal<File | null>(null);
   const world = useSignal<File | null>(null);
   const epsg = useSignal("");
+  const done = useDone("The base map is set.");
   if (user.value?.role !== "administrator") {
     return <p class="quiet">{baseMap.value === null ? "There is none." : "There is one."}</p>;
   }
@@ -18,9 +20,10 @@ export function BaseMapForm() {
     const numbers = worldOf(await world.value.text());
     if (numbers === null) throw new ApiError("A world file has six numbers, one a line.", 0);
     baseMap.value = await setBaseMap(image.value, numbers, crsOf(epsg.value, numbers));
+    done.say();
   };
   return (
-    <div class="row">
+    <div class="row" onChange={done.unsay}>
       <label>
         Picture (PNG, JPEG or WebP)
         <input
@@ -55,6 +58,7 @@ export function BaseMapForm() {
       >
         Set base map
       </button>
+      {done.words}
       {baseMap.value !== null && (
         <ConfirmButton
           label="Remove base map"

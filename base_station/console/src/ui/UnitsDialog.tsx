@@ -1,9 +1,11 @@
+import { useSignal } from "@preact/signals";
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { ClockView, UnitView } from "../wire";
 import { alarmWord, clockOffset, gpsWord, isSetWrong, linkWord, TWO_MACHINES } from "../words";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
+import { useDone } from "./Done";
 import { Recording } from "./Recording";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
@@ -108,18 +110,29 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
 }
 
 function Rate({ unitId }: { unitId: string }) {
+  const asked = useSignal("");
+  const done = useDone(`${asked.value} are asked for.`);
   const chosen = useChosen("", (rateHz) => {
-    if (rateHz !== "") void attempt(api.setPositionRate(unitId, Number(rateHz)));
+    if (rateHz === "") return;
+    done.unsay();
+    const sent = api.setPositionRate(unitId, Number(rateHz)).then(() => {
+      asked.value = rateHz;
+      done.say();
+    });
+    void attempt(sent);
   });
   return (
-    <select aria-label={`Positions a second of ${unitId}`} {...chosen}>
-      <option value="">as it is</option>
-      {RATES_HZ.map((rateHz) => (
-        <option key={rateHz} value={rateHz}>
-          {rateHz}
-        </option>
-      ))}
-    </select>
+    <>
+      <select aria-label={`Positions a second of ${unitId}`} {...chosen}>
+        <option value="">as it is</option>
+        {RATES_HZ.map((rateHz) => (
+          <option key={rateHz} value={rateHz}>
+            {rateHz}
+          </option>
+        ))}
+      </select>{" "}
+      {done.words}
+    </>
   );
 }
 
