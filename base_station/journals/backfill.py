@@ -72,6 +72,7 @@ class Backfill:
         self._asking: dict[str, _Asked] = {}
         self._backlogs = 0  # of these, questions behind live data
         self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
+        self._ended_ns: dict[str, int] = {}  # when such an answer was over, by unit
         self._news = Condition()
         self._report: Report | None = None
         self._urgent: list[tuple[_Asked, bytes | None]] = []
@@ -167,7 +168,10 @@ class Backfill:
     def _end(self, asked: _Asked) -> None:
         del self._asking[asked.unit_id]
         self._backlogs -= not asked.question.urgent
-        took_ns = self._clock.monotonic_ns() - asked.asked_ns
+        # What is fetched is asked for no faster than it is handed over here, too.
+        now_ns = self._clock.monotonic_ns()
+        ended_ns = self._ended_ns[asked.unit_id] if asked.question.urgent else now_ns
+        took_ns = ended_ns - asked.asked_ns
         self._journals[asked.unit_id].end(asked.question, took_ns)
         if asked.unit_id in self._reported:
             self._turns.append(asked.unit_id)
@@ -205,6 +209,7 @@ class Backfill:
     def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
         """Called by a thread of the bus."""
         with self._news:
+            self._ended_ns[asked.unit_id] = self._clock.monotonic_ns()
             self._came_bytes[asked.unit_id] += len(reply or b"")
             if reply is not None and self._came_bytes[asked.unit_id] > _MOST_CAME_BYTES:
                 return  # far more than was asked for

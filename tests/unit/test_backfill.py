@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import closing
 from threading import Event
 from typing import cast
 
@@ -27,7 +28,7 @@ from shared.messages import (
     Temperature,
 )
 from shared.sequence_set import Run
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 BOOT = 77
 
@@ -239,6 +240,7 @@ class StubBus:
         self.most = 0
         self.questions: list[tuple[str, str]] = []
         self.first_asked: dict[str, int] = {}  # sequence number, by unit
+        self.newest_asked: list[int] = []  # runs, in questions for an index
 
     def ask(self, selector, payload, timeout_s, on_reply, *, urgent=False):
         unit_id, what = selector.split("/")[2], selector.split("/")[4].partition("?")[0]
@@ -247,6 +249,8 @@ class StubBus:
         self.asked[unit_id] = on_reply
         values = dict(pair.split("=") for pair in selector.partition("?")[2].split(";") if pair)
         self.first_asked[unit_id] = int(values.get("from", 0))
+        if what == "index":
+            self.newest_asked.append(int(values["newest"]))
         self.most = max(self.most, len(self.asked))
 
     def answer(self, unit_id: str, *replies: bytes) -> None:
@@ -354,6 +358,40 @@ def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
     until(lambda: len(delivered) == 3)
     backfill.close()
     assert delivered == [b"old", b"fall", b"old too"]
+
+
+def test_how_quickly_a_unit_says_what_it_has_is_a_matter_of_the_link_alone():
+    """While the station hands over what came of others, too."""
+    handing_over, is_done = Event(), Event()
+
+    def deliver(_key: str, _payload: bytes) -> None:
+        handing_over.set()
+        assert is_done.wait(PATIENCE_S)
+
+    bus, clock = StubBus(), ManualClock()
+    backfill = Backfill(cast("Bus", bus), deliver, clock)
+    backfill.start()
+    with closing(backfill):
+        tell(backfill, {"A": (Held(BOOT, (Run(1, 1), Run(3, 3))),), "B": (Held(32, (Run(1, 1),)),)})
+        until(lambda: len(bus.asked) == 2)
+        bus.answer("A", JournalIndex((JournalBoot(BOOT, 1, 3, 0, 0),)).to_bytes())
+        until(lambda: ("A", "urgent") in bus.questions and "A" in bus.asked)
+        fell = JournalEntry(2, "alert/event", b"fell")
+        bus.answer("A", JournalChunk(BOOT, 2, 2, (fell,), urgent_only=True).to_bytes())
+        assert handing_over.wait(PATIENCE_S)
+        boots = tuple(JournalBoot(number, 1, 1, 0, 10**18) for number in range(1, 33))
+        bus.answer("B", JournalIndex(boots).to_bytes())
+        clock.advance(5.0)
+        is_done.set()
+        until(lambda: "B" in bus.asked)
+        bus.asked.pop("B")(None)
+
+        def asked_again() -> bool:
+            tell(backfill, {"B": (Held(32, (Run(1, 1),)),)})
+            return "B" in bus.asked
+
+        until(asked_again)
+    assert bus.newest_asked == [32, 32, 64]
 
 
 def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
