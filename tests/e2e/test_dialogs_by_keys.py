@@ -236,3 +236,21 @@ def test_a_base_map_that_was_set_is_said_to_be(stage: Stage, tmp_path: Path) -> 
     dialog.get_by_label("EPSG number").fill("25832")
     dialog.get_by_role("button", name="Set base map").click()
     expect(dialog.get_by_role("status").filter(has_text="The base map is set.")).to_be_visible()
+
+
+def test_what_has_the_focus_in_a_dialog_is_not_under_what_stands_over_it(stage: Stage) -> None:
+    """Its head stays where it is while it scrolls, with what cannot wait."""
+    page, _ = stage.open(scenes.crowd(), "laptop at 200 %", ALL)
+    page.locator(".par-clock").press("Enter")
+    page.get_by_role("dialog").wait_for()
+    seen = """() => {
+      const one = document.activeElement, box = one.getBoundingClientRect();
+      const hit = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+      return !one.closest("dialog") || one.contains(hit);
+    }"""
+    for _ in range(12):
+        page.keyboard.press("Tab")
+        assert page.evaluate(seen)
+    for _ in range(10):
+        page.keyboard.press("Shift+Tab")
+        assert page.evaluate(seen)

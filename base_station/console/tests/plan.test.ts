@@ -119,7 +119,8 @@ describe("where names stand on the plan", () => {
   const named = (mark: Pixel, change: Partial<Named> = {}): Named => {
     return { mark, widthPx: 120, strong: false, before: null, ...change };
   };
-  const placed = (people: Named[], covered: Box[] = []) => placeNames(people, screen, covered);
+  const placed = (people: Named[], covered: Box[] = [], standing: Box[] = []) =>
+    placeNames(people, { size: screen, covered, standing });
   /** What the name of somebody covers, with 8 pixels of a line above and below its middle. */
   const boxOf = ({ mark: [x, y], widthPx }: Named, place: Place | null | undefined): Box => {
     const [right, down] = place?.offset ?? [NaN, NaN];
@@ -169,6 +170,15 @@ describe("where names stand on the plan", () => {
       const others = [...people.map(markOf), ...boxes.filter((one) => one !== box), button];
       expect(others.filter((one) => meet(box, one))).toEqual([]);
     }
+  });
+
+  it("of who is in danger lies rather over a pin than under a button", () => {
+    const danger = named([250, 200], { strong: true, widthPx: 400 });
+    const button: Box = [400, 190, 450, 300]; // below it
+    const pin: Box = [240, 160, 260, 190]; // above it
+    const [place] = placed([danger], [button], [pin]);
+    expect(place?.side).toBe("above");
+    expect(placed([{ ...danger, strong: false }], [button], [pin])).toEqual([null]);
   });
 
   it("of two in danger at one place is read beside the other", () => {

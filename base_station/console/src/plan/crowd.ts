@@ -99,7 +99,7 @@ export class Crowd {
     }
     const all = [...shown.values()];
     const named = namedOf(all, scene.screen);
-    const places = placeNames(named, scene.screen.size, scene.screen.covered);
+    const places = placeNames(named, scene.screen);
     all.forEach((one, i) => draw(one, places[i] ?? null, scene));
     return named.flatMap((one, i) => boxesOf(one, places[i] ?? null));
   }

@@ -163,9 +163,10 @@ export class PlanMap {
     if (this.people === null) return;
     const [right = 0, down = 0] = this.map.getSize() ?? [];
     const pixelOf = (at: number[]) => this.pixelOf(at);
-    const screen = { size: [right, down], covered: this.covered(), pixelOf } as const;
+    const [covered, standing] = [this.covered(), this.standing()];
+    const screen = { size: [right, down], covered, standing, pixelOf } as const;
     const taken = this.crowd.show({ ...this.people, colours: this.colours, screen });
-    this.pins.name({ ...screen, covered: [...screen.covered, ...taken] }, this.colours);
+    this.pins.name({ ...screen, standing: [...standing, ...taken] }, this.colours);
   }
 
   /** What lies over the plan. */
@@ -174,16 +175,19 @@ export class PlanMap {
     if (!map) return []; // it is being closed
     const { left: x, top: y } = map.getBoundingClientRect();
     const over = map.parentElement?.querySelectorAll(".zoom, .north, .ol-scale-line") ?? [];
-    const controls = [...over].map((one): Box => {
+    return [...over].map((one): Box => {
       const { left, top, right, bottom } = one.getBoundingClientRect();
       return [left - x, top - y, right - x, bottom - y];
     });
-    const pins = this.pins.places().flatMap((at): Box[] => {
+  }
+
+  /** Pins and beacons. */
+  private standing(): Box[] {
+    return this.pins.places().flatMap((at): Box[] => {
       const [right, down] = this.pixelOf(at) ?? [];
       if (right === undefined || down === undefined) return [];
       return [[right - PIN_HALF_PX, down - PIN_HEIGHT_PX, right + PIN_HALF_PX, down + PIN_HALF_PX]];
     });
-    return [...controls, ...pins];
   }
 
   /** Null before anything is drawn. */

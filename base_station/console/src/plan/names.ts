@@ -8,7 +8,8 @@ export type Box = readonly [left: number, top: number, right: number, bottom: nu
 /** What part of the plan is on the screen. */
 export interface Screen {
   size: Pixel;
-  covered: readonly Box[]; // by what lies over the plan
+  covered: readonly Box[]; // by what lies over the plan: a name there would not be read
+  standing: readonly Box[]; // what is drawn on the plan, which a name would hide
   pixelOf(coordinate: number[]): Pixel | null; // null: nothing is drawn yet
 }
 
@@ -35,12 +36,10 @@ const APART_PX = 25;
 const HALF_LINE_PX = 9;
 const EDGE_PX = 4;
 
-/** One for each, null where somebody is not named: there is no room, or they are beside the screen.
- * `covered` are what lies over the plan, such as buttons. */
+/** One for each, null where somebody is not named: there is no room, or they are beside the screen. */
 export function placeNames(
   people: readonly Named[],
-  screen: Pixel,
-  covered: readonly Box[],
+  { size: screen, covered, standing }: Omit<Screen, "pixelOf">,
 ): (Place | null)[] {
   const places = people.map((): Place | null => null);
   const marks = people.map(({ mark }) => around(mark, MARK_PX, MARK_PX));
@@ -53,11 +52,12 @@ export function placeNames(
       const clearOf = (...taken: (readonly Box[])[]) =>
         all.find(({ offset }) => isClear(boxOf(one, offset), taken, screen)) ?? null;
       const inNeed = () =>
+        clearOf(strongMarks, names, covered, standing) ??
         clearOf(strongMarks, names, covered) ??
-        clearOf(strongMarks, names) ??
+        clearOf(names, covered) ??
         clearOf() ??
         placeAt("below", one, screen);
-      const found = clearOf(marks, names, covered) ?? (strong ? inNeed() : null);
+      const found = clearOf(marks, names, covered, standing) ?? (strong ? inNeed() : null);
       if (found === null) return;
       places[i] = found;
       names.push(boxOf(one, found.offset));

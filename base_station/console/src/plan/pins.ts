@@ -74,9 +74,9 @@ export class PinLayer {
 
   /** Say whose pins they are, on the part of the plan that is on the screen and where nobody stands or
    * is named; one that was chosen says so whatever it hides. */
-  name({ size, covered, pixelOf }: Screen, colours: Colours): void {
+  name(screen: Screen, colours: Colours): void {
     const named = this.labelled.map(({ pinId, text, chosen, at }): Named => {
-      const [right, down] = pixelOf(at) ?? BESIDE;
+      const [right, down] = screen.pixelOf(at) ?? BESIDE;
       return {
         mark: [right, down - STEM_PX],
         widthPx: measureTextWidth(LABEL_FONT, text),
@@ -84,7 +84,7 @@ export class PinLayer {
         before: this.sides.get(pinId) ?? "above",
       };
     });
-    const places = placeNames(named, size, covered);
+    const places = placeNames(named, screen);
     this.labels.clear(true);
     this.sides = new Map();
     this.labelled.forEach(({ pinId, text, at }, i) => {
