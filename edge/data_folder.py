@@ -47,7 +47,8 @@ class DataFolder:
     def _make_own(self) -> Path | None:
         note, owner, aside = self.path / _OWNER, "", None
         with suppress(OSError, UnicodeDecodeError):  # nobody has said so: it is this one's
-            owner = note.read_text(encoding="utf-8").strip()
+            # Zeros are what a power cut left of it.
+            owner = note.read_text(encoding="utf-8").replace("\0", "").strip()
         if owner == self.path.name:
             return None
         if owner:

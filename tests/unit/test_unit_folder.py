@@ -51,6 +51,19 @@ def test_a_unit_finds_its_folder_as_it_left_it(tmp_path: Path) -> None:
     again.close()
 
 
+@pytest.mark.parametrize("left", [b"", b"\0\0\0\0\0", b"\xff\xff"])
+def test_what_a_power_cut_leaves_of_its_name_is_no_other_unit(tmp_path: Path, left: bytes) -> None:
+    """The name is written at the first start alone, and some file systems keep only its length."""
+    keep_something(tmp_path / "anna")
+    (tmp_path / "anna" / "unit").write_bytes(left)
+    for _ in range(2):
+        again = DataFolder(tmp_path / "anna")
+        assert again.set_aside is None
+        assert again.journal.exists()
+        again.close()
+    assert (tmp_path / "anna" / "unit").read_text() == "anna\n"
+
+
 def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_said(tmp_path: Path) -> None:
     keep_something(tmp_path / "anna")
     for number in (1, 2):  # copied twice
