@@ -44,6 +44,18 @@ def test_what_somebody_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
     expect(heard).to_have_text("Walking")
 
 
+def test_a_figure_and_the_word_behind_it_are_two_words_to_who_listens(stage: Stage) -> None:
+    shown = scenes.bad_minute()
+    low = scenes.alarm(1, "battery", 2, "The battery of Jonas Bergman's unit is at 7 %", 5)
+    units = (shown.units[0], scenes.with_alarms(shown.units[1], low), *shown.units[2:])
+    alarms = (*shown.alarms, low)
+    page, _ = stage.open(msgspec.structs.replace(shown, units=units, alarms=alarms))
+    hot = page.locator(".card", has_text="Mira Okafor").get_by_role("definition")
+    expect(hot.filter(has_text="186")).to_have_text("186 °C warning")
+    flat = page.locator(".card", has_text="Jonas Bergman").get_by_role("definition")
+    expect(flat.filter(has_text="%")).to_have_text("7 % low")
+
+
 def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
     """Its wearer is looked for by nobody: no hatching, no doubt, no place above those at work."""
     page, _ = stage.open(scenes.switched_off())

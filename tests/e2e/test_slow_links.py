@@ -91,3 +91,24 @@ def test_who_cannot_log_in_for_want_of_an_answer_need_not_look_what_was_done(sta
     page.get_by_label("Password").fill("what it is")
     page.get_by_role("button", name="Log in").click()
     expect(page.get_by_role("alert")).to_have_text("The station cannot be reached.")
+
+
+def test_a_press_over_a_slow_link_is_seen_to_be_under_way(stage: Stage) -> None:
+    """Else who orders an evacuation would think that the button was missed."""
+    page, _ = stage.open(scenes.quiet())
+    waiting: list[Route] = []
+
+    def hold(route: Route) -> None:
+        waiting.append(route)
+
+    page.route("**/api/v1/commands", hold)
+    page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Evacuate now").click()
+    under_way = page.get_by_role("status").filter(has_text="Sending …")
+    expect(dialog.get_by_role("status").filter(has_text="Sending …")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(under_way).to_be_visible()
+    for route in waiting:
+        route.fulfill(json={"command_id": "c9"})
+    expect(under_way).to_have_count(0)

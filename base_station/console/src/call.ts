@@ -1,4 +1,5 @@
 /** How the station is asked over HTTP, and how it refuses. */
+import { signal } from "@preact/signals";
 
 /** The station refused or could not be reached; the text is for a person. */
 export class ApiError extends Error {
@@ -24,8 +25,25 @@ const LAST_MS = 15_000;
 /** After this an action has been answered, or is given up. */
 export const ACT_MS = AGAIN_MS + LAST_MS;
 
+/** Longer than this, somebody who pressed something would think that it was not noticed. */
+const SLOW_MS = 700;
+/** How many things the station was told to do for so long without an answer. */
+export const unanswered = signal(0);
+
+async function countedWhileSlow<T>(work: Promise<T>): Promise<T> {
+  let counted = 0;
+  const timer = setTimeout(() => (unanswered.value += counted = 1), SLOW_MS);
+  try {
+    return await work;
+  } finally {
+    clearTimeout(timer);
+    unanswered.value -= counted;
+  }
+}
+
 export async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
-  return read(await answer(path, request(method, body)));
+  const work = answer(path, request(method, body)).then((response) => read<T>(response));
+  return method === "GET" ? work : countedWhileSlow(work);
 }
 
 /** Have the station do something.  Without an answer it is asked once more, and does it once all the
@@ -33,6 +51,10 @@ export async function call<T>(method: string, path: string, body?: object | Blob
 export async function act<T>(method: "POST" | "PUT", path: string, body?: object): Promise<T> {
   const init = request(method, body);
   init.headers = { ...init.headers, "idempotency-key": newKey() };
+  return countedWhileSlow(onceOrAgain<T>(path, init));
+}
+
+async function onceOrAgain<T>(path: string, init: RequestInit): Promise<T> {
   const first = await within<T>(AGAIN_MS, path, init).catch(noAnswer);
   return first === null ? within<T>(LAST_MS, path, init) : first;
 }

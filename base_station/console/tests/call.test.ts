@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { ACT_MS, act, call } from "../src/call";
+import { ACT_MS, act, call, unanswered } from "../src/call";
 
 const OK = () => new Response(null, { status: 204 });
 const refused = () => new Response(JSON.stringify({ detail: "No." }), { status: 409 });
@@ -69,6 +69,20 @@ describe("what the station is to do", () => {
     await act("POST", "/check-ins", {});
     expect(new Set(keys()).size).toBe(2);
   });
+});
+
+it("counts what is told to the station for as long as no answer comes", async () => {
+  sent.mockImplementation(silent);
+  const told = act("POST", "/commands", {}).catch(() => undefined);
+  const asked = call("GET", "/people").catch(() => undefined);
+  await vi.advanceTimersByTimeAsync(500);
+  expect(unanswered.value).toBe(0); // nobody wonders yet
+  await vi.advanceTimersByTimeAsync(500);
+  expect(unanswered.value).toBe(1); // and not who only looks
+  await vi.advanceTimersByTimeAsync(ACT_MS);
+  await told;
+  expect(unanswered.value).toBe(0);
+  void asked;
 });
 
 it("asks for anything else once, and without a key", async () => {

@@ -14,6 +14,7 @@ import { People } from "./People";
 import { PlanPanel } from "./PlanPanel";
 import { ReplayBar } from "./ReplayBar";
 import { StandbyBar } from "./StandbyBar";
+import { Sending } from "./Waiting";
 
 export function App() {
   useAttention();
@@ -41,6 +42,7 @@ export function App() {
         Muster supplements a certified PASS device and never replaces it.{" "}
         <span>Temperatures are of the equipment’s environment, not of the wearer.</span>
       </footer>
+      {dialog.value === null && <Sending />}
       {dialog.value === null && <Notice />}
       <Dialogs />
     </div>

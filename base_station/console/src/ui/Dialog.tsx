@@ -4,6 +4,7 @@ import { dialog } from "../view";
 import { LinkLost } from "./LinkBanner";
 import { Notice } from "./Notice";
 import { UrgentNow } from "./UrgentNow";
+import { Sending } from "./Waiting";
 
 interface Props {
   title: string;
@@ -27,6 +28,7 @@ export function Dialog({ title, wide = false, children }: Props) {
         <button type="button" onClick={() => element.current?.close()}>
           Close
         </button>
+        <Sending />
         <LinkLost />
         <UrgentNow />
         <Notice />

@@ -28,7 +28,7 @@ export function Facts({ unit, picture }: Props) {
       <Heard unit={unit} now={now} silent={picture.silentMs.value > 0} />
       <Fact icon="heat" label="Environment" level={unit.heat_level}>
         {words.temperature(unit.ambient_degc)}
-        {unit.ambient_degc !== null && <small>{words.heatWord(unit.heat_level)}</small>}
+        {unit.ambient_degc !== null && <Remark>{words.heatWord(unit.heat_level)}</Remark>}
       </Fact>
       <Battery
         part={unit.status?.battery ?? null}
@@ -107,7 +107,7 @@ function Battery({ part, low }: { part: number | null; low: boolean }) {
   return (
     <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
       {words.percent(part)}
-      {low && <small>low</small>}
+      {low && <Remark>low</Remark>}
     </Fact>
   );
 }
@@ -126,6 +126,16 @@ function Inside({ unit, now }: { unit: UnitView; now: number }) {
     <Fact icon="inside" label={words.insideWord(unit)}>
       {insideMs === null ? "—" : words.minutes(insideMs)}
     </Fact>
+  );
+}
+
+/** Behind a figure, and read aloud as a word of its own. */
+function Remark({ children }: { children: ComponentChildren }) {
+  return (
+    <>
+      {"\u00a0"}
+      <small>{children}</small>
+    </>
   );
 }
 

@@ -1,3 +1,5 @@
+import { unanswered } from "../call";
+
 /** In the place of a list that the station has not given yet: an empty one would look as if there were
  * nothing. */
 export function Waiting() {
@@ -5,5 +7,14 @@ export function Waiting() {
     <p class="quiet" role="status">
       Asking the station …
     </p>
+  );
+}
+
+/** That a press was noticed, while the station has not answered it over a slow link. */
+export function Sending() {
+  return (
+    <span class="sending" role="status">
+      {unanswered.value > 0 && "Sending …"}
+    </span>
   );
 }
