@@ -6,11 +6,13 @@ import math
 from bisect import bisect_right
 
 import numpy as np
+from numpy.typing import NDArray
 
 from edge.clocks.timeline import Timeline
 from edge.decimation import Decimator
 from edge.samples import ImuBatch
 from edge.tracker.port import Quality, Reason, TrackBatch
+from edge.walked_path import WalkedPath
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
 from shared.messages import MagneticNorth, Position
@@ -28,6 +30,7 @@ class PositionStream:
     def __init__(self, stamper: Stamper, rate_hz: float) -> None:
         self._stamper = stamper
         self._times = Decimator(rate_hz)
+        self._walked = WalkedPath()
         self._pressures: list[tuple[int, float]] = []
         self._turned_at_m = (0.0, 0.0)
         self._heading_rad = 0.0
@@ -50,15 +53,15 @@ class PositionStream:
 
     def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
         """The positions to publish among these rows."""
-        usable = (
+        usable: NDArray[np.bool_] = (
             np.isfinite(track.position_n_m).all(axis=1)
             & np.isfinite(track.velocity_n_mps).all(axis=1)
             & np.isfinite(track.position_cov_m2).all(axis=(1, 2))
         )
         self.rows_dropped += int(len(track) - usable.sum())
-        rows = np.flatnonzero(usable)
-        picked = rows[self._times.picks(track.t_ns[rows])].tolist()
-        doubts = self._doubts(track, picked)
+        doubted, track = track, self._walked.take(track.part(usable))
+        picked = self._times.picks(track.t_ns)
+        doubts = self._doubts(doubted, np.flatnonzero(usable)[picked].tolist())
         positions = [
             self._position(track, row, timeline, doubt)
             for row, doubt in zip(picked, doubts, strict=True)

@@ -42,6 +42,8 @@ class StraightAhead:
             position_cov_m2=np.tile(np.diag([0.04, 0.01, 0.09]), (n, 1, 1)),
             heading_std_rad=np.full(n, 0.1),
             stationary=t_s % 1.0 < 0.4,
+            past_shift_n_m=np.zeros((n, 2)),
+            past_turn_rad=np.zeros(n),
             distance_m=t_s,
             steps=np.floor(t_s).astype(np.int64),
             quality=np.full(n, Quality.DEGRADED, np.uint8),

@@ -21,6 +21,7 @@ from edge.tracker.config import EskfConfig, config_record
 from edge.tracker.filter import filter_sample
 from edge.tracker.gaps import begins_anew, is_too_long
 from edge.tracker.like_strides import seek_like_strides
+from edge.tracker.past import hold_past
 from edge.tracker.port import TrackBatch
 from edge.tracker.rows import join_rows, rows_of
 from edge.tracker.smoothing import smooth
@@ -28,6 +29,7 @@ from edge.tracker.spikes import AROUND, leave_out_spike
 from edge.tracker.state import (
     RING,
     STEP,
+    FilterState,
     Progress,
     Ring,
     Trail,
@@ -149,7 +151,7 @@ def work(
     while memory.filtered < memory.measured:
         k = memory.filtered
         if is_too_long(ring, k, config):
-            _release_all(ring, trail, memory)
+            _release_all(ring, trail, memory, state[0])
         if not final and not _is_past(ring, memory.measured, k, config.lookahead_s):
             break
         seek_like_strides(ring, memory, k, config)
@@ -159,14 +161,14 @@ def work(
             break
         slot = k & (len(ring) - 1)
         if begins:
-            _release_all(ring, trail, memory)
+            _release_all(ring, trail, memory, state[0])
             memory.began_at, memory.began_s = k, ring[slot].t_s
         ring[slot].stride_minimum_m2ps4 = stride_minimum(ring, memory, k, config)
         filter_sample(ring, trail, memory, state[0], k, config)
         memory.filtered = k + 1
-        _release(ring, trail, memory, k, config)
+        _release(ring, trail, memory, state[0], k, config)
     if final:
-        _release_all(ring, trail, memory)
+        _release_all(ring, trail, memory, state[0])
     return int(memory.released)
 
 
@@ -186,15 +188,16 @@ def _is_past(ring: Ring, count: int, k: int, wait_s: float) -> bool:
 
 
 @njit()
-def _release_all(ring: Ring, trail: Trail, memory: Progress) -> None:
+def _release_all(ring: Ring, trail: Trail, memory: Progress, state: FilterState) -> None:
     """Release every row that is filtered: what comes tells nothing of them."""
     if memory.released < memory.filtered:
-        smooth(ring, trail, memory.released, memory.filtered, memory.filtered - 1)
-        memory.released = memory.filtered
+        _finish(ring, trail, memory, state, memory.filtered, memory.filtered - 1)
 
 
 @njit()
-def _release(ring: Ring, trail: Trail, memory: Progress, k: int, config: EskfConfig) -> None:
+def _release(
+    ring: Ring, trail: Trail, memory: Progress, state: FilterState, k: int, config: EskfConfig
+) -> None:
     """Smooth and release rows once sample ``k`` is filtered.
 
     Firm stance adds little to what is known of the rows before it, so they go at
@@ -212,5 +215,21 @@ def _release(ring: Ring, trail: Trail, memory: Progress, k: int, config: EskfCon
             stop += 1
         stop = max(stop, first + 1)
     if stop > first:
-        smooth(ring, trail, first, stop, k)
-        memory.released = stop
+        _finish(ring, trail, memory, state, stop, k)
+
+
+@njit()
+def _finish(
+    ring: Ring, trail: Trail, memory: Progress, state: FilterState, stop: int, last: int
+) -> None:
+    """Smooth the rows before ``stop`` that are still held back, by all that ``last`` tells."""
+    past = state.past
+    for k in range(memory.released, stop):
+        row = ring[k & (len(ring) - 1)]
+        row.past_turn_rad = past.turn_rad
+        for i in range(2):
+            row.past_shift_n_m[i] = past.shift_n_m[i]
+    if stop > last:
+        hold_past(state)
+    smooth(ring, trail, memory.released, stop, last)
+    memory.released = stop

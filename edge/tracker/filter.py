@@ -29,6 +29,7 @@ from edge.tracker.intervals import go_on, lacks_samples, mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measurement_update import turn_walk
+from edge.tracker.past import carry_past
 from edge.tracker.plateaus import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.row_quality import judge, note_faults
 from edge.tracker.stance import glides, stand
@@ -77,6 +78,7 @@ def filter_sample(
             settle(ring, step, progress, state, slot, config)
     elif progress.in_stance:
         lift_off(state, config)
+        state.past.settled = state.bias_shown
     doubt_bias(state, config)
     heed_field(ring, step, state, slot, still, config)
     heed_pressure(ring, step, progress, state, slot, still, config)
@@ -140,6 +142,7 @@ def _predict(
     else:
         go_on(state, dt_s, config)
     propagate(state, dt_s)
+    carry_past(state, dt_s)
     turn_walk(state, follow_gain_errors(state, dt_s, config))
     bend_way(state, dt_s)
     state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))

@@ -18,6 +18,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, GYRO_BIAS, POSITION, SIZE
+from edge.tracker.past import widen_past
 from edge.tracker.state import FilterState
 
 SHOWN_SHARE = 0.02  # of the variance at the start; less is known
@@ -106,9 +107,17 @@ def believe_rest(state: FilterState, config: EskfConfig) -> None:
         state.unshown_bias_std_radps = math.sqrt(square)
     for i in range(SIZE):
         state.column[i] = _with_bias(state, i, off) / variance
+    widen_past(state, off, 1.0 / variance)
     for i in range(SIZE):
         for j in range(SIZE):
             state.covariance[i, j] += state.column[i] * state.column[j]
+
+
+@njit()
+def is_bias_doubted(state: FilterState, config: EskfConfig) -> bool:
+    """Whether more of the bias is doubted than the covariance says, and with it the heading."""
+    beyond = state.unshown_bias_std_radps > config.start_gyro_bias_std_radps
+    return bool(beyond and not state.bias_shown)
 
 
 @njit()

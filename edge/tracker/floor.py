@@ -23,6 +23,7 @@ from numba import njit
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import POSITION, SIZE
 from edge.tracker.measurement_update import remember
+from edge.tracker.past import forget_with_past
 from edge.tracker.state import FilterState, Progress, Ring, Step
 
 DOWN = POSITION + 2
@@ -126,6 +127,7 @@ def _measure_height_only(step: Step, state: FilterState, off_m: float, variance_
         p[DOWN, j] *= 1.0 - gain
         p[j, DOWN] = p[DOWN, j]
     p[DOWN, DOWN] = kept
+    forget_with_past(state, DOWN, 1.0 - gain)
     state.position_n_m[2] += gain * off_m
     u = step.updates
     for j in range(SIZE):

@@ -19,6 +19,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import SIZE, TURN
+from edge.tracker.past import forget_with_past
 from edge.tracker.state import GAIN_ERRORS, FilterState
 
 
@@ -87,6 +88,7 @@ def learn_gain_errors(state: FilterState) -> None:
     for j in range(SIZE):
         state.covariance[TURN, j] = 0.0
         state.covariance[j, TURN] = 0.0
+    forget_with_past(state, TURN, 0.0)
     gains.heard = True
     column = gains.turned_column
     before = along(gains.turned_rad, column)
@@ -97,7 +99,9 @@ def learn_gain_errors(state: FilterState) -> None:
         learned = column[g] * state.error[TURN] / before
         gains.estimate[g] += learned
         for i in range(2):
-            state.position_n_m[i] += gains.carried_m[i, g] * learned
+            moved_m = gains.carried_m[i, g] * learned
+            state.position_n_m[i] += moved_m
+            state.past.shift_n_m[i] += moved_m
     for g in range(GAIN_ERRORS):
         for h in range(GAIN_ERRORS):
             gains.covariance[h, g] -= taken * column[g] * column[h]

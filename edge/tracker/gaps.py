@@ -14,6 +14,7 @@ from edge.tracker.alignment import level
 from edge.tracker.conditioning import SAMPLE_GAP
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import ATTITUDE, POSITION, SIZE, VELOCITY
+from edge.tracker.past import forget_with_past
 from edge.tracker.state import FilterState, Progress, Ring, reach
 from edge.tracker.strapdown import rotate_attitude, rotation_matrix
 
@@ -91,3 +92,4 @@ def _forget(state: FilterState, index: int, variance: float) -> None:
         state.covariance[index, j] = 0.0
         state.covariance[j, index] = 0.0
     state.covariance[index, index] = variance
+    forget_with_past(state, index, 0.0)

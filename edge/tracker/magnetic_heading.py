@@ -16,6 +16,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import heading_variance
+from edge.tracker.first_rest import is_bias_doubted
 from edge.tracker.magnetic_field import (
     aim,
     earth_log_likelihood,
@@ -39,7 +40,7 @@ def heed_field(
     """Gather the field of a stance; look at it when the stance ends, or once a second."""
     compass = state.compass
     _write_north(ring, state, slot)
-    if still:
+    if still and not is_bias_doubted(state, config):
         _gather(ring, state, slot)
     if compass.samples == 0:
         return

@@ -25,6 +25,7 @@ from edge.tracker.error_model import (
     update_with_lever,
 )
 from edge.tracker.gain_errors import learn_gain_errors
+from edge.tracker.past import correct_past, tell_past
 from edge.tracker.state import FilterState, Step
 from edge.tracker.strapdown import rotate_navigation, rotation_matrix
 
@@ -47,7 +48,7 @@ def measure(step: Step, state: FilterState, index: int, residual: float, varianc
         state.column,
         step.update_gain[step.updates],
     )
-    remember(step, index, innovation * weight)
+    _note(step, state, index, innovation * weight)
 
 
 @njit()
@@ -61,7 +62,7 @@ def measure_heading(step: Step, state: FilterState, residual_rad: float, varianc
         state.column,
         step.update_gain[step.updates],
     )
-    remember(step, HEADING, innovation * weight)
+    _note(step, state, HEADING, innovation * weight)
 
 
 @njit()
@@ -84,7 +85,13 @@ def measure_with_lever(
         state.column,
         step.update_gain[step.updates],
     )
-    remember(step, VELOCITY + axis, innovation * weight)
+    _note(step, state, VELOCITY + axis, innovation * weight)
+
+
+@njit()
+def _note(step: Step, state: FilterState, index: int, pull: float) -> None:
+    tell_past(state, step, index, pull)
+    remember(step, index, pull)
 
 
 @njit()
@@ -100,6 +107,7 @@ def remember(step: Step, index: int, pull: float) -> None:
 def end_updates(state: FilterState) -> None:
     """Move the gathered error into the state."""
     error = state.error
+    correct_past(state)
     for i in range(3):
         state.position_n_m[i] += error[POSITION + i]
         state.velocity_n_mps[i] += error[VELOCITY + i]

@@ -7,7 +7,7 @@ something better is known, an arbitrary but constant heading of "north".
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Protocol
 
 import numpy as np
@@ -35,6 +35,10 @@ class TrackBatch:
     position_cov_m2: Floats  # (n, 3, 3)
     heading_std_rad: Floats  # (n,)
     stationary: NDArray[np.bool_]  # (n,) the foot stands still
+    # What was put right of the walk behind since the start, and is in the columns above: by how
+    # much the position moved without a step and, before it was settled, the heading without a turn.
+    past_shift_n_m: Floats  # (n, 2) north, east
+    past_turn_rad: Floats  # (n,) clockwise
     distance_m: Floats  # (n,) horizontal path length since the start, stance to stance
     steps: NDArray[np.int64]  # (n,) strides of this foot counted since the start
     quality: NDArray[np.uint8]  # (n,) Quality
@@ -44,6 +48,9 @@ class TrackBatch:
 
     def __len__(self) -> int:
         return len(self.t_ns)
+
+    def part(self, rows: NDArray[np.bool_]) -> TrackBatch:
+        return TrackBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
 class Tracker(Protocol):

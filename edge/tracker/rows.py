@@ -22,6 +22,8 @@ def empty_rows() -> TrackBatch:
         position_cov_m2=np.zeros((0, 3, 3)),
         heading_std_rad=np.zeros(0),
         stationary=np.zeros(0, np.bool_),
+        past_shift_n_m=np.zeros((0, 2)),
+        past_turn_rad=np.zeros(0),
         distance_m=np.zeros(0),
         steps=np.zeros(0, np.int64),
         quality=np.zeros(0, np.uint8),

@@ -58,6 +58,8 @@ RING = np.dtype(
         ("magnetic_north_std_rad", np.float64),
         ("distance_m", np.float64),
         ("steps", np.int64),
+        ("past_shift_n_m", np.float64, 2),  # see past
+        ("past_turn_rad", np.float64),
         ("stationary", np.bool_),
         ("quality", np.uint8),
         ("reasons", np.uint32),
@@ -178,6 +180,18 @@ GAINS = np.dtype(
     align=True,
 )
 
+PAST = np.dtype(
+    [
+        ("settled", np.bool_),  # the bias is shown, and the rest that showed it is over
+        ("shift_n_m", np.float64, 2),  # by which the position was put right since the start
+        ("turn_rad", np.float64),  # ... and the heading, before it was settled
+        ("covariance", np.float64, (3, SIZE)),  # of its position and heading with the error state
+        # Scratch.
+        ("error", np.float64, 3),  # correction gathered at one instant
+    ],
+    align=True,
+)
+
 FILTER = np.dtype(
     [
         ("position_n_m", np.float64, 3),
@@ -198,6 +212,7 @@ FILTER = np.dtype(
         ("doubted_b", np.float64, 3),  # unit vector along which it is known least
         ("rest_rate_radps", np.float64, 3),  # mean rate around the last still sample
         ("rest_rate_var_rad2ps2", np.float64),  # the rate's scatter about it
+        ("past", PAST),  # see past
         ("ramp_var_m2", np.float64),  # doubt whether the floor is flat; see floor
         # How an ordinary stride's noise is stated; see landing.
         ("swing_rad", np.float64),  # that the foot has turned since it stood

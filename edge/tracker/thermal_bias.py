@@ -12,6 +12,7 @@ from numba import njit
 
 from edge.tracker.config import EskfConfig
 from edge.tracker.error_model import warm
+from edge.tracker.past import warm_past
 from edge.tracker.state import FilterState, Progress, Ring, Step
 
 COLDEST_DEGC = -60.0  # what is said beyond these is no temperature
@@ -42,3 +43,4 @@ def follow_warmth(
     for i in range(3):
         state.gyro_bias_radps[i] += step_k * state.gyro_bias_per_k[i]
     warm(state.covariance, step_k)
+    warm_past(state, step_k)

@@ -35,6 +35,8 @@ def rows(position_n_m: Floats, from_s: float = 0.0) -> TrackBatch:
         position_cov_m2=np.tile(np.diag([0.04, 0.01, 0.09]), (n, 1, 1)),
         heading_std_rad=np.full(n, 0.1),
         stationary=np.zeros(n, np.bool_),
+        past_shift_n_m=np.zeros((n, 2)),
+        past_turn_rad=np.zeros(n),
         distance_m=np.arange(n, dtype=float),
         steps=np.zeros(n, np.int64),
         quality=np.full(n, Quality.GOOD, np.uint8),
