@@ -48,8 +48,9 @@ OWN = np.dtype(  # what has to be remembered of an own path to judge its next st
         ("std_m", np.float64),  # as stated, along the worse axis
         ("heading_std_rad", np.float64),
         ("step_rad", np.float64),  # direction of the last increment; NaN: there was none
-        ("first_heading_std_rad", np.float64),  # NaN: at the frame's origin, nothing was said yet
+        ("moved_heading_std_rad", np.float64),  # when it moved last; NaN: nothing was said yet
         ("moving_s", np.float64),
+        ("grown_radps", np.float64),  # by which that has grown of late, while moving
         ("drift_radps", np.float64),  # how fast its heading may drift
     ]
 )
@@ -71,6 +72,7 @@ HOW = np.dtype(  # of ``Parameters``
 MOVING_MPS = 0.1
 TURN_SEEN_M = 0.1  # of way that has a direction
 LEARNT_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
+OF_LATE_S = 60.0  # moved, over which that is judged
 SUDDEN = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 
 
@@ -145,8 +147,8 @@ def stretch(
     last, kind = own[0], how[0]
     std_m, heading_std_rad = max(stds[0], stds[1]), stds[2]
     drift_var = doubt_m2 = turned_rad = 0.0
-    if math.isnan(last.first_heading_std_rad):
-        last.first_heading_std_rad, duration_s = heading_std_rad, 0.0
+    if math.isnan(last.moved_heading_std_rad):
+        last.moved_heading_std_rad, duration_s = heading_std_rad, 0.0
     else:
         if heading_std_rad > last.heading_std_rad:  # by more than it drifts
             usual_rad = SUDDEN * last.drift_radps * duration_s
@@ -165,11 +167,15 @@ def stretch(
         last.step_rad = step_rad
     last.north_m, last.east_m, last.down_m = to_m
     last.std_m, last.heading_std_rad = std_m, heading_std_rad
-    last.moving_s += moving_s
+    if moving_s > 0.0:
+        last.moving_s += moving_s
+        grown_rad = heading_std_rad - last.moved_heading_std_rad
+        of_late_s = min(last.moving_s, OF_LATE_S)
+        last.grown_radps += (grown_rad - moving_s * last.grown_radps) / of_late_s
+        last.moved_heading_std_rad = heading_std_rad
     last.drift_radps = kind.drift_radps
     if last.moving_s >= LEARNT_S:
-        grown_rad = max(0.0, heading_std_rad - last.first_heading_std_rad)
-        stated_radps = kind.drift_doubt * grown_rad / last.moving_s
+        stated_radps = kind.drift_doubt * last.grown_radps
         last.drift_radps = min(max(stated_radps, kind.drift_least_radps), kind.drift_most_radps)
     place_var_m2 = kind.walk_m_per_sqrt_m**2 * length_m + doubt_m2
     turn_var = (

@@ -64,6 +64,17 @@ def test_a_unit_s_own_words_tell_how_fast_its_heading_drifts() -> None:
     assert drift_radps == pytest.approx(KIND.drift_doubt * said_radps)
 
 
+def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:
+    own = OwnPath(KIND)
+    std_rad = 0.0
+    for step in range(1500):
+        std_rad = min(std_rad + 5e-4 * STEP_S, 0.05)  # rests and a compass hold it there
+        drift_radps = go(own, 0.3 * step, 0.0, heading_std_rad=std_rad).drift_radps
+        if std_rad < 0.05 and step > 60:
+            assert drift_radps == pytest.approx(KIND.drift_doubt * 5e-4)
+    assert drift_radps < 2.0 * KIND.drift_least_radps
+
+
 def test_after_a_jump_the_path_goes_on_from_there() -> None:
     own = OwnPath(KIND)
     go(own, 0.0, 0.0)

@@ -22,7 +22,7 @@ class OwnPath:
         self._how = _how(kind)
         self._own = np.frombuffer(saved, OWN).copy() if saved else np.zeros(1, OWN)
         if not saved:
-            self._own["step_rad"] = self._own["first_heading_std_rad"] = np.nan
+            self._own["step_rad"] = self._own["moved_heading_std_rad"] = np.nan
 
     def save(self) -> bytes:
         return self._own.tobytes()

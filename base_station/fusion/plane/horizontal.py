@@ -43,6 +43,7 @@ from shared.geo import wrap_pi
 Floats = NDArray[np.float64]
 
 _UNKNOWN_VAR_M2 = 1e8
+KEEPS_ON = 0.9  # of what it drifts by: that much less is no change
 REOPEN = 1.5  # times the width at which one hypothesis was enough
 
 
@@ -116,13 +117,24 @@ class HorizontalFilter:
             self._bank = HeadingBank.given(mean, covariance)
             self._stale = True
 
-    def expect_drift(self, std_radps: float) -> None:
+    def expect_drift(self, std_radps: float) -> float:
         """How fast the unit's own heading may drift, before anything is known of it.  A unit that
-        turns out worse than it was taken for has a drift that is less known.
+        turns out worse than it was taken for has a drift that is less known; where rests or a
+        compass hold its heading by now, what it drifted by before does not go on: this share does.
         """
-        if self._bank is None and std_radps > self._drift_std_radps:
-            self._covariance[DRIFT, DRIFT] += std_radps**2 - self._drift_std_radps**2
+        before_radps = self._drift_std_radps
+        if KEEPS_ON * before_radps < std_radps <= before_radps:
+            return 1.0
         self._drift_std_radps = std_radps
+        if self._bank is None and std_radps > before_radps:
+            self._covariance[DRIFT, DRIFT] += std_radps**2 - before_radps**2
+        if self._bank is not None or std_radps > before_radps:
+            return 1.0
+        share = std_radps / before_radps
+        self._mean[DRIFT] *= share
+        self._covariance[DRIFT, :] *= share
+        self._covariance[:, DRIFT] *= share
+        return share
 
     def begin(
         self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float

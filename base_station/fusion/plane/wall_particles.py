@@ -228,6 +228,11 @@ class WallParticles:
             _, covariance = self.moments()
             self._split = bool(covariance[0, 0] + covariance[1, 1] > TOGETHER_M**2)
 
+    def ease_drift(self, share: float) -> None:
+        """Of every drift this share goes on."""
+        self._particles[:, 3] *= share
+        self._moments = None
+
     def spread(self, variance_m2: float) -> None:
         self._particles[:, :2] += math.sqrt(variance_m2) * self._rng.normal(size=(PARTICLES, 2))
         self._stretch, self._moments = RecentStretch([]), None

@@ -170,7 +170,9 @@ class WalledFilter:
         self._plain.forget_place()
 
     def expect_drift(self, std_radps: float) -> None:
-        self._plain.expect_drift(std_radps)
+        share = self._plain.expect_drift(std_radps)
+        if self._cloud is not None and share < 1.0:
+            self._cloud.ease_drift(share)
 
     def walk(
         self,
