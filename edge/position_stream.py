@@ -6,7 +6,6 @@ import math
 from bisect import bisect_right
 
 import numpy as np
-from numpy.typing import NDArray
 
 from edge.clocks.timeline import Timeline
 from edge.decimation import Decimator
@@ -53,11 +52,10 @@ class PositionStream:
 
     def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
         """The positions to publish among these rows."""
-        usable: NDArray[np.bool_] = (
-            np.isfinite(track.position_n_m).all(axis=1)
-            & np.isfinite(track.velocity_n_mps).all(axis=1)
-            & np.isfinite(track.position_cov_m2).all(axis=(1, 2))
-        )
+        figures = (track.position_n_m, track.velocity_n_mps, track.position_cov_m2)
+        usable = np.ones(len(track), np.bool_)
+        for figure in figures:
+            usable &= np.isfinite(figure).reshape(len(track), -1).all(axis=1)
         self.rows_dropped += int(len(track) - usable.sum())
         doubted, track = track, self._walked.take(track.part(usable))
         picked = self._times.picks(track.t_ns)

@@ -21,7 +21,6 @@ from base_station.alarms import ALARMS
 from base_station.bench.incident.bound import ENGINE_STD_M
 from base_station.bench.incident.run import Person, draw_incident
 from base_station.bench.incident.scores import FloorScores
-from base_station.bench.incident.sensors import position_of
 from base_station.bench.rig import said
 from base_station.events import Received
 from base_station.fusion import FUSERS
@@ -140,8 +139,7 @@ class _Station:
     def hear(self, number: int, person: Person, row: int) -> None:
         self._at(person, row)
         unit_id = _name(number)
-        own = position_of(person.truth, person.own, person.pressures_pa, row, unit_id)
-        self.pipeline.step(Received(self._t_ns, unit_id, own))
+        self.pipeline.step(Received(self._t_ns, unit_id, person.positions[row]))
         fix = person.fixes.get(row)
         if fix is not None:
             seq = len(person.truth.t_s) + row + 1

@@ -10,7 +10,6 @@ import pytest
 
 from base_station.bench.incident.run import Floats, Person, Run, Timing, draw_incident, fuse
 from base_station.bench.incident.scores import CHI2_95_2DOF, FAR_M
-from base_station.bench.incident.sensors import position_of
 from base_station.fusion.port import FuserKind, Start
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
@@ -64,14 +63,14 @@ def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
     straight = kind.new()
     straight.consider(grid)
     north_m, east_m = person.truth.place_m[0, :2]
-    straight.start(Start(north_m, east_m, 0.0, person.own.turn_rad, 0.5, 0.1))
+    straight.start(Start(north_m, east_m, 0.0, person.turn_rad, 0.5, 0.1))
     half, end = 300, 500
     for row in range(half):
-        straight.advance(position_of(person.truth, person.own, person.pressures_pa, row))
+        straight.advance(person.positions[row])
     restored = kind.restore(straight.save())
     restored.consider(grid)
     for row in range(half, end):
-        position = position_of(person.truth, person.own, person.pressures_pa, row)
+        position = person.positions[row]
         straight.advance(position)
         restored.advance(position)
         assert restored.estimate() == straight.estimate()
@@ -91,7 +90,7 @@ def test_a_gap_in_the_radio_is_not_taken_for_a_walk_through_walls(
         inside = truth.goes_in_s + 60.0 < t_s < truth.comes_out_s
         if inside and t_s % 90.0 < 30.0:
             continue
-        fuser.advance(position_of(truth, person.own, person.pressures_pa, row))
+        fuser.advance(person.positions[row])
         fix = person.fixes.get(row)
         if fix is not None:
             fuser.correct(fix)

@@ -34,6 +34,8 @@ from base_station.bench.incident.scores import (
     FloorScores,
     Scores,
 )
+from base_station.bench.incident.tracked import tracked_walks
+from base_station.bench.incident.walking import Walkers, drawn_walks
 from base_station.bench.rig.side_by_side import side_by_side
 from base_station.fusion import FUSERS
 from base_station.fusion.port import FuserKind
@@ -71,6 +73,9 @@ class FusionReport:
 def bench_fusion(
     incidents: Annotated[int, typer.Option(min=1, help="Simulated, of six people each.")] = 10,
     seed: Annotated[int, typer.Option(help="Of the first one.")] = 1,
+    tracked: Annotated[
+        bool, typer.Option("--tracked", help="Their units track simulated sensors.")
+    ] = False,
     walks: Annotated[
         Path | None, typer.Option(help="Recorded trials with truth, instead; needs --tracks.")
     ] = None,
@@ -87,7 +92,7 @@ def bench_fusion(
     if walks is not None and tracks is not None:
         print_recorded(FUSERS[0], walks, tracks)
         return
-    report = measure(FUSERS[0], incidents, seed)
+    report = measure(FUSERS[0], incidents, seed, tracked_walks if tracked else drawn_walks)
     Console().print(_errors_table(report))
     Console().print(_held_table(report))
     Console().print(_figures_table(report))
@@ -96,17 +101,20 @@ def bench_fusion(
     write_figures(json_file, report)
 
 
-def measure(kind: FuserKind, incidents: int, seed: int) -> FusionReport:
+def measure(
+    kind: FuserKind, incidents: int, seed: int, walkers: Walkers = drawn_walks
+) -> FusionReport:
     tally = _Tally(kind)
     seeds = range(seed, seed + incidents)
-    for taken in side_by_side(partial(_taken, kind), seeds, "Incidents"):
+    for taken in side_by_side(partial(_taken, kind, walkers), seeds, "Incidents"):
         tally.add(taken)
     return tally.report(incidents, seed)
 
 
-def _taken(kind: FuserKind, seed: int) -> _Tally:
+def _taken(kind: FuserKind, walkers: Walkers, seed: int) -> _Tally:
     tally = _Tally(kind)
-    tally.take(np.random.default_rng(seed))
+    rng = np.random.default_rng(seed)
+    tally.take(draw_incident(rng, walkers), rng)
     return tally
 
 
@@ -121,9 +129,8 @@ class _Tally:
         self._afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
         self._walked_m: list[float] = []
 
-    def take(self, rng: np.random.Generator) -> None:
+    def take(self, people: list[Person], rng: np.random.Generator) -> None:
         """One drawn incident."""
-        people = draw_incident(rng)
         for name in KNOWN:
             self._fuse(name, people, rng)
         for person in people:
@@ -184,10 +191,11 @@ class _Tally:
 
 def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
     """Where simpler ways put the wearer, row by row."""
-    truth, own = person.truth, person.own
-    turn_rad = own.turn_rad + rng.normal(0.0, PEER_HEADING_STD_RAD)
+    truth = person.truth
+    turn_rad = person.turn_rad + rng.normal(0.0, PEER_HEADING_STD_RAD)
     cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
-    path_m = own.place_m[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    own_m = np.array([(position.north_m, position.east_m) for position in person.positions])
+    path_m = own_m @ np.array([[cosine, sine], [-sine, cosine]])
     alone = np.zeros_like(path_m)
     switching = np.zeros_like(path_m)
     last, last_path_m = np.zeros(2), path_m[0]

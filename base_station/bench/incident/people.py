@@ -48,13 +48,29 @@ class Truth:
         return np.diff(self.place_m, axis=0, prepend=self.place_m[:1])
 
 
-class _Script:
-    """Waypoints with the time at which each is reached."""
+@dataclass(frozen=True)
+class Move:
+    """From where one is to there, or a rest where it is the same place."""
 
-    def __init__(self, rng: np.random.Generator, begin: Place) -> None:
+    to_m: tuple[float, float, float]  # north, east, down
+    speed_mps: float
+    lasts_s: float
+
+
+class Script:
+    """What one person does, move by move."""
+
+    def __init__(self, rng: np.random.Generator, begin: Place, *, from_engine: bool) -> None:
         self._rng = rng
         self._t_s = [0.0]
         self._places: list[tuple[float, float, float]] = [(*begin, 0.0)]
+        self.from_engine = from_engine
+        self.moves: list[Move] = []
+        self.goes_in_s = self.comes_out_s = 0.0
+
+    @property
+    def begin_m(self) -> Place:
+        return self._places[0][:2]
 
     @property
     def now_s(self) -> float:
@@ -71,18 +87,23 @@ class _Script:
         down_m = at_down_m if down_m is None else down_m
         way_m = float(np.hypot(to_m[0] - north_m, to_m[1] - east_m))
         pace = speed_mps * float(self._rng.uniform(0.8, 1.2))
-        self._t_s.append(self.now_s + max(way_m / pace, 0.05))
-        self._places.append((*to_m, down_m))
+        self._move(Move((*to_m, down_m), speed_mps, max(way_m / pace, 0.05)))
 
     def rest(self, lasts_s: float) -> None:
-        self._t_s.append(self.now_s + max(lasts_s, 0.05))
-        self._places.append(self._places[-1])
+        self._move(Move(self._places[-1], 0.0, max(lasts_s, 0.05)))
 
-    def sampled(self) -> tuple[Floats, Floats]:
+    def _move(self, move: Move) -> None:
+        self.moves.append(move)
+        self._t_s.append(self.now_s + move.lasts_s)
+        self._places.append(move.to_m)
+
+    def truth(self) -> Truth:
+        """Of somebody who goes in straight lines at an even pace."""
         t_s = np.arange(0.0, LASTS_S, 1.0 / RATE_HZ)
         places = np.array(self._places)
         columns = [np.interp(t_s, self._t_s, places[:, axis]) for axis in range(3)]
-        return t_s, np.stack(columns, axis=1)
+        place_m = np.stack(columns, axis=1)
+        return Truth(t_s, place_m, self.from_engine, self.goes_in_s, self.comes_out_s)
 
 
 def draw_engine(rng: np.random.Generator, building: SteelBuilding) -> Place:
@@ -93,31 +114,31 @@ def draw_engine(rng: np.random.Generator, building: SteelBuilding) -> Place:
 
 def live_through(
     rng: np.random.Generator, building: SteelBuilding, engine_m: Place, *, from_engine: bool
-) -> Truth:
+) -> Script:
     """One person's twenty minutes."""
     door_m = building.entrance_east_m
     beside_m = rng.normal(0.0, BESIDE_ENGINE_M, 2)
     begin = engine_m[0] + float(beside_m[0]), engine_m[1] + float(beside_m[1])
-    script = _Script(rng, begin)
+    script = Script(rng, begin, from_engine=from_engine)
     if from_engine:
         script.rest(float(rng.uniform(5.0, 20.0)))
     else:
         _walk_about(rng, script, building, until_s=float(rng.uniform(80.0, 130.0)))
     script.go((-1.5, door_m), WALK_MPS)
-    goes_in_s = script.now_s
+    script.goes_in_s = script.now_s
     script.go((1.5, door_m), WALK_MPS)
     script.go((building.corridor_north_m, door_m), WALK_MPS)
-    _search(rng, script, building, until_s=max(goes_in_s + INSIDE_LEAST_S, LASTS_S - 330.0))
+    _search(rng, script, building, until_s=max(script.goes_in_s + INSIDE_LEAST_S, LASTS_S - 330.0))
     script.go((building.corridor_north_m, door_m), WALK_MPS)
     script.go((1.5, door_m), WALK_MPS)
     script.go((-1.5, door_m), WALK_MPS)
-    comes_out_s = script.now_s
+    script.comes_out_s = script.now_s
     _walk_about(rng, script, building, until_s=LASTS_S)
-    return Truth(*script.sampled(), from_engine, goes_in_s, comes_out_s)
+    return script
 
 
 def _walk_about(
-    rng: np.random.Generator, script: _Script, building: SteelBuilding, until_s: float
+    rng: np.random.Generator, script: Script, building: SteelBuilding, until_s: float
 ) -> None:
     """South of the building, now and then along its wall."""
     while script.now_s < until_s:
@@ -132,7 +153,7 @@ def _walk_about(
 
 
 def _search(
-    rng: np.random.Generator, script: _Script, building: SteelBuilding, until_s: float
+    rng: np.random.Generator, script: Script, building: SteelBuilding, until_s: float
 ) -> None:
     """Room after room, now and then on another floor; at the end back down."""
     floor = 0
@@ -148,7 +169,7 @@ def _search(
 
 
 def _search_room(
-    rng: np.random.Generator, script: _Script, building: SteelBuilding, room: Room
+    rng: np.random.Generator, script: Script, building: SteelBuilding, room: Room
 ) -> None:
     door_north_m, door_m = room.door
     into = 1.0 if door_north_m > building.corridor_north_m else -1.0
@@ -178,7 +199,7 @@ def _search_room(
 
 
 def _climb(
-    rng: np.random.Generator, script: _Script, building: SteelBuilding, floor: int, to_floor: int
+    rng: np.random.Generator, script: Script, building: SteelBuilding, floor: int, to_floor: int
 ) -> int:
     """Up one lane of a stairwell and on in the other, or the same way down."""
     if floor == to_floor:

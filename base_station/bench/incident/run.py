@@ -15,16 +15,14 @@ from base_station.bench.incident.building import Place, SteelBuilding, draw_buil
 from base_station.bench.incident.people import PEOPLE, Truth, draw_engine, live_through
 from base_station.bench.incident.scores import normalised2
 from base_station.bench.incident.sensors import (
-    OwnPath,
     draw_air,
     draw_sky_m,
     engine_fixes_of,
     fixes_of,
-    position_of,
     pressures_pa,
     reference_pa,
-    walk_it,
 )
+from base_station.bench.incident.walking import Walkers, drawn_walks
 from base_station.bench.rig import said
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.learnt.building import LearntBuilding
@@ -33,6 +31,7 @@ from base_station.fusion.vertical.weather import Weather
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
 from shared.geo import pressure_altitude_m
+from shared.messages import Position
 
 Floats = NDArray[np.float64]
 
@@ -45,19 +44,21 @@ class Person:
 
     building: SteelBuilding
     truth: Truth
-    own: OwnPath
+    positions: list[Position]  # as the unit publishes them, row by row
+    turn_rad: float  # heading of the own north in the incident frame, at the start
     fixes: dict[int, PlaceFix]
-    pressures_pa: Floats
     weather_m: Floats  # as the station's own barometer tells it, row by row
     engine_m: Place  # where the engine stands, as the commander said
     engine_fixes: dict[int, PlaceFix]  # of the receiver on its roof, which is the station's
 
 
-def draw_incident(rng: np.random.Generator) -> list[Person]:
+def draw_incident(rng: np.random.Generator, walkers: Walkers = drawn_walks) -> list[Person]:
+    """``walkers``: how people walk as they are told, and what their units make of it."""
     building = draw_building(rng)
     engine_m = draw_engine(rng, building)
-    truths = [live_through(rng, building, engine_m, from_engine=n % 2 == 1) for n in range(PEOPLE)]
-    t_s = truths[0].t_s
+    scripts = [live_through(rng, building, engine_m, from_engine=n % 2 == 1) for n in range(PEOPLE)]
+    walks = walkers(rng, scripts, building)
+    t_s = walks[0].truth.t_s
     air, sky_m = draw_air(rng, t_s), draw_sky_m(rng, t_s)
     weather_m = _weather_m(t_s, reference_pa(rng, air))
     engine_fixes = engine_fixes_of(rng, t_s, engine_m, sky_m)
@@ -65,15 +66,15 @@ def draw_incident(rng: np.random.Generator) -> list[Person]:
     return [
         Person(
             building,
-            truth,
-            walk_it(rng, truth),
-            fixes_of(rng, truth, building, sky_m),
-            pressures_pa(rng, air, truth),
+            walk.truth,
+            walk.positions(f"FF-0{number + 1}", pressures_pa(rng, air, walk.truth)),
+            walk.turn_rad,
+            fixes_of(rng, walk.truth, building, sky_m),
             weather_m,
             (float(said_m[0]), float(said_m[1])),
             engine_fixes,
         )
-        for truth in truths
+        for number, walk in enumerate(walks)
     ]
 
 
@@ -136,10 +137,8 @@ class Site:
 class Follower:
     """One person through a fuser of the station."""
 
-    def __init__(
-        self, kind: FuserKind, person: Person, timing: Timing, known: Known, unit_id: str
-    ) -> None:
-        self._person, self._timing, self._unit_id = person, timing, unit_id
+    def __init__(self, kind: FuserKind, person: Person, timing: Timing, known: Known) -> None:
+        self._person, self._timing = person, timing
         self._fuser = kind.new()
         self._plan = read_plan(person.building.geojson())
         if known.plan:
@@ -151,8 +150,9 @@ class Follower:
 
     def step(self, row: int, site: Site) -> None:
         person, fuser = self._person, self._fuser
-        position = position_of(person.truth, person.own, person.pressures_pa, row, self._unit_id)
-        altitude_m = pressure_altitude_m(float(person.pressures_pa[row]))
+        position = person.positions[row]
+        assert position.pressure_pa is not None
+        altitude_m = pressure_altitude_m(position.pressure_pa)
         air_down_m = float(person.weather_m[row]) - altitude_m
         fix = person.fixes.get(row)
         began_ns = time.thread_time_ns()
@@ -179,15 +179,12 @@ class Follower:
         off_m = run.places_m[row] - person.truth.place_m[row, :2]
         run.normalised2[row] = normalised2(estimate, off_m)
         if math.isinf(run.heading_walked_m) and estimate.heading_std_rad < SOLVED_RAD:
-            run.heading_walked_m = float(person.own.distance_m[row])
+            run.heading_walked_m = person.positions[row].distance_m
 
 
 def fuse_all(kind: FuserKind, people: Sequence[Person], timing: Timing, known: Known) -> list[Run]:
     """All at the same time, as at a station: what one learns of the building, the others hear."""
-    followers = [
-        Follower(kind, person, timing, known, f"FF-0{number + 1}")
-        for number, person in enumerate(people)
-    ]
+    followers = [Follower(kind, person, timing, known) for person in people]
     site = Site()
     for row in range(len(people[0].truth.t_s)):
         if known.engine:

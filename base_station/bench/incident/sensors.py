@@ -221,15 +221,18 @@ def _said_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> Fl
     return np.asarray(true_pa + noise_pa, dtype=np.float64)
 
 
-def position_of(
-    truth: Truth, own: OwnPath, pressures: Floats, row: int, unit_id: str = "FF-01"
-) -> Position:
+def positions_of(truth: Truth, own: OwnPath) -> list[Position]:
+    """What a unit without a name and a barometer publishes that has walked such a path."""
+    return [_position_of(truth, own, row) for row in range(len(truth.t_s))]
+
+
+def _position_of(truth: Truth, own: OwnPath, row: int) -> Position:
     north_m, east_m, down_m = own.place_m[row].tolist()
     heading_std_rad = float(own.heading_std_rad[row])
     moved_m = truth.steps_m[row] if row else np.zeros(3)
     std_m = math.hypot(0.1, heading_std_rad * math.hypot(north_m, east_m))
     return said.position(
-        Header(unit_id, 1, row + 1, said.mono_ns(float(truth.t_s[row]))),
+        Header("", 1, row + 1, said.mono_ns(float(truth.t_s[row]))),
         north_m=north_m,
         east_m=east_m,
         down_m=down_m,
@@ -237,6 +240,5 @@ def position_of(
         std_east_m=std_m,
         heading_std_rad=heading_std_rad,
         distance_m=float(own.distance_m[row]),
-        pressure_pa=float(pressures[row]),
         stationary=bool(np.linalg.norm(moved_m) * RATE_HZ < MOVING_MPS),
     )
