@@ -52,16 +52,16 @@ class PositionStream:
 
     def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
         """The positions to publish among these rows."""
-        figures = (track.position_n_m, track.velocity_n_mps, track.position_cov_m2)
-        usable = np.ones(len(track), np.bool_)
-        for figure in figures:
-            usable &= np.isfinite(figure).reshape(len(track), -1).all(axis=1)
+        usable = np.isfinite(track.position_n_m).all(axis=1)
+        usable &= np.isfinite(track.velocity_n_mps).all(axis=1)
+        usable &= np.isfinite(track.position_cov_m2).all(axis=(1, 2))
         self.rows_dropped += int(len(track) - usable.sum())
-        doubted, track = track, self._walked.take(track.part(usable))
-        picked = self._times.picks(track.t_ns)
-        doubts = self._doubts(doubted, np.flatnonzero(usable)[picked].tolist())
+        kept = np.flatnonzero(usable)
+        walked = self._walked.take(track.part(kept))
+        picked = self._times.picks(walked.t_ns)
+        doubts = self._doubts(track, kept[picked].tolist())
         positions = [
-            self._position(track, row, timeline, doubt)
+            self._position(walked, row, timeline, doubt)
             for row, doubt in zip(picked, doubts, strict=True)
         ]
         if self._pressures:

@@ -49,7 +49,7 @@ class TrackBatch:
     def __len__(self) -> int:
         return len(self.t_ns)
 
-    def part(self, rows: NDArray[np.bool_]) -> TrackBatch:
+    def part(self, rows: NDArray[np.intp]) -> TrackBatch:
         return TrackBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 

@@ -169,6 +169,14 @@ def test_nothing_known_of_a_variance_makes_no_error() -> None:
     assert position.heading_std_rad == math.pi
 
 
+def test_no_rows_are_no_positions_and_the_path_goes_on() -> None:
+    publishing = stream(5.0)
+    (first,) = publishing.push(rows(np.ones((1, 3))), LIVE)
+    assert publishing.push(rows(np.zeros((0, 3)), from_s=0.5), LIVE) == []
+    (later,) = publishing.push(rows(np.full((1, 3), 2.0), from_s=1.0), LIVE)
+    assert (first.north_m, later.north_m) == (1.0, 2.0)
+
+
 @pytest.mark.parametrize(("std_rad", "is_told"), [(0.79, True), (0.81, False), (np.nan, False)])
 def test_magnetic_north_is_spoken_of_where_it_tells_something(
     std_rad: float, is_told: bool
