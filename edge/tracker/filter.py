@@ -29,7 +29,7 @@ from edge.tracker.intervals import go_on, lacks_samples, mean_readings
 from edge.tracker.landing import land, lift_off, strike_share
 from edge.tracker.magnetic_heading import heed_field
 from edge.tracker.measurement_update import turn_walk
-from edge.tracker.past import carry_past
+from edge.tracker.past import carry_past, take_over
 from edge.tracker.plateaus import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.row_quality import judge, note_faults
 from edge.tracker.stance import glides, stand
@@ -78,7 +78,7 @@ def filter_sample(
             settle(ring, step, progress, state, slot, config)
     elif progress.in_stance:
         lift_off(state, config)
-        state.past.settled = state.bias_shown
+        take_over(state)
     doubt_bias(state, config)
     heed_field(ring, step, state, slot, still, config)
     heed_pressure(ring, step, progress, state, slot, still, config)

@@ -10,9 +10,11 @@ while the foot stood, have to do with the error state (stochastic cloning: Roume
 2002, "Stochastic cloning: a generalized framework for processing relative state measurements").
 What an update moves them by is a correction of the past; the rest is the walk.
 
-A heading that is put right is the better one for the steps to come, so the walk takes it over.  Not
-so before the bias is shown: then the heading is put right by tens of degrees at once, and those who
-know by fixes where the walk has led have never gone by the wrong one.
+A heading that is put right by a little is the better one for the steps to come, so the walk takes
+it over when the foot leaves the ground: what rests and a compass tell holds it for hours.  By more
+than that at once it is put right where it had gone wrong fast, as before the bias is shown; those
+who know by fixes where the walk has led never went by the wrong one, and the right one would turn
+them.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ from edge.tracker.error_model import (
 from edge.tracker.state import FilterState, Step
 
 YAW = ATTITUDE + 2
+TAKEN_OVER_RAD = 0.01  # in one stance
 
 
 @njit()
@@ -91,10 +94,20 @@ def correct_past(state: FilterState) -> None:
     past = state.past
     past.shift_n_m[0] += past.error[0]
     past.shift_n_m[1] += past.error[1]
-    if not past.settled:
-        past.turn_rad += past.error[2] + state.error[TURN]
+    turn_rad = past.error[2] + state.error[TURN]
+    past.turn_rad += turn_rad
+    past.stance_turn_rad += turn_rad
     for i in range(3):
         past.error[i] = 0.0
+
+
+@njit()
+def take_over(state: FilterState) -> None:
+    """The foot leaves the ground."""
+    past = state.past
+    if state.bias_shown and abs(past.stance_turn_rad) < TAKEN_OVER_RAD:
+        past.turn_rad -= past.stance_turn_rad
+    past.stance_turn_rad = 0.0
 
 
 @njit()

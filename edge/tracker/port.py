@@ -36,7 +36,7 @@ class TrackBatch:
     heading_std_rad: Floats  # (n,)
     stationary: NDArray[np.bool_]  # (n,) the foot stands still
     # What was put right of the walk behind since the start, and is in the columns above: by how
-    # much the position moved without a step and, before it was settled, the heading without a turn.
+    # much the position moved without a step, and the heading turned where the walk did not follow.
     past_shift_n_m: Floats  # (n, 2) north, east
     past_turn_rad: Floats  # (n,) clockwise
     distance_m: Floats  # (n,) horizontal path length since the start, stance to stance

@@ -182,9 +182,9 @@ GAINS = np.dtype(
 
 PAST = np.dtype(
     [
-        ("settled", np.bool_),  # the bias is shown, and the rest that showed it is over
         ("shift_n_m", np.float64, 2),  # by which the position was put right since the start
-        ("turn_rad", np.float64),  # ... and the heading, before it was settled
+        ("turn_rad", np.float64),  # ... and the heading, but for what the walk has taken over
+        ("stance_turn_rad", np.float64),  # of that, in this stance
         ("covariance", np.float64, (3, SIZE)),  # of its position and heading with the error state
         # Scratch.
         ("error", np.float64, 3),  # correction gathered at one instant
