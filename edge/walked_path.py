@@ -22,8 +22,8 @@ class WalkedPath:
     """Takes rows as they come; however they are cut, the path is the same but for rounding."""
 
     def __init__(self) -> None:
-        self._last: Floats | None = None  # of the row before: place, what was put right, the turn
-        self._last_m = np.zeros(2)  # and where the path walked has come to
+        self._last: Floats | None = None  # (1, 4) of the row before: place, and what was put right
+        self._last_m = np.zeros(2)  # where the path walked has come to
 
     def take(self, track: TrackBatch) -> TrackBatch:
         """``track``, whose rows are all numbers, in a frame that follows no correction."""

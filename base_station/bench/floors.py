@@ -96,8 +96,8 @@ def floors_shown(people: list[Person], way: str) -> list[list[tuple[int | None, 
     for row in range(len(people[0].truth.t_s)):
         station.hear_reference(people[0], row)
         for number, person in enumerate(people):
-            station.hear(number, person, row)
-            fused = station.pipeline.state.units[_name(number)].fused
+            station.hear(person, row)
+            fused = station.pipeline.state.units[person.unit_id].fused
             floor = None if fused is None else fused.floor
             sure = 0.0 if fused is None else fused.floor_probability or 0.0
             shown[number].append((floor, sure))
@@ -117,11 +117,11 @@ class _Station:
         self._act(RegisterUnit(_REFERENCE, ""))
         if way != LEARNT_ALONE:
             self._act(SetReference(_REFERENCE, 0.0))
-        for number, person in enumerate(people):
-            self._act(RegisterUnit(_name(number), ""))
+        for person in people:
+            self._act(RegisterUnit(person.unit_id, ""))
             if person.truth.from_engine:
                 north_m, east_m = person.truth.place_m[0, :2].tolist()
-                start = SetStart(_name(number), north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi)
+                start = SetStart(person.unit_id, north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi)
                 self._act(start)
 
     def hear_reference(self, person: Person, row: int) -> None:
@@ -136,9 +136,9 @@ class _Station:
     def _at(self, person: Person, row: int) -> None:
         self._t_ns = _START_NS + round((_BEFORE_S + float(person.truth.t_s[row])) * NS_PER_S)
 
-    def hear(self, number: int, person: Person, row: int) -> None:
+    def hear(self, person: Person, row: int) -> None:
         self._at(person, row)
-        unit_id = _name(number)
+        unit_id = person.unit_id
         self.pipeline.step(Received(self._t_ns, unit_id, person.positions[row]))
         fix = person.fixes.get(row)
         if fix is not None:
@@ -163,7 +163,3 @@ def _fix(unit_id: str, seq: int, fix: PlaceFix) -> GpsFix:
         vertical_std_m=2.0 * fix.horizontal_std_m,
         fix_type=FixType.TWO_D,
     )
-
-
-def _name(number: int) -> str:
-    return f"FF-0{number + 1}"

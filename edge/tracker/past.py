@@ -103,7 +103,7 @@ def correct_past(state: FilterState) -> None:
 
 @njit()
 def take_over(state: FilterState) -> None:
-    """The foot leaves the ground."""
+    """Have the walk follow what this stance, which is over, has put right of the heading."""
     past = state.past
     if state.bias_shown and abs(past.stance_turn_rad) < TAKEN_OVER_RAD:
         past.turn_rad -= past.stance_turn_rad

@@ -51,6 +51,10 @@ class Person:
     engine_m: Place  # where the engine stands, as the commander said
     engine_fixes: dict[int, PlaceFix]  # of the receiver on its roof, which is the station's
 
+    @property
+    def unit_id(self) -> str:
+        return self.positions[0].header.unit_id
+
 
 def draw_incident(rng: np.random.Generator, walkers: Walkers = drawn_walks) -> list[Person]:
     """``walkers``: how people walk as they are told, and what their units make of it."""

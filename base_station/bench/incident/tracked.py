@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.bench.incident.building import SteelBuilding
-from base_station.bench.incident.people import LASTS_S, RATE_HZ, STAIRS_MPS, WALK_MPS, Script, Truth
+from base_station.bench.incident.people import LASTS_S, RATE_HZ, WALK_MPS, Script, Truth
 from base_station.bench.incident.walking import Walked
 from base_station.bench.rig import said
 from shared.errors import UserError
@@ -36,7 +36,7 @@ LEAST_M = 0.15  # a shorter move is none
 LATE_S = 120.0  # people take longer than they were told to
 HEADING_M = 8.0  # walked, which shows how the own frame is turned
 PATIENCE_S = 600.0
-_AGENT = "from edge.bench.published import bench_published as b; import typer; typer.run(b)"
+_MUSTER = "from shared.command_line import main; main()"
 
 
 def tracked_walks(
@@ -67,7 +67,7 @@ def scenario_of(script: Script, rng: np.random.Generator) -> str:
         way_m, rise_m = float(np.hypot(to[0] - north_m, to[1] - east_m)), down_m - move.to_m[2]
         if move.speed_mps == 0.0:
             legs.append({"type": "wait", "duration_s": move.lasts_s})
-        elif move.speed_mps == STAIRS_MPS and rise_m:
+        elif rise_m:
             risers = max(1, round(abs(rise_m) / RISER_M))
             legs.append({"type": "stairs", "to": to, "rise_m": rise_m, "risers": risers})
         elif way_m > LEAST_M:
@@ -89,7 +89,7 @@ def _walk(folder: Path, numbers: Sequence[int], seed: int, *, uncalibrated: bool
     files = [str(folder / f"{number}.toml") for number in numbers]
     kind = ["--uncalibrated"] if uncalibrated else []
     how = ["--out", str(folder), "--seed", str(seed + numbers[0]), "--rate-hz", str(RATE_HZ)]
-    command = [sys.executable, "-c", _AGENT, *files, *how, *kind]
+    command = [sys.executable, "-c", _MUSTER, "bench", "published", *files, *how, *kind]
     done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     if done.returncode:
         raise UserError(f"simulated walks could not be tracked: {done.stderr.strip()[-500:]}")
