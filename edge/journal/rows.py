@@ -70,7 +70,7 @@ def entries(
 
 
 def boots(connection: sqlite3.Connection) -> Iterator[JournalBoot]:
-    """The newest first."""
+    """The newest first, each looked up when it is asked for."""
     for number, boot_id, acknowledged_seq, started_utc_ns in connection.execute(
         "SELECT number, boot_id, acknowledged_seq, started_utc_ns FROM boot "
         "WHERE typeof(boot_id) = 'integer' AND typeof(acknowledged_seq) = 'integer' "
@@ -99,12 +99,18 @@ def bounds(connection: sqlite3.Connection, boot: int) -> tuple[int, int] | None:
     return min(first for first, _ in kept), max(last for _, last in kept)
 
 
-def newest_first(connection: sqlite3.Connection, boot_id: int, channel: Channel) -> Iterator[bytes]:
-    """What is kept of one channel of a boot."""
-    for (payload,) in connection.execute(
-        "SELECT payload FROM message WHERE worth = ? AND "
-        "boot = (SELECT number FROM boot WHERE boot_id = ?) AND suffix = ? "
-        "AND typeof(payload) = 'blob' ORDER BY seq DESC",
-        (worth_of(channel), boot_id, channel.suffix),
-    ):
-        yield payload
+def said_before(
+    connection: sqlite3.Connection, boot: int, suffixes: Sequence[str]
+) -> Iterator[tuple[int, str, bytes]]:
+    """The alerts of the boots before one that stand under these suffixes, the newest first.
+
+    Boot by boot in one pass: to ask for each boot by itself would take seconds where a program has
+    started again and again.
+    """
+    yield from connection.execute(
+        "SELECT boot, suffix, payload FROM message WHERE worth = ? AND boot < ? "  # noqa: S608  # all text is ours
+        f"AND suffix IN ({', '.join('?' * len(suffixes))}) "
+        "AND typeof(boot) = 'integer' AND typeof(payload) = 'blob' "
+        "ORDER BY boot DESC, seq DESC",
+        (_ALERT, boot, *suffixes),
+    )

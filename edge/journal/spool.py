@@ -35,7 +35,7 @@ from edge.journal.rows import (
     boots,
     bounds,
     entries,
-    newest_first,
+    said_before,
     worth_of,
 )
 from shared.channels import Channel
@@ -44,6 +44,8 @@ from shared.messages import JournalBoot, JournalEntry
 
 logger = logging.getLogger(__name__)
 
+_NO_BOOT_YET = 2**63 - 1  # above every number of a boot
+
 
 class Journaled(NamedTuple):
     """One message on its way into the journal."""
@@ -51,6 +53,14 @@ class Journaled(NamedTuple):
     seq: int
     channel: Channel
     t_utc_ns: int
+    payload: bytes
+
+
+class SaidBefore(NamedTuple):
+    """An alert of an earlier boot."""
+
+    boot: int  # they are counted in the order in which they began
+    channel: Channel
     payload: bytes
 
 
@@ -154,10 +164,30 @@ class Spool:
             found = reader.execute("SELECT 1 FROM boot WHERE boot_id = ?", (boot_id,))
             return found.fetchone() is not None
 
-    def newest_first(self, boot_id: int, channel: Channel) -> Iterator[bytes]:
-        """What is kept of one channel of a boot; reads while it is iterated."""
+    def said_before(self, *channels: Channel) -> Iterator[SaidBefore]:
+        """What is kept of these channels of alerts of the boots before this one, newest first.
+
+        Reads while it is iterated.  Damage hides what was said before it in the same boot; what
+        earlier boots said is there all the same.
+        """
+        suffixes = {channel.suffix: channel for channel in channels}
+        below, past = self._boot or _NO_BOOT_YET, 1
         with in_words(self._path), closing(connect(self._path)) as reader:
-            yield from newest_first(reader, boot_id, channel)
+            while below > 0:
+                asked = below
+                try:
+                    for below, suffix, payload in said_before(reader, asked, [*suffixes]):
+                        yield SaidBefore(below, suffixes[suffix], payload)
+                except sqlite3.Error as error:
+                    if code_of(error) not in DAMAGE:
+                        raise
+                    if below < asked:
+                        logger.warning("the journal is damaged at start %d: %s", below, error)
+                        past = 1
+                    else:
+                        below, past = below - past, 2 * past
+                else:
+                    return
 
     def acknowledge(self, boot_id: int, to_seq: int) -> None:
         """The station has everything of this boot up to ``to_seq`` on its own disk.

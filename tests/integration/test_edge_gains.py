@@ -71,7 +71,8 @@ def newest(journal: Path, *channels: Channel) -> list[Message]:
     spool = Spool(journal, lambda: secrets.randbits(63), 0, 10**9)
     try:
         (boot,) = spool.boots()
-        return [decode(each, next(spool.newest_first(boot.boot_id, each))) for each in channels]
+        kept = {one.suffix: one.payload for one in spool.read(boot.boot_id, 1, boot.last_seq)}
+        return [decode(each, kept[each.suffix]) for each in channels]
     finally:
         spool.close()
 

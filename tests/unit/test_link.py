@@ -296,7 +296,7 @@ def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fai
 def how_it_stopped(data: DataFolder) -> str:
     """By the last word in its journal."""
     spool = Spool(data.journal, lambda: 1, 0, 10**9)
-    event = decode(EVENT, next(spool.newest_first(spool.boots()[0].boot_id, EVENT)))
+    event = decode(EVENT, next(spool.said_before(EVENT)).payload)
     spool.close()
     assert isinstance(event, UnitEvent)
     assert event.kind is EventKind.STOPPED

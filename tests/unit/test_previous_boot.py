@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import itertools
 import sqlite3
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from edge.commands import REMEMBERED, CommandDesk
+from edge.journal import previous_boot
+from edge.journal import rows as rows_module
+from edge.journal import spool as spool_module
 from edge.journal.previous_boot import (
     answers_before,
     mayday_before,
@@ -228,3 +232,82 @@ def test_the_newest_answers_are_remembered_across_boots(tmp_path):
     assert given[-1].command_id == f"c{2 * REMEMBERED + 4}"
     assert len(given) == 2 * REMEMBERED
     second.spool.close()
+
+
+def said_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock:
+    """A program that fails within a second and is started again, as it says in its journal."""
+    Spool(path / "journal.sqlite", BOOTS.__next__, 0, 10**9).close()
+    clock = ManualClock()
+    clock.advance(after_s)
+    with closing(sqlite3.connect(path / "journal.sqlite")) as journal, journal:
+        for _ in range(starts):
+            clock.advance(1.0)
+            stamper = Stamper("u1", next(BOOTS), clock)
+            made = journal.execute(
+                "INSERT INTO boot (boot_id, started_utc_ns) VALUES (?, 0)", (stamper.boot_id,)
+            )
+            for kind in (STARTED, MAYDAY, FALL):
+                event = UnitEvent(stamper.header(), kind)
+                journal.execute(
+                    "INSERT INTO message VALUES (3, ?, ?, ?, 0, ?)",
+                    (made.lastrowid, event.header.seq, EVENT.suffix, encode(event)),
+                )
+    return clock
+
+
+def test_thousands_of_starts_are_not_looked_at_one_by_one(tmp_path, monkeypatch):
+    """Whoever wears the unit waits for it meanwhile."""
+    RateBoot(tmp_path, 0.0, 2.0)
+    clock = said_by_many_boots(tmp_path, 3000, after_s=0.0)
+    spool = Spool(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)
+    opened, bounds_read, decoded = [0], [0], [0]
+    for module, name, counted in (
+        (spool_module, "connect", opened),
+        (rows_module, "bounds", bounds_read),
+        (previous_boot, "decode", decoded),
+    ):
+        monkeypatch.setattr(module, name, counting(getattr(module, name), counted))
+    assert mayday_before(spool)
+    assert decoded[0] == 2
+    assert len(answers_before(spool)) == 2
+    assert decoded[0] == 4
+    assert bounds_read[0] == 0
+    assert position_rate_before(spool, clock.monotonic_ns()) is None  # switched off since
+    assert opened[0] <= 4
+    spool.close()
+
+
+def counting(function: Callable[..., object], counted: list[int]) -> Callable[..., object]:
+    def call(*arguments: object) -> object:
+        counted[0] += 1
+        return function(*arguments)
+
+    return call
+
+
+def test_a_rate_from_before_thousands_of_starts_still_holds(tmp_path):
+    RateBoot(tmp_path, 30.0, 2.0)
+    clock = said_by_many_boots(tmp_path, 300, after_s=1000.0)
+    spool = Spool(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)
+    assert position_rate_before(spool, clock.monotonic_ns()) == 2.0
+    spool.close()
+
+
+def test_damage_in_one_boot_hides_no_answer_of_another(tmp_path):
+    """A command that was done is not done again."""
+    for number in range(6):
+        one = DeskBoot(tmp_path)
+        for each in range(40):  # some pages of each
+            one.take(f"c{number}.{each}", CommandKind.LOCATE)
+        one.spool.close()
+    path = tmp_path / "journal.sqlite"
+    whole = len(answers_before(Spool(path, BOOTS.__next__, 0, 10**8)))
+    content = path.read_bytes()
+    at = content.index(b"c3.20") // PAGE_BYTES * PAGE_BYTES
+    path.write_bytes(content[:at] + b"\xff" * PAGE_BYTES + content[at + PAGE_BYTES :])
+    spool = Spool(path, BOOTS.__next__, 0, 10**8)
+    names = {answer.command_id for answer in answers_before(spool)}
+    spool.close()
+    assert len(names) < whole
+    for number in (0, 1, 5):
+        assert {f"c{number}.{each}" for each in range(40)} <= names
