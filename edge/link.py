@@ -7,6 +7,7 @@ thread does it; publishing without a link drops the bytes, which the journal kee
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Iterable
 from contextlib import ExitStack
 from threading import Condition, Lock, Thread
@@ -24,6 +25,7 @@ _LOOKS_UNTIL_TOLD = 4  # connecting takes a moment
 _LOST_LOOKS = 2  # without the link that was there: probe until the station is back
 _UNHEARD = "no station listens to this unit: it is starting, or the unit has been revoked there"
 _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
+_CLOSING_S = 10.0  # a bus may take seconds where its link leads nowhere
 
 
 class OtherEnd(Protocol):
@@ -95,12 +97,18 @@ class Link:
                 self._bus.ask(selector, b"", timeout_s, on_reply, urgent=True)
 
     def close(self) -> None:
+        """What still answers the station out of a journal whose disk hangs is left to the end of
+        the process.
+        """
         with self._changed:
             self._ended = True
             self._changed.notify_all()
-        self._thread.join()
-        if self._closing is not None:
-            self._closing.join()
+        end_s = time.monotonic() + _CLOSING_S
+        for thread in filter(None, (self._thread, self._closing)):
+            thread.join(max(0.0, end_s - time.monotonic()))
+            if thread.is_alive():
+                logger.error("the link is not closed: an answer to the station hangs")
+                return
 
     def _run(self) -> None:
         while True:

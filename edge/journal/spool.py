@@ -12,10 +12,10 @@ from __future__ import annotations
 import logging
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
 from itertools import islice
 from pathlib import Path
-from threading import Lock
+from threading import Lock, Thread
 from typing import NamedTuple
 
 from edge.journal.file import (
@@ -44,6 +44,8 @@ from shared.messages import JournalBoot, JournalEntry
 
 logger = logging.getLogger(__name__)
 
+_PATIENCE_S = 1.0  # of who could as well ask again
+_CLOSING_S = 2.0
 _NO_BOOT_YET = 2**63 - 1  # above every number of a boot
 
 
@@ -196,7 +198,7 @@ class Spool:
         """
         if boot_id == self.boot_id:
             to_seq = min(to_seq, self.last_seq)
-        with in_words(self._path), self._lock, self._writer:
+        with in_words(self._path), self._soon_alone(), self._writer:
             self._writer.execute(
                 "UPDATE boot SET acknowledged_seq = MAX(acknowledged_seq, ?) WHERE boot_id = ?",
                 (to_seq, boot_id),
@@ -205,9 +207,32 @@ class Spool:
                 self._acknowledged_seq = max(self._acknowledged_seq, to_seq)
 
     def close(self) -> None:
+        """What was appended is safe already; a disk that hangs is left to the end of the process.
+
+        A thread waits for it: it may hang in another one that writes, or only now.
+        """
+        closing = Thread(target=self._close, name="journal-closing", daemon=True)
+        closing.start()
+        closing.join(_CLOSING_S)
+        if closing.is_alive():
+            logger.error("the journal %s is not closed: its disk does not answer", self._path)
+
+    def _close(self) -> None:
         with self._lock:
             if self._connection is not None:
                 self._connection.close()
+
+    @contextmanager
+    def _soon_alone(self) -> Iterator[None]:
+        """With the lock: who waits for a disk that hangs in another thread answers no question
+        meanwhile, though what was written before could be read.
+        """
+        if not self._lock.acquire(timeout=_PATIENCE_S):
+            raise StoreError(f"the journal {self._path} hangs: its disk does not answer")
+        try:
+            yield
+        finally:
+            self._lock.release()
 
     def _insert(self, messages: Sequence[Journaled]) -> None:
         """Room is made before: what is safe must not be said to have failed, and be given again."""

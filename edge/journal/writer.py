@@ -65,12 +65,16 @@ class JournalWriter:
                 self._changed.wait_for(self._is_answered, _PATIENCE_S)
 
     def close(self) -> None:
-        """Offers the disk what is left; one that hangs is left to the end of the process."""
+        """Offers the disk what is left; one that hangs may still take it until the process ends."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
         if not self._disk.join(self._thread):
-            logger.error("the journal hangs: the messages that wait are not kept")
+            logger.error(
+                "the journal hangs: its last %d messages are not kept; "
+                "the station has them if it was linked",
+                len(self._alerts.messages) + len(self._others.messages),
+            )
 
     def _is_answered(self) -> bool:
         return self._refusal is not None or not (self._alerts.messages or self._others.messages)

@@ -6,6 +6,7 @@ import errno
 import sqlite3
 import subprocess
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -15,16 +16,18 @@ import pytest
 from edge.app import compose_agent
 from edge.config import EdgeConfig
 from edge.data_folder import DataFolder
-from edge.journal.spool import Journaled
+from edge.journal.spool import Journaled, Spool
 from edge.sources import open_source
 from edge.warm_up import compile_trackers
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
-from shared.channels import parse_key
+from shared.channels import EVENT, alive_key, parse_key
 from shared.codec import decode
 from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
-from tests.hanging_disk import disk_that_can_hang, freeze, thaw
+from tests.hanging_disk import disk_that_can_hang, freeze, frozen, thaw
 from tests.waiting import until
+
+ENDING_S = 15.0  # of the 20 s after which its service kills it
 
 
 class Station:
@@ -33,7 +36,10 @@ class Station:
     def __init__(self) -> None:
         self.router = MemoryRouter()
         self.messages: list[Message] = []
-        self.router.attach_station().subscribe("muster/v1/u1/**", self._take)
+        self.is_alive = False
+        bus = self.router.attach_station()
+        bus.subscribe("muster/v1/u1/**", self._take)
+        bus.watch_alive(alive_key("u1"), self._note_alive)
 
     def open_bus(self) -> Bus:
         return self.router.attach_unit()
@@ -43,6 +49,16 @@ class Station:
 
     def why_no_link(self) -> str:
         return "nobody is there"
+
+    def how_it_stopped(self) -> str:
+        return next(
+            message.detail
+            for message in reversed(self.messages)
+            if isinstance(message, UnitEvent) and message.kind is EventKind.STOPPED
+        )
+
+    def _note_alive(self, key: str, is_alive: bool) -> None:
+        self.is_alive = is_alive
 
     def _take(self, key: str, payload: bytes) -> None:
         self.messages.append(decode(parse_key(key)[1], payload))
@@ -76,6 +92,14 @@ class Running:
         self._thread = threading.Thread(target=self.agent.run, args=(self._stop,))
         self._thread.start()
         until(lambda: self.station.count(Position) > 5)
+
+    def told_to_stop(self) -> None:
+        self._stop.set()
+
+    def ends_within(self, seconds: float) -> bool:
+        self._stop.set()
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
 
     def end(self) -> None:
         self._stop.set()
@@ -242,6 +266,39 @@ def test_a_unit_whose_disk_hangs_is_heard(freezing_disk: Path) -> None:
         with suppress(subprocess.CalledProcessError):
             thaw(freezing_disk)
         running.end()
+
+
+def test_a_unit_whose_disk_hangs_stops_when_it_is_told_to(
+    freezing_disk: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its service would kill it in the end, and the station would never hear that it was meant."""
+    running = Running(freezing_disk)
+    with frozen(freezing_disk):
+        until(running.station.faults)
+        assert running.ends_within(ENDING_S)
+        assert running.station.how_it_stopped() == "told to stop"
+        assert not running.station.is_alive
+    told = [record.getMessage() for record in caplog.records]
+    assert any("messages are not kept" in one for one in told)
+
+
+def test_what_waits_at_the_end_for_a_disk_that_comes_back_is_kept(freezing_disk: Path) -> None:
+    running = Running(freezing_disk)
+    with frozen(freezing_disk):
+        time.sleep(1.5)
+        running.told_to_stop()
+        time.sleep(1.0)
+    assert running.ends_within(ENDING_S)
+    spool = Spool(freezing_disk / "u1" / "journal.sqlite", lambda: 1, 0, 10**9)
+    try:
+        (boot,) = spool.boots()
+        kept = list(spool.read(boot.boot_id, 1, boot.last_seq))
+    finally:
+        spool.close()
+    assert [entry.seq for entry in kept] == list(range(1, len(kept) + 1))
+    last = decode(EVENT, kept[-1].payload)
+    assert isinstance(last, UnitEvent)
+    assert last.kind is EventKind.STOPPED
 
 
 def assert_told_and_made_good(running: Running, mend: Callable[[], object]) -> None:

@@ -303,6 +303,34 @@ def how_it_stopped(data: DataFolder) -> str:
     return event.detail
 
 
+def test_an_answer_that_hangs_with_the_disk_keeps_no_link_from_its_end(station, monkeypatch):
+    monkeypatch.setattr("edge.link._CLOSING_S", 0.2)
+    asked, thawed = threading.Event(), threading.Event()
+
+    def hangs(*_: object) -> Iterator[bytes]:
+        asked.set()
+        thawed.wait(PATIENCE_S)
+        yield b""
+
+    served = [("muster/v1/u1/journal/**", hangs)]
+    link = Link("u1", OtherEnd(station.router.attach_unit), lambda *_: None, served)
+    until(lambda: station.alive == [True])
+    question = "muster/v1/u1/journal/index"
+    asking = threading.Thread(target=lambda: list(station.bus.query(question, b"", 1.0)))
+    asking.start()
+    asked.wait(PATIENCE_S)
+    closing = threading.Thread(target=link.close)
+    closing.start()
+    closing.join(PATIENCE_S / 2)
+    try:
+        assert not closing.is_alive()
+        assert station.alive == [True, False]
+    finally:
+        thawed.set()
+        asking.join()
+        closing.join()
+
+
 def test_publishing_while_the_link_closes_is_no_error(station):
     failures: list[BaseException] = []
     stop = threading.Event()

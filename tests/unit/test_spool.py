@@ -5,7 +5,9 @@ from __future__ import annotations
 import itertools
 import shutil
 import sqlite3
+from collections.abc import Sequence
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import pytest
@@ -18,6 +20,7 @@ from edge.journal.spool import Journaled, Spool, open_spool
 from shared.channels import EVENT, IMU, POSITION, STATUS, Channel
 from shared.errors import StoreError
 from tests.spoiled_journal import spoil_page
+from tests.waiting import PATIENCE_S
 
 MB = 1_000_000
 PROMISING = ("journal_mode", "synchronous")
@@ -462,3 +465,31 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path):
     with pytest.raises(StoreError, match="cannot be used"):
         open_spool(tmp_path / "file" / "journal.sqlite", itertools.count(5).__next__, 77, MB)
     assert [one.name for one in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_disk_that_hangs_while_it_writes_keeps_no_question_waiting(tmp_path, monkeypatch):
+    """The station's next one is about an alert; and whoever ends the unit waits for nobody."""
+    monkeypatch.setattr(spool_module, "_PATIENCE_S", 0.01)
+    monkeypatch.setattr(spool_module, "_CLOSING_S", 0.01)
+    spool = spool_at(tmp_path)
+    spool.append([entry(1), entry(2)])
+    hangs, answers = Event(), Event()
+    insert = spool._insert
+
+    def hanging(messages: Sequence[Journaled]) -> None:
+        hangs.set()
+        answers.wait(PATIENCE_S)
+        insert(messages)
+
+    monkeypatch.setattr(spool, "_insert", hanging)
+    writing = Thread(target=spool.append, args=([entry(3)],))
+    writing.start()
+    hangs.wait(PATIENCE_S)
+    with pytest.raises(StoreError, match="does not answer"):
+        spool.acknowledge(spool.boot_id, 1)
+    assert seqs(spool, spool.boot_id) == [1, 2]
+    spool.close()
+    assert writing.is_alive()
+    answers.set()
+    writing.join()
+    assert seqs(spool, spool.boot_id) == [1, 2, 3]
