@@ -317,7 +317,9 @@ def overdue() -> wire.Snapshot:
     missed = msgspec.structs.replace(missed, level="overdue")
     duty = units[0].duty
     assert duty is not None
-    late = msgspec.structs.replace(duty, due_ms=NOW_MS - 9000)
+    late = msgspec.structs.replace(
+        duty, checked_in_ms=NOW_MS - 20 * MINUTE_MS, due_ms=NOW_MS - 9000
+    )
     units[0] = with_alarms(units[0], missed, duty=late)
     health = msgspec.structs.replace(long_names().health, problems=(ALONE, "b"))
     return msgspec.structs.replace(picture(units, missed), health=health)

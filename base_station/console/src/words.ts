@@ -111,7 +111,8 @@ const ACTIVITIES: Record<string, string> = {
   falling: "Falling",
 };
 
-const SAID_MOTIONLESS_S = 10;
+/** Less is no stillness that anybody would speak of. */
+export const SAID_MOTIONLESS_S = 10;
 
 /** What the wearer does; stillness says for how long. */
 export function activityOf(unit: UnitView): string {

@@ -3,6 +3,7 @@ import { attempt, isPast, mayAct } from "../sessions";
 import { find } from "../view";
 import * as api from "../api";
 import { handedTo, sinceMs } from "../live/alarms";
+import { figureNow } from "../live/figureNow";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { duration } from "../words";
@@ -40,6 +41,9 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
   const taken = alarm.state === "acknowledged";
   const unit = picture.unit(alarm.unit_id);
   const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
+  const nowMs = picture.nowMs.value;
+  const figure =
+    unit === undefined ? "" : figureNow(alarm, unit.value, nowMs, picture.silentMs.value > 0);
   return (
     <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
@@ -55,7 +59,8 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
         {handed !== "" && ` (${handed})`}
       </button>
       <span class="since" aria-live="off">
-        {duration(picture.nowMs.value - sinceMs(alarm))} ago
+        {duration(nowMs - sinceMs(alarm))} ago{" "}
+        {figure !== "" && <strong>{figure}</strong>}
       </span>
       <State words={stateOf(alarm, mayAct.value)} />
       {mayAct.value && <AlarmAction alarm={alarm} place={place} />}
