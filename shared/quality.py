@@ -24,5 +24,24 @@ class Reason(IntFlag):
     ACCEL_SATURATED = 8
     SAMPLE_GAP = 16
     BAD_SAMPLES = 32  # not finite, stuck or out of order: left out
-    MAG_DISTURBED = 64
     UNCERTAIN = 128  # stated standard deviation past what a commander can use
+    UNSETTLED = 256  # no rest has shown the gyroscope's bias yet, and the heading suffers
+
+
+NOT_OF_STEPS = Reason.UNCERTAIN | Reason.UNSETTLED  # nothing against a path's last steps
+
+_IN_WORDS = {
+    Reason.ALIGNING: "which way is down is not known yet: stand still",
+    Reason.NO_STANCE: "no footfall felt",
+    Reason.GYRO_SATURATED: "turned faster than it measures",
+    Reason.ACCEL_SATURATED: "struck harder than it measures",
+    Reason.SAMPLE_GAP: "samples missing",
+    Reason.BAD_SAMPLES: "samples unusable",
+    Reason.UNCERTAIN: "a long way from its start",
+    Reason.UNSETTLED: "heading not settled: stand still for five seconds",
+}
+
+
+def in_words(reasons: Reason) -> str:
+    """For a person, and what to do where anything helps."""
+    return ", ".join(_IN_WORDS[reason] for reason in reasons) or "it gives no reason"

@@ -10,7 +10,7 @@ from base_station.live_state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
 from shared.messages import Message
-from shared.quality import Quality, Reason
+from shared.quality import NOT_OF_STEPS, Quality, in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +38,7 @@ class TrackerDegraded:
             "lost" if lost else "degraded",
             SOON,
             f"The tracker of {unit.name}'s unit {'is lost' if lost else 'is unsure'}"
-            f" ({in_words(position.reasons & ~Reason.UNCERTAIN)})",
+            f" ({in_words(position.reasons & ~NOT_OF_STEPS)})",
             seen_ns=unit.position_ns,
             onset_ns=unit.degraded_since_ns,
         )
-
-
-def in_words(reasons: Reason) -> str:
-    """A tracker's reasons for a person."""
-    return ", ".join(
-        reason.name.lower().replace("_", " ") for reason in reasons if reason.name
-    ) or ("it gives no reason")

@@ -123,8 +123,8 @@ def _within_m(fused: FusedPosition) -> float:
 
 
 def _cause_of(reason: str) -> str:
-    """A fuser may say how far; that is one cause."""
-    return "place only roughly known" if reason.startswith("within ") else reason
+    """A fuser may say how far, and why or what to do behind a colon; that is one cause."""
+    return "place only roughly known" if reason.startswith("within ") else reason.partition(":")[0]
 
 
 def _largest_var_m2(fused: FusedPosition) -> float:

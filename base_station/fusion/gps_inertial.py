@@ -39,7 +39,6 @@ from base_station.site.roaming import RADII_95, roamed_m
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
-from shared.quality import Quality
 
 INSIDE_NS = 10 * NS_PER_S  # without a fix for as long: inside, where no plan tells
 
@@ -212,10 +211,9 @@ class GpsInertialFuser:
     ) -> Estimate:
         """``height`` with its variance."""
         memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
-        tracker = memory.last.path_quality if memory.last is not None else Quality.GOOD
         split = self._horizontal.is_split
         quality, reason = quality_of(
-            self._kind, placed, tracker, assumed=memory.assumed, split=split
+            self._kind, placed, memory.last, assumed=memory.assumed, split=split
         )
         return Estimate(  # by place: every position comes through here
             t_mono_ns,

@@ -6,19 +6,21 @@ import math
 
 from base_station.fusion.kernels import Placed
 from base_station.fusion.parameters import Parameters
-from shared.quality import Quality
+from shared.messages import Position
+from shared.quality import NOT_OF_STEPS, Quality, Reason, in_words
 
 
 def quality_of(
-    kind: Parameters, placed: Placed, tracker: Quality, *, assumed: bool, split: bool
+    kind: Parameters, placed: Placed, last: Position | None, *, assumed: bool, split: bool
 ) -> tuple[Quality, str]:
     """Quality and the first reason against it.
 
-    ``tracker``: as the unit says of its own path; ``assumed``: nothing ties the own frame to the
-    incident frame; ``split``: walls leave more than one place open.
+    ``last``: the unit's own position; ``assumed``: nothing ties the own frame to the incident
+    frame; ``split``: walls leave more than one place open.
     """
+    tracker = Quality.GOOD if last is None else last.path_quality
     if tracker is Quality.LOST:
-        return Quality.LOST, "the unit's tracker is lost"
+        return Quality.LOST, f"the unit's tracker is lost{_why(last)}"
     std_m, reason = math.hypot(placed.std_north_m, placed.std_east_m), ""
     if std_m > kind.lost_m and not assumed:
         return Quality.LOST, f"within {2.0 * std_m:.0f} m"
@@ -31,5 +33,12 @@ def quality_of(
     elif std_m > kind.unsure_m:
         reason = f"within {2.0 * std_m:.0f} m"
     elif tracker is Quality.DEGRADED:
-        reason = "the unit's tracker is unsure"
+        reason = f"the unit's tracker is unsure{_why(last)}"
+    elif last is not None and last.reasons & Reason.UNSETTLED:
+        reason = in_words(Reason.UNSETTLED)
     return (Quality.DEGRADED, reason) if reason else (Quality.GOOD, "")
+
+
+def _why(last: Position | None) -> str:
+    reasons = Reason.NONE if last is None else last.reasons & ~NOT_OF_STEPS
+    return f": {in_words(reasons)}" if reasons else ""

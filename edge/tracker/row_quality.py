@@ -18,6 +18,7 @@ from edge.tracker.state import FilterState, Progress, Ring
 ALIGNING = int(Reason.ALIGNING)
 NO_STANCE = int(Reason.NO_STANCE)
 UNCERTAIN = int(Reason.UNCERTAIN)
+UNSETTLED = int(Reason.UNSETTLED)
 GOOD = int(Quality.GOOD)
 DEGRADED = int(Quality.DEGRADED)
 LOST = int(Quality.LOST)
@@ -69,6 +70,8 @@ def judge(
     std_m = math.sqrt(max(stated_m2[0, 0], stated_m2[1, 1]))
     if std_m > config.degraded_std_m:
         reasons |= UNCERTAIN
+    if unshown_heading_variance(state) > config.settled_heading_std_rad**2:
+        reasons |= UNSETTLED
     quality = GOOD if reasons == 0 else DEGRADED
     if unseen_s > config.no_stance_lost_s or std_m > config.lost_std_m:
         quality = LOST

@@ -18,7 +18,7 @@ from shared.messages.quantise import (
     signed32,
     unsigned32,
 )
-from shared.quality import Quality, Reason
+from shared.quality import NOT_OF_STEPS, Quality, Reason
 
 
 class MagneticNorth(msgspec.Struct, frozen=True):
@@ -59,11 +59,12 @@ class Position(msgspec.Struct, frozen=True):
         """How far its last steps can be trusted.
 
         That a long way has added up to much is nothing against them; whoever ties the way to
-        places knows how sure these are.
+        places knows how sure these are.  Nor is a heading that drifts, of which the unit says how
+        much it may.
         """
-        if self.quality is Quality.GOOD or not self.reasons & Reason.UNCERTAIN:
+        if self.quality is Quality.GOOD or not self.reasons & NOT_OF_STEPS:
             return self.quality
-        others = self.reasons & ~Reason.UNCERTAIN
+        others = self.reasons & ~NOT_OF_STEPS
         if not others:
             return Quality.GOOD
         # Of what is against its steps only a stance that is missing makes a path lost.

@@ -125,6 +125,11 @@ def test_reasons_that_differ_by_a_figure_alone_are_one_cause() -> None:
     for reason in ("within 113 m", "within 40 m"):
         trust = trust_of(known(quality=Quality.LOST, quality_reason=reason), 0)
         assert (trust.reason, trust.cause) == (reason, "place only roughly known")
+    unsure = "the unit's tracker is unsure"
+    trust = trust_of(
+        known(quality=Quality.DEGRADED, quality_reason=f"{unsure}: samples missing"), 0
+    )
+    assert (trust.reason, trust.cause) == (f"{unsure}: samples missing", unsure)
 
 
 def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:

@@ -9,7 +9,7 @@ from base_station.fusion import FUSERS
 from base_station.fusion.port import Start
 from shared.messages import Header
 from shared.messages.station import SetStart
-from shared.quality import Quality, Reason
+from shared.quality import Quality, Reason, in_words
 from tests.station_script import Script
 
 U = "FF-01"
@@ -20,7 +20,7 @@ FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of w
     ("quality", "reasons", "path_quality"),
     [
         (Quality.GOOD, Reason.NONE, Quality.GOOD),
-        (Quality.GOOD, Reason.MAG_DISTURBED, Quality.GOOD),
+        (Quality.GOOD, Reason.BAD_SAMPLES, Quality.GOOD),
         (Quality.DEGRADED, Reason.UNCERTAIN, Quality.GOOD),
         (Quality.LOST, Reason.UNCERTAIN, Quality.GOOD),
         (Quality.LOST, Reason.NONE, Quality.LOST),
@@ -28,6 +28,8 @@ FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of w
         (Quality.LOST, Reason.NO_STANCE, Quality.LOST),
         (Quality.LOST, Reason.UNCERTAIN | Reason.SAMPLE_GAP, Quality.DEGRADED),
         (Quality.LOST, Reason.UNCERTAIN | Reason.NO_STANCE, Quality.LOST),
+        (Quality.DEGRADED, Reason.UNSETTLED, Quality.GOOD),
+        (Quality.DEGRADED, Reason.UNSETTLED | Reason.SAMPLE_GAP, Quality.DEGRADED),
     ],
 )
 def test_only_what_is_against_its_steps_is_against_a_path(quality, reasons, path_quality):
@@ -75,4 +77,32 @@ def test_nobody_is_alarmed_by_a_long_walk():
     script.wait(60, lambda: walk(far | Reason.NO_STANCE))
     assert (shown_before, script.fused[-1].quality) == (Quality.GOOD, Quality.LOST)
     (raised, *_) = [one for one in script.alarms if one.rule == "tracker-degraded"]
-    assert raised.text.endswith("is lost (no stance)")
+    assert raised.text.endswith("is lost (no footfall felt)")
+    assert script.fused[-1].quality_reason == "the unit's tracker is lost: no footfall felt"
+
+
+@pytest.mark.parametrize(
+    ("quality", "reasons", "words"),
+    [
+        (Quality.DEGRADED, Reason.UNSETTLED, "heading not settled: stand still for five seconds"),
+        (
+            Quality.DEGRADED,
+            Reason.SAMPLE_GAP | Reason.UNSETTLED,
+            "the unit's tracker is unsure: samples missing",
+        ),
+        (Quality.DEGRADED, Reason.NONE, "the unit's tracker is unsure"),
+    ],
+)
+def test_it_is_said_why_and_what_helps(quality, reasons, words):
+    fuser = FUSERS[0].new()
+    fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+    fuser.advance(said.position(Header(U, 1, 1, 0), quality=quality, reasons=reasons))
+    estimate = fuser.estimate()
+    assert estimate is not None
+    assert (estimate.quality, estimate.quality_reason) == (Quality.DEGRADED, words)
+
+
+def test_every_reason_has_its_words():
+    for reason in Reason:
+        if reason:
+            assert len(in_words(reason)) > 5

@@ -161,8 +161,8 @@ def test_while_two_places_are_open_it_says_so_and_where() -> None:
 
 def test_two_places_are_a_reason_not_to_trust_one() -> None:
     placed = Placed(0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.01)
-    sure = quality_of(Parameters(), placed, Quality.GOOD, assumed=False, split=False)
-    split = quality_of(Parameters(), placed, Quality.GOOD, assumed=False, split=True)
+    sure = quality_of(Parameters(), placed, None, assumed=False, split=False)
+    split = quality_of(Parameters(), placed, None, assumed=False, split=True)
     assert sure == (Quality.GOOD, "")
     assert split == (Quality.DEGRADED, "walls leave more than one place open")
 
