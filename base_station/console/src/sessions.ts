@@ -1,5 +1,5 @@
 /** Who is logged in, what is live, and which replay is watched. */
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
 import { ApiError, UNREACHABLE } from "./call";
 import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
@@ -7,6 +7,7 @@ import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
 import { keepBaseMap } from "./plan/baseMap";
+import { putDown } from "./plan/tools";
 import { soundBlocked, soundOn } from "./sound";
 
 export interface Replay {
@@ -16,6 +17,8 @@ export interface Replay {
 }
 
 export const user = signal<api.Me | null>(null);
+/** The station has ended this login: what was being done waits, unseen, for the same person. */
+export const waiting = signal(false);
 export const live = signal<Session | null>(null);
 export const replay = signal<Replay | null>(null);
 
@@ -52,9 +55,14 @@ export async function resume(): Promise<void> {
 }
 
 export function begin(me: api.Me): void {
-  user.value = me;
-  if (live.value !== null) return;
-  live.value = new Session(api.LIVE_PATH, loginEnded);
+  if (user.peek()?.username !== me.username) forget();
+  batch(() => {
+    user.value = me;
+    waiting.value = false;
+    if (live.value === null) live.value = new Session(api.LIVE_PATH, loginEnded);
+    else live.value.open();
+  });
+  if (live.value === null) return;
   const stops = [watchOver(live.value, (url) => location.assign(url)), keepBaseMap()];
   stopWatching = () => stops.forEach((stop) => stop());
 }
@@ -63,8 +71,8 @@ let stopWatching: () => void = () => undefined;
 
 /** The station lets nobody look on any more; without a word it would look like a fault. */
 function loginEnded(): void {
-  forget();
-  notice.value = "This login has ended. Log in again to see what is live.";
+  wait();
+  notice.value = "This login has ended. Log in again: what you were doing is still there.";
 }
 
 export async function leave(): Promise<void> {
@@ -97,20 +105,28 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
   try {
     return await work;
   } catch (error) {
-    if (error instanceof ApiError && error.status === 401) forget();
+    if (error instanceof ApiError && error.status === 401) wait();
     notice.value = error instanceof Error ? error.message : String(error);
     return null;
   }
 }
 
-/** Back to the login form: the station knows nobody here any more. */
-function forget(): void {
+/** Behind the login form, until the same person is back: the station knows nobody here any more. */
+function wait(): void {
   stopReplay();
   stopWatching();
   live.peek()?.close();
+  waiting.value = user.peek() !== null;
+}
+
+/** Nothing stays of whoever was here. */
+function forget(): void {
+  wait();
   live.value = null;
   replay.value = null;
   user.value = null;
+  waiting.value = false;
+  putDown();
   reset();
 }
 

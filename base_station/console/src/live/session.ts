@@ -12,31 +12,42 @@ export class Session {
   readonly picture = new Picture();
   private readonly clock = new StationClock();
   private readonly local = new LocalClock();
-  private readonly connection: Connection;
-  private readonly timer: number;
+  private connection: Connection | null = null;
+  private timer = 0;
   private state: State | null = null;
   private asked = false;
 
   /** `onRefused`: the station does not want to show this picture (any more). */
-  constructor(path: string, onRefused: (code: number) => void) {
-    this.connection = new Connection(socketUrl(path), {
+  constructor(
+    private readonly path: string,
+    private readonly onRefused: (code: number) => void,
+  ) {
+    this.open();
+  }
+
+  /** Also again, once it was closed: until the station is heard, nothing of the picture is now. */
+  open(): void {
+    this.close();
+    this.picture.link.value = { kind: "connecting" };
+    this.connection = new Connection(socketUrl(this.path), {
       message: (text) => this.hear(JSON.parse(text) as Message),
       up: () => undefined, // up means a picture: see hear
       down: () => this.lose(),
-      refused: onRefused,
+      refused: this.onRefused,
     });
     this.timer = window.setInterval(() => this.tick(), CLOCK_STEP_MS);
   }
 
   close(): void {
     window.clearInterval(this.timer);
-    this.connection.close();
+    this.connection?.close();
+    this.asked = false;
   }
 
   private hear(message: Message): void {
     const { state, missed } = apply(this.state, message);
     if (missed) {
-      if (!this.asked) this.connection.askForSnapshot();
+      if (!this.asked) this.connection?.askForSnapshot();
       this.asked = true;
       return;
     }

@@ -1,5 +1,6 @@
-import { useEffect } from "preact/hooks";
-import { isPast, live, picture, replay, user } from "../sessions";
+import { useEffect, useLayoutEffect } from "preact/hooks";
+import { isPast, live, picture, replay, user, waiting } from "../sessions";
+import type { Picture } from "../live/picture";
 import { sound } from "../sound";
 import { entitle } from "../title";
 import { dialog, half } from "../view";
@@ -18,14 +19,29 @@ import { Sending } from "./Waiting";
 
 export function App() {
   useAttention();
+  useWaiting();
   if (user.value === null) return <Login />;
   const shown = picture.value;
   if (shown === null) return null;
-  const kind = isPast.value ? "replay" : "live";
-  const stopped = shown.link.value.kind === "down";
-  const stored = (shown.health.value?.reading ?? null) !== null;
   return (
-    <div class={`console ${kind} ${stopped ? "stopped" : ""} ${stopped || stored ? "not-now" : ""}`}>
+    <>
+      <Console shown={shown} />
+      {waiting.value && <Login />}
+    </>
+  );
+}
+
+/** Unseen behind the login form once the login has ended, with all that was being written. */
+function Console({ shown }: { shown: Picture }) {
+  const kind = isPast.value ? "replay" : "live";
+  const link = shown.link.value.kind;
+  const stored = (shown.health.value?.reading ?? null) !== null;
+  const notNow = stored || link === "down" || (link === "connecting" && shown.ready.value);
+  return (
+    <div
+      class={`console ${kind} ${link === "down" ? "stopped" : ""} ${notNow ? "not-now" : ""}`}
+      hidden={waiting.value}
+    >
       <LinkBanner picture={shown} />
       <StandbyBar picture={shown} />
       {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}
@@ -51,10 +67,24 @@ export function App() {
 
 /** What reaches who is looking elsewhere: sounds, and the page's title. */
 function useAttention(): void {
-  const watched = live.value?.picture;
+  const watched = waiting.value ? undefined : live.value?.picture;
   useEffect(() => {
     if (watched === undefined) return undefined;
     const ends = [sound(watched), entitle(watched)];
     return () => ends.forEach((end) => end());
   }, [watched]);
+}
+
+/** Nothing lies over the login form; who comes back goes on where the login ended. */
+function useWaiting(): void {
+  useLayoutEffect(() => {
+    if (!waiting.value) return undefined;
+    const held = document.activeElement; // the login form takes it later
+    const dialogs = [...document.querySelectorAll<HTMLDialogElement>("dialog[open]")];
+    dialogs.forEach((one) => one.close());
+    return () => {
+      dialogs.filter((one) => one.isConnected).forEach((one) => one.showModal());
+      if (held instanceof HTMLElement) held.focus();
+    };
+  }, [waiting.value]);
 }

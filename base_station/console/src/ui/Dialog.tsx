@@ -1,5 +1,6 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { waiting } from "../sessions";
 import { dialog } from "../view";
 import { LinkLost } from "./LinkBanner";
 import { Notice } from "./Notice";
@@ -21,7 +22,9 @@ export function Dialog({ title, wide = false, children }: Props) {
       ref={element}
       class={wide ? "wide" : ""}
       aria-labelledby="dialog-title"
-      onClose={() => (dialog.value = null)}
+      onClose={() => {
+        if (!waiting.peek()) dialog.value = null; // else it is opened again after the login
+      }}
     >
       <header>
         <h2 id="dialog-title">{title}</h2>

@@ -1,6 +1,6 @@
 import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect } from "preact/hooks";
-import { mayAct } from "../sessions";
+import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { dialog } from "../view";
 import { putDown, toggle, tool, type Tool } from "../plan/tools";
@@ -68,7 +68,8 @@ export function ToolPanel({ picture }: { picture: Picture }) {
     if (now === null) return undefined;
     if (!held) putDown(); // what it was for is gone, or nobody may do it now: it must take no clicks
     const leave = (event: KeyboardEvent) => {
-      if (event.key === "Escape" && dialog.peek() === null) putDown(); // else it ends the dialog
+      if (event.key !== "Escape" || waiting.peek()) return;
+      if (dialog.peek() === null) putDown(); // else it ends the dialog
     };
     document.addEventListener("keydown", leave);
     return () => document.removeEventListener("keydown", leave);

@@ -1,0 +1,121 @@
+"""A login that ends: what was being written waits for the same person, and for nobody else."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e import scenes
+from tests.e2e.looks import flaws
+from tests.e2e.stage import ANSWERS, Stage
+
+CHIEF = {"username": "chief", "role": "administrator"}
+ENDED = "This login has ended"
+
+
+def answers(username: str = "chief") -> dict[str, object]:
+    return {**ANSWERS, "POST /login": {**CHIEF, "username": username}}
+
+
+def log_in(page: Page, username: str = "chief") -> None:
+    page.get_by_label("User").fill(username)
+    page.get_by_label("Password").fill("any")
+    page.get_by_role("button", name="Log in").click()
+    expect(people(page)).to_be_visible()
+
+
+def people(page: Page) -> Locator:
+    return page.get_by_role("region", name="People")
+
+
+def write_a_message(page: Page) -> Locator:
+    page.get_by_role("group", name="Commands").get_by_role("button", name="Message").click()
+    text = page.get_by_role("dialog").get_by_label("Message", exact=True)
+    text.press_sequentially("Leave by the north stairs")
+    return text
+
+
+def test_a_message_that_was_being_written_is_there_after_the_login(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute(), answers=answers())
+    text = write_a_message(page)
+    station.end_logins()
+    expect(page.get_by_role("status")).to_contain_text(ENDED)
+    expect(page.get_by_role("dialog")).to_be_hidden()
+    expect(people(page)).to_be_hidden()
+    expect(page.get_by_label("User")).to_be_focused()
+    page.keyboard.press("Escape")
+    log_in(page)
+    expect(text).to_have_value("Leave by the north stairs")
+    expect(text).to_be_focused()
+    page.keyboard.type(" now")
+    page.get_by_role("dialog").get_by_role("button", name="Send").click()
+    assert station.changes()[-1] == "/commands"
+
+
+def test_what_is_live_goes_on_after_the_login(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute(), answers=answers())
+    station.end_logins()
+    log_in(page)
+    expect(page.get_by_test_id("link")).to_have_text("Connected")
+    expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
+    station.change(alarms=tuple(map(scenes.taken, station.picture.alarms)))
+    alarms = page.get_by_role("region", name="Open alarms")
+    expect(alarms.get_by_role("button", name="Resolve")).to_have_count(4)
+    assert flaws(page) == []
+
+
+def test_a_press_that_meets_an_ended_login_loses_nothing(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), answers=answers())
+    text = write_a_message(page)
+    page.route(
+        "**/api/v1/commands",
+        lambda route: route.fulfill(status=401, json={"detail": "log in first"}),
+    )
+    page.get_by_role("dialog").get_by_role("button", name="Send").click()
+    expect(page.get_by_role("status")).to_contain_text("log in first")
+    log_in(page)
+    expect(text).to_have_value("Leave by the north stairs")
+
+
+def test_a_pin_that_was_being_set_is_there_after_the_login(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute(), answers=answers())
+    card = page.locator(".card").first
+    card.get_by_role("button").first.click()
+    card.get_by_role("button", name="Pin on the plan").click()
+    panel = page.get_by_role("form", name="Pin: Jonas Bergman")
+    page.locator(".map").click(position={"x": 150, "y": 120})
+    expect(panel.get_by_label("North, m")).not_to_have_value("")
+    north = panel.get_by_label("North, m").input_value()
+    panel.get_by_label("Note").fill("by the lift")
+    station.end_logins()
+    expect(page.get_by_role("status")).to_contain_text(ENDED)
+    page.keyboard.press("Escape")
+    log_in(page)
+    expect(panel.get_by_label("Note")).to_have_value("by the lift")
+    expect(panel.get_by_label("North, m")).to_have_value(north)
+    expect(panel.get_by_label("Note")).to_be_focused()
+
+
+def test_nobody_else_gets_what_somebody_was_writing(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute(), answers=answers("deputy"))
+    write_a_message(page)
+    station.end_logins()
+    expect(page.get_by_role("status")).to_contain_text(ENDED)
+    log_in(page, "deputy")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    page.get_by_role("group", name="Commands").get_by_role("button", name="Message").click()
+    text = page.get_by_role("dialog").get_by_label("Message", exact=True)
+    expect(text).to_have_value("")
+
+
+def test_who_logs_out_leaves_nothing(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), answers=answers())
+    page.locator(".card").first.get_by_role("button").first.click()
+    page.get_by_role("button", name="All start here").click()
+    page.get_by_role("button", name="Account").click()
+    page.get_by_role("dialog").get_by_role("button", name="Log out").click()
+    expect(page.locator(".console")).to_have_count(0)
+    log_in(page)
+    expect(page.get_by_role("form")).to_have_count(0)
+    expect(page.get_by_role("dialog")).to_have_count(0)
