@@ -11,8 +11,10 @@ from concurrent.futures import Future
 from pathlib import Path
 
 import httpx
+from fastapi import FastAPI
 from pwdlib import PasswordHash
 from pwdlib.hashers.argon2 import Argon2Hasher
+from starlette.routing import BaseRoute
 
 from base_station import once
 from base_station.accounts.principals import Role
@@ -125,6 +127,15 @@ def nobody_answers(_unit_id: str, _question: str) -> None:
     return None
 
 
+_routes: list[BaseRoute] = []
+
+
+def _routes_of(app: FastAPI) -> list[BaseRoute]:
+    if not _routes:
+        _routes.extend(app.routes)
+    return _routes
+
+
 class DeskStation:
     """The API on a fresh data folder with one user of each role, each named like the role."""
 
@@ -163,6 +174,8 @@ class DeskStation:
         self.app = create_app(
             self.services, started=lambda loop: self.hub.connect(loop, self.drive)
         )
+        # The same of every app, and know of no station: the first one finds out what each takes.
+        self.app.routes[:] = _routes_of(self.app)
         for role in Role:
             self.services.accounts.add_user(role.word, PASSWORD, role)
 
