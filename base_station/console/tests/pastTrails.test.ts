@@ -6,6 +6,7 @@ import type { IncidentView } from "../src/wire";
 
 interface Asked {
   incidentId: string;
+  kind: string;
   answer: (unitId: string) => Promise<void>;
 }
 
@@ -13,10 +14,11 @@ const asked: Asked[] = [];
 
 vi.mock("../src/sessions", () => ({ attempt: <T>(work: Promise<T>) => work }));
 vi.mock("../src/api", () => ({
-  trails: (incidentId: string) =>
+  trails: (incidentId: string, kind: string) =>
     new Promise((resolve) => {
       asked.push({
         incidentId,
+        kind,
         answer: async (unitId) => {
           resolve({ trails: [{ unit_id: unitId, points: [] }] });
           await new Promise((done) => setTimeout(done)); // what waits for it has gone on
@@ -45,6 +47,21 @@ describe("trails that are worked out", () => {
     expect(asked.map((one) => one.incidentId)).toEqual(["mill"]);
     expect(drawn()).toEqual(["mill's"]);
     end();
+  });
+
+  it("come with what was shown at the time, as far back, so that they can be compared", () => {
+    shownKinds.value = new Set(["fused", "raw", "smoothed"]);
+    const end = follow("mill");
+    expect(asked.map((one) => one.kind)).toEqual(["fused", "raw", "smoothed"]);
+    shownKinds.value = new Set(["raw", "smoothed"]);
+    expect(asked.slice(3).map((one) => one.kind)).toEqual(["raw", "smoothed"]);
+    end();
+  });
+
+  it("are not asked for where only the last minutes of what is shown are wanted", () => {
+    shownKinds.value = new Set(["fused"]);
+    follow("mill")();
+    expect(asked).toEqual([]);
   });
 
   it("are not drawn over another incident, neither those that were there nor those that come late", async () => {

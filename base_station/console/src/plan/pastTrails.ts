@@ -1,16 +1,16 @@
-/** Trails that the station works out when asked: the unit's own path, and the best known since. */
+/** Trails that the station works out when asked: the unit's own path, and the best known since; and
+ * with them what was shown, as far back. */
 import { effect, signal } from "@preact/signals";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { attempt } from "../sessions";
 import type { TrailPoint } from "../wire";
 
-/** `fused` is what the console draws anyway. */
-export type PastKind = "raw" | "smoothed";
-export type TrailKind = "fused" | PastKind;
+/** Of `fused` the console draws the last minutes anyway. */
+export type TrailKind = "fused" | "raw" | "smoothed";
 
 export interface PastTrails {
-  kind: PastKind;
+  kind: TrailKind;
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
 }
 
@@ -37,7 +37,8 @@ export function followTrails(picture: Picture): () => void {
   };
   const end = effect(() => {
     const incident = picture.incident.value;
-    const kinds = [...shownKinds.value].filter((kind) => kind !== "fused");
+    const shown = [...shownKinds.value];
+    const kinds = shown.some((kind) => kind !== "fused") ? shown : [];
     stop();
     const before = incident?.incident_id === followed ? pastTrails.peek() : [];
     followed = incident?.incident_id ?? null;
@@ -53,7 +54,7 @@ export function followTrails(picture: Picture): () => void {
   };
 }
 
-async function ask(incidentId: string, kind: PastKind): Promise<void> {
+async function ask(incidentId: string, kind: TrailKind): Promise<void> {
   loadingKinds.value = new Set([...loadingKinds.peek(), kind]);
   const answer = await attempt(api.trails(incidentId, kind));
   loadingKinds.value = new Set([...loadingKinds.peek()].filter((one) => one !== kind));

@@ -27,8 +27,8 @@ export function TrailsPanel() {
       ))}
       <p class="quiet">
         {selectedUnit.value === null
-          ? "Choose a person to compare only that person’s."
-          : "The last two are drawn for the chosen person."}
+          ? "The last five minutes. Choose a person to compare all of that person’s."
+          : "The chosen person’s, from the beginning, once another than the first is drawn."}
       </p>
       <Ends />
     </section>
