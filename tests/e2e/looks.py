@@ -30,7 +30,10 @@ _FIND = """
     }
     return { left, top, right, bottom };
   };
-  const isShown = (element) => element.checkVisibility({ visibilityProperty: true });
+  // Some is there for who comes to it by keys.
+  const isShown = (element) =>
+    element.checkVisibility({ visibilityProperty: true }) &&
+    getComputedStyle(element).clipPath !== "inset(50%)";
 
   if (document.scrollingElement.scrollWidth > innerWidth)
     found.push(`the page is ${document.scrollingElement.scrollWidth} px wide`);

@@ -7,6 +7,7 @@ import { anchorThrough, changeOf, doubtOf, type Fit, type Known } from "../plan/
 import { baseMap } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
 import type { AnchorView } from "../wire";
+import { place as inWords } from "../words";
 import { Ends } from "./Ends";
 import { MapPicker } from "./MapPicker";
 import { ReplacePlace } from "./ReplacePlace";
@@ -87,9 +88,7 @@ function Point({ name, label, place, at }: PointProps) {
     <fieldset class="place">
       <legend>
         {label}:{" "}
-        {place === undefined
-          ? "click on the plan"
-          : `${place.north_m.toFixed(1)} m north, ${place.east_m.toFixed(1)} m east`}
+        {place === undefined ? "click on the plan" : inWords(place)}
       </legend>
       <label>
         Latitude, °

@@ -3,7 +3,7 @@ import { memo } from "preact/compat";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { centring, select, selectedUnit } from "../view";
+import { centring, half, select, selectedUnit } from "../view";
 import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
@@ -53,6 +53,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
           <Activity unit={unit} picture={picture} />
         </span>
       </button>
+      {chosen && <ToPlan />}
       <OpenAlarms unit={unit} picture={picture} />
       {unit.cloned && <TwoMachines />}
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
@@ -68,6 +69,20 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
     </li>
   );
 });
+
+/** For who comes by keys: the plan, on which this person is in the middle, stands behind all others'
+ * cards.  There, Escape leads back (`PlanPanel.tsx`). */
+function ToPlan() {
+  const go = () => {
+    half.value = "plan";
+    requestAnimationFrame(() => document.querySelector<HTMLElement>(".map")?.focus());
+  };
+  return (
+    <button type="button" class="to-plan" onClick={go}>
+      To this person on the plan
+    </button>
+  );
+}
 
 /** Whoever was chosen, here, on the plan or by an alarm, is to be seen with all that can be done. */
 function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {

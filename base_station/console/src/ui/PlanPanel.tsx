@@ -1,7 +1,7 @@
 import { useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
-import { centring, notice, select, selectedUnit } from "../view";
+import { centring, half, notice, select, selectedUnit } from "../view";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { follow } from "../plan/follow";
@@ -44,6 +44,8 @@ export function PlanPanel({ picture }: { picture: Picture }) {
         tabIndex={0}
         role="application"
         aria-label="Plan of the site. The list of people says the same in words."
+        aria-description="Arrow keys move it, plus and minus zoom, Escape goes back to who is chosen in the list."
+        onKeyDown={({ key }) => key === "Escape" && tool.peek() === null && backToCard()}
       />
       <div class="zoom">
         <button type="button" aria-label="Zoom in" onClick={() => map.current?.zoom(1)}>
@@ -62,6 +64,12 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       <ToolPanel picture={picture} />
     </section>
   );
+}
+
+/** To the card that led here, or that of whoever was chosen here. */
+function backToCard(): void {
+  half.value = "people";
+  requestAnimationFrame(() => document.querySelector<HTMLElement>(".chosen .card-head")?.focus());
 }
 
 function eventsOf(picture: Picture): PlanEvents {

@@ -1,5 +1,5 @@
 import type { ComponentChildren, JSX } from "preact";
-import { useLayoutEffect } from "preact/hooks";
+import { useEffect, useLayoutEffect } from "preact/hooks";
 import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { dialog } from "../view";
@@ -78,9 +78,10 @@ export function ToolPanel({ picture }: { picture: Picture }) {
   return panel;
 }
 
-/** Keys go on in the panel, which stands far behind the button that opened it, and afterwards there. */
+/** Keys go on in the panel, which stands far behind the button that opened it, and afterwards there.
+ * A dialog that led to it has given the focus back by then (`Dialogs.tsx`). */
 function useFocus(now: Tool | null): void {
-  useLayoutEffect(() => {
+  useEffect(() => {
     const before = document.activeElement;
     const panel = document.querySelector<HTMLElement>(".tool-panel");
     if (now === null || panel === null) return undefined;
