@@ -19,11 +19,11 @@ const WALK: TrailPoint[] = Array.from({ length: (4 * TRAIL_MS) / STEP_MS }, (_, 
 ]);
 
 /** How many points each line has. */
-function drawn(chosen: string | null): number[] {
+function drawn(chosen: string | null, shown: ReadonlyMap<string, TrailPoint[]> = new Map()): number[] {
   const kinds: TrailKind[] = ["fused", "raw", "smoothed"];
   const past = kinds.map((kind) => ({ kind, trails: new Map([["a", WALK], ["b", WALK]]) }));
   const layer = new PastLayer();
-  layer.show({ past, nowMs: NOW_MS, floor: "all", chosen }, COLOURS);
+  layer.show({ past, shown, nowMs: NOW_MS, floor: "all", chosen }, COLOURS);
   const features = layer.layer.getSource()?.getFeatures() as Feature<MultiLineString>[];
   return features.map((one) => one.getGeometry()?.getCoordinates().flat().length ?? 0);
 }
@@ -33,6 +33,11 @@ describe("trails over one another", () => {
     const lengths = drawn(null);
     expect(lengths).toHaveLength(6);
     expect(new Set(lengths)).toEqual(new Set([TRAIL_MS / STEP_MS + 1]));
+  });
+
+  it("are of what was shown only what is not drawn anyway: what came late was not shown then", () => {
+    const kept = WALK.slice(600, 700);
+    expect(drawn("b", new Map([["b", kept]]))).toEqual([601, ...Array(2).fill(NOW_MS / STEP_MS + 1)]);
   });
 
   it("are of a chosen person alone, from the beginning until now", () => {

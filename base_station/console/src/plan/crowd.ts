@@ -36,12 +36,13 @@ import {
   type Side,
 } from "./names";
 import { siteCoordinate } from "./site";
-import { trailLines } from "./trail";
+import { spanMs, trailLines } from "./trail";
 
 export interface Scene {
   units: readonly UnitView[];
   alarms: ReadonlyMap<string, AlarmView>;
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
+  compared: boolean; // with others, beside them
   nowMs: number;
   silentMs: number;
   floor: FloorChoice;
@@ -161,7 +162,8 @@ function draw({ unit, position, looks, centre, figure }: Shown, name: Place | nu
   const { trail, region, mark, label } = figure;
   const { colours } = scene;
   const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
-  trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor));
+  const drawnMs = spanMs(looks.chosen, scene.compared);
+  trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor, drawnMs));
   const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
   region.getGeometry()?.setCoordinates([border]);
   mark.getGeometry()?.setCoordinates(centre);

@@ -20,6 +20,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       units: picture.allUnits(),
       alarms: picture.alarms.peek(),
       trails: shownKinds.peek().has("fused") ? picture.trails.peek() : NO_TRAILS,
+      compared: pastTrails.peek().length > 0,
       nowMs: picture.nowMs.peek(),
       silentMs: picture.silentMs.peek(),
       floor: floor.peek(),
@@ -50,12 +51,14 @@ export function follow(map: PlanMap, picture: Picture): () => void {
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
       void [picture.nowMs.value, floor.value, selectedUnit.value, shownKinds.value];
+      void pastTrails.value;
       redraw.ask();
     }),
     effect(drawPins),
     effect(() =>
       map.showPast({
         past: pastTrails.value,
+        shown: picture.trails.peek(),
         nowMs: picture.nowMs.value,
         floor: floor.value,
         chosen: selectedUnit.value,

@@ -7,30 +7,31 @@ import { Stroke, Style } from "ol/style";
 import type { FloorChoice } from "../view";
 import type { Colours } from "./colours";
 import type { PastTrails, TrailKind } from "./pastTrails";
-import { TRAIL_MS, trailLines } from "./trail";
+import type { TrailPoint } from "../wire";
+import { spanMs, trailLines } from "./trail";
 
 export interface PastScene {
   past: readonly PastTrails[];
+  /** The trails as they are drawn anyway: of what was shown, only what lies before them is missing. */
+  shown: ReadonlyMap<string, readonly TrailPoint[]>;
   nowMs: number;
   floor: FloorChoice;
-  /** The only one whose trails are drawn, from the beginning.  Null: everybody's of the last minutes;
-   * all of everybody's would hide the plan. */
-  chosen: string | null;
+  chosen: string | null; // the only one whose trails are drawn; null: everybody's
 }
 
 export class PastLayer {
   private readonly source = new VectorSource<Feature<MultiLineString>>();
   readonly layer = new VectorLayer({ source: this.source });
 
-  show({ past, nowMs, floor, chosen }: PastScene, colours: Colours): void {
+  show({ past, shown, nowMs, floor, chosen }: PastScene, colours: Colours): void {
     this.source.clear(true);
-    const spanMs = chosen === null ? TRAIL_MS : Infinity;
     for (const { kind, trails } of past) {
       const stroke = strokeOf(kind, colours);
       for (const [unitId, points] of trails) {
         if (chosen !== null && unitId !== chosen) continue;
-        const until = points.filter(([tMs]) => tMs <= nowMs);
-        const lines = trailLines(until, nowMs, floor, spanMs);
+        const endMs = kind === "fused" ? (shown.get(unitId)?.[0]?.[0] ?? nowMs) : nowMs;
+        const until = points.filter(([tMs]) => tMs <= endMs);
+        const lines = trailLines(until, nowMs, floor, spanMs(chosen !== null, true));
         const feature = new Feature(new MultiLineString(lines));
         feature.setStyle(new Style({ stroke }));
         this.source.addFeature(feature);
@@ -43,7 +44,7 @@ export class PastLayer {
 function strokeOf(kind: TrailKind, colours: Colours): Stroke {
   switch (kind) {
     case "fused":
-      return new Stroke({ color: colours.normal, width: 2.5 });
+      return new Stroke({ color: colours.chosen, width: 3.5 });
     case "raw":
       return new Stroke({ color: colours.quiet, width: 2, lineDash: [2, 5] });
     case "smoothed":

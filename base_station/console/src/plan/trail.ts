@@ -3,6 +3,11 @@ import type { FloorChoice } from "../view";
 import type { TrailPoint } from "../wire";
 
 export const TRAIL_MS = 5 * 60_000;
+/** While trails are compared, of a chosen person all of it is drawn; of everybody that would hide the
+ * plan. */
+export function spanMs(isChosen: boolean, compared: boolean): number {
+  return isChosen && compared ? Infinity : TRAIL_MS;
+}
 /** Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way. */
 const BREAK_MS = 20_000;
 

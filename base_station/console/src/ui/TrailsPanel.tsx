@@ -10,6 +10,7 @@ const KINDS: readonly [TrailKind, string][] = [
 
 /** Which trails are drawn, with the lines they are drawn in. */
 export function TrailsPanel() {
+  const ofChosen = selectedUnit.value === null ? "" : "of-chosen";
   return (
     <section class="tool-panel trails" aria-label="Trails">
       <h3>Trails</h3>
@@ -20,7 +21,7 @@ export function TrailsPanel() {
             checked={shownKinds.value.has(kind)}
             onChange={() => toggle(kind)}
           />
-          <span class={`trail-line ${kind}`} aria-hidden="true" />
+          <span class={`trail-line ${kind} ${ofChosen}`} aria-hidden="true" />
           {word}
           {loadingKinds.value.has(kind) && <small> is worked out …</small>}
         </label>
@@ -28,7 +29,7 @@ export function TrailsPanel() {
       <p class="quiet">
         {selectedUnit.value === null
           ? "The last five minutes. Choose a person to compare all of that person’s."
-          : "The chosen person’s, from the beginning, once another than the first is drawn."}
+          : "The chosen person’s from the beginning, where more than the first is drawn."}
       </p>
       <Ends />
     </section>
