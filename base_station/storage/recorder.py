@@ -15,8 +15,9 @@ from dataclasses import replace
 from pathlib import Path
 from threading import Condition, Lock, RLock, Thread
 
+from shared.channels import OPERATOR, Qos, parse_key
 from shared.clock import NS_PER_S, Clock
-from shared.errors import LogError
+from shared.errors import LogError, UnknownChannelError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     LogRecord,
@@ -39,8 +40,21 @@ _LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
 _STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, or hangs
 _HANGS_NS = 5 * NS_PER_S  # it hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
+_RECORD_BYTES = 200  # that a record takes in memory beside the bytes of its key and payload
+_ALERTS_SHARE = 1.25  # of what may wait for the disk, until alerts are refused
+_ACTIONS_SHARE = 1.5  # and what people do
 
 SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
+
+
+def _share_of(key: str) -> float:
+    try:
+        channel = parse_key(key)[1]
+    except UnknownChannelError:
+        return 1.0
+    if channel is OPERATOR:
+        return _ACTIONS_SHARE
+    return _ALERTS_SHARE if channel.qos is Qos.ALERT else 1.0
 
 
 def _ignore(_: SegmentInfo, __: str) -> None:
@@ -88,7 +102,9 @@ class Recorder:
         self._news = Condition(self._taking)
         self._queue: list[LogRecord] = []
         self._queued_bytes = 0
-        self._unwritten_bytes = 0  # that were taken from the queue, and the disk does not take
+        self._unwritten_bytes = 0  # that were taken from the queue, and the disk has not taken
+        self._written = 0
+        self._on_disk = 0
         self._flushes_asked = 0
         self._flushes_done = 0
         self._closing = False
@@ -109,11 +125,12 @@ class Recorder:
         waited for longer than two seconds, and hardly at all once it is known to.
         """
         with self._taking:  # the condition's own lock, without what a condition costs
-            if self.refuses:
+            if self.refuses and not self._has_room_for(key):
                 self._refused += 1
                 return False
             self._queue.append((t_ns, key, payload))
-            self._queued_bytes += len(payload)
+            self._queued_bytes += len(payload) + len(key) + _RECORD_BYTES
+            self._written += 1
         if urgent:
             self.flush()
         return True
@@ -181,13 +198,24 @@ class Recorder:
 
     @property
     def refuses(self) -> bool:
-        """Whether memory is full of what the disk does not take."""
-        waiting_bytes = self._queued_bytes + self._unwritten_bytes
-        return bool(self._failure) or waiting_bytes > self._waiting_max
+        """Whether memory is full of what the disk does not take.  For alerts, and for what people
+        do, of which nobody else has a copy, there is some room left then.
+        """
+        return bool(self._failure) or self._waiting_bytes > self._waiting_max
 
     @property
     def lost(self) -> int:
         return self._refused
+
+    @property
+    def written(self) -> int:
+        """Records that were taken so far."""
+        return self._written
+
+    @property
+    def on_disk(self) -> int:
+        """So many of these, the first ones, outlive a power cut."""
+        return self._on_disk
 
     @property
     def disk_free_bytes(self) -> int:
@@ -212,6 +240,15 @@ class Recorder:
         self._lock.close()
 
     @property
+    def _waiting_bytes(self) -> int:
+        return self._queued_bytes + self._unwritten_bytes
+
+    def _has_room_for(self, key: str) -> bool:
+        """Though there is none for everything."""
+        share = _share_of(key)
+        return not self._failure and self._waiting_bytes <= share * self._waiting_max
+
+    @property
     def _turn_ns(self) -> int:
         """How long the thread has been at its present turn."""
         return self._clock.monotonic_ns() - self._turned_ns
@@ -228,15 +265,16 @@ class Recorder:
                 self._news.notify_all()
 
     def _record(self) -> None:
-        last_t_ns = 0
+        last_t_ns = taken = 0
         seen_ns = looked_ns = self._clock.monotonic_ns()
         closing = False
         while not closing:
             records, flushes, ending, closing = self._take()
             now_ns = self._turned_ns = self._clock.monotonic_ns()
             for t_ns, key, payload in records:
-                self._writer.write(t_ns, key, payload)
+                self._writer.add(t_ns, key, payload)
                 last_t_ns, seen_ns = t_ns, now_ns
+            taken += len(records)
             if ending:
                 self._writer.end_segment()
                 self._tell_flushed(flushes)
@@ -246,6 +284,8 @@ class Recorder:
             else:  # log time goes on although nothing comes
                 self._writer.advance(last_t_ns + now_ns - seen_ns)
             self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
+            if self._writer.is_on_disk:
+                self._on_disk = taken
             if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
                 looked_ns = now_ns
                 with suppress(OSError):  # of a disk that fails, what is written tells
@@ -261,6 +301,7 @@ class Recorder:
                 lambda: self._flushes_asked > self._flushes_done or self._closing, _TURN_S
             )
             records, self._queue = self._queue, []
+            self._unwritten_bytes += self._queued_bytes
             self._queued_bytes = 0
             ending, self._ending = self._ending, False
             return records, self._flushes_asked, ending, self._closing

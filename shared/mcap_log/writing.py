@@ -181,15 +181,30 @@ class SegmentWriter:
     def waiting_bytes(self) -> int:
         return sum(segment.file.waiting_bytes for segment in self._segments())
 
+    @property
+    def is_on_disk(self) -> bool:
+        """Everything that was written."""
+        return self._flush_due_ns is None and self._trouble is None
+
     def current(self) -> SegmentInfo | None:
         """The segment being written."""
         return None if self._segment is None else self._segment.info(SegmentState.OPEN)
 
     def write(self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False) -> bool:
         """Append a record with log time ``t_ns``, which must not go back; False: it is lost."""
+        kept = self.add(t_ns, key, payload)
+        if kept and urgent:
+            self.flush()
+        else:
+            self.advance(t_ns)
+        return kept
+
+    def add(self, t_ns: int, key: str, payload: bytes) -> bool:
+        """As ``write``, of many records at once: call ``advance`` behind the last.  A disk that
+        takes longer than what it takes has come in would else never get to the end of them.
+        """
         if self._trouble is not None and self.waiting_bytes > self._policy.waiting_bytes_max:
             self.lost += 1
-            self.advance(t_ns)
             return False
         if self._segment is None or self._is_over(self._segment, t_ns):
             self._begin_segment(t_ns)
@@ -197,10 +212,6 @@ class SegmentWriter:
         self._segment.add(t_ns, key, payload)
         if self._flush_due_ns is None:
             self._flush_due_ns = t_ns + self._flush_every_ns
-        if urgent:
-            self.flush()
-        else:
-            self.advance(t_ns)
         return True
 
     def advance(self, t_ns: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
+import tracemalloc
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -17,7 +18,7 @@ import pytest
 from base_station.feed import LogFeed
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.recorder import LOG_FOLDER, Recorder
-from shared.channels import POSITION
+from shared.channels import EVENT, OPERATOR, POSITION
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import DataFolderInUseError
 from shared.mcap_log import (
@@ -28,6 +29,8 @@ from shared.mcap_log import (
     SegmentWriter,
     read_log,
 )
+from shared.messages import STATION_ID
+from tests.full_disk import files_of_at_most
 from tests.waiting import PATIENCE_S, until
 
 KEY = POSITION.key("anna")
@@ -65,14 +68,14 @@ def test_what_was_written_before_the_segments_were_asked_for_is_in_them(
 ) -> None:
     """Somebody else's flush is under way meanwhile; what is forgotten is looked for in them."""
     with recording(tmp_path) as recorder, ThreadPoolExecutor() as others:
-        writes, begun, go = recorder._writer.write, Event(), Event()
+        writes, begun, go = recorder._writer.add, Event(), Event()
 
         def slow(t_ns: int, key: str, payload: bytes) -> bool:
             begun.set()
             go.wait()
             return writes(t_ns, key, payload)
 
-        monkeypatch.setattr(recorder._writer, "write", slow)
+        monkeypatch.setattr(recorder._writer, "add", slow)
         recorder.write(T0_NS, KEY, b"1")
         others.submit(recorder.flush)
         begun.wait()
@@ -230,3 +233,98 @@ def test_a_disk_that_does_not_say_how_much_room_it_has_is_written_all_the_same(
         assert recorder.write(T0_NS, KEY, b"1", urgent=True)
         assert recorder.problem == ""
     assert payloads(tmp_path) == [b"1"]
+
+
+@contextmanager
+def hanging_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
+    """Until the end of ``with``; notes how often it was asked."""
+    answers, fsync, asked = Event(), os.fsync, [0]
+
+    def hang(descriptor: int) -> None:
+        asked[0] += 1
+        answers.wait(PATIENCE_S)
+        fsync(descriptor)
+
+    monkeypatch.setattr("shared.mcap_log.durable_file.os.fsync", hang)
+    try:
+        yield asked
+    finally:
+        answers.set()
+
+
+def test_what_a_slow_disk_let_wait_reaches_it_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Brought to it half a second after half a second, a disk that takes longer for each would
+    fall behind for ever, and in the end be said not to answer.
+    """
+    with recording(tmp_path) as recorder:
+        with hanging_disk(monkeypatch) as asked:
+            recorder.write(T0_NS, KEY, b"first")
+            until(lambda: asked[0] == 1)
+            for tenth in range(1, 200):
+                recorder.write(T0_NS + tenth * NS_PER_S // 10, KEY, bytes([tenth]))
+        until(lambda: recorder.on_disk == 200)
+        assert asked[0] <= 4
+
+
+def test_what_is_on_the_disk_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with recording(tmp_path) as recorder:
+        recorder.write(T0_NS, KEY, b"1", urgent=True)
+        assert (recorder.written, recorder.on_disk) == (1, 1)
+        with hanging_disk(monkeypatch) as asked:
+            recorder.write(T0_NS, KEY, b"2")
+            until(lambda: asked[0] > 0)
+            recorder.write(T0_NS, KEY, b"3")
+            assert (recorder.written, recorder.on_disk) == (3, 1)
+        with files_of_at_most(0):
+            recorder.write(T0_NS, KEY, b"4", urgent=True)
+            assert recorder.on_disk < 4
+        until(lambda: recorder.on_disk == 4)
+
+
+def fill(recorder: Recorder, key: str = KEY) -> int:
+    """Until it is refused; how many were taken."""
+    taken = 0
+    while recorder.write(T0_NS + taken, f"{key[:-1]}{key[-1]}", os.urandom(60)):
+        taken += 1
+    return taken
+
+
+def test_what_waits_for_a_disk_takes_no_more_memory_than_it_may(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of small messages most is not their bytes."""
+    bound = 4_000_000
+    policy = SegmentPolicy(waiting_bytes_max=bound)
+    recorder = Recorder(tmp_path, SystemClock(), policy)
+    with hanging_disk(monkeypatch) as asked:
+        recorder.write(T0_NS, KEY, b"")
+        until(lambda: asked[0] > 0)
+        tracemalloc.start()
+        try:
+            fill(recorder)
+            held_bytes, _ = tracemalloc.get_traced_memory()
+        finally:
+            tracemalloc.stop()
+        assert 0.5 * bound < held_bytes < 1.05 * bound
+    recorder.close()
+
+
+def test_where_memory_is_full_there_is_room_for_alerts_and_then_for_what_people_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=100_000))
+    with hanging_disk(monkeypatch) as asked:
+        recorder.write(T0_NS, KEY, b"")
+        until(lambda: asked[0] > 0)
+        keys = (KEY, EVENT.key("anna"), OPERATOR.key(STATION_ID), KEY)
+        taken = [fill(recorder, key) for key in keys]
+        assert recorder.refuses
+        assert recorder.lost == 4
+    recorder.close()
+    all_of_it, alerts, actions, more = taken
+    assert more == 0
+    assert 0.2 * all_of_it < alerts < 0.3 * all_of_it
+    assert 0.2 * all_of_it < actions < 0.3 * all_of_it
+    assert len(payloads(tmp_path)) == 1 + sum(taken)
