@@ -33,6 +33,7 @@ from base_station.db.base_maps import BaseMaps
 from base_station.db.replicated_tables import ReplicatedTables
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
+from base_station.journals.on_disk import ReportsOnDisk
 from base_station.live.drive_ports import DrivePorts
 from base_station.live.fair_share import FairShare
 from base_station.live.recovering import Watch, recovering
@@ -126,6 +127,8 @@ class _LiveStation:
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
+        feed = resources.feed
+        self._reports = ReportsOnDisk(resources.recorder, lambda: feed.late_waits)
         self._backfill = Backfill(bus, resources.feed.deliver, resources.clock, self._may_forget)
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
         self._downlink = Downlink(bus, stamper, steady)
@@ -303,7 +306,7 @@ class _LiveStation:
             self._start_again(None)
 
     def _may_forget(self) -> bool:
-        return self._side.may_forget() and not self._resources.feed.late_waits
+        return self._side.may_forget() and self._reports.has_report_before()
 
     def _act(self, by: str, action: Action) -> Future[ActionDone] | None:
         """A standby does what stands in the other's log."""
@@ -314,6 +317,7 @@ class _LiveStation:
 
     def _report(self, held: Report, in_memory: bool) -> None:
         self._side.note_report()
+        self._reports.report_comes()
         self._backfill.report(held, self._resources.recorder.lost, alerts_only=in_memory)
 
     def _forget(self, what: str) -> None:

@@ -1,0 +1,41 @@
+"""Whether what was reported to the units' journals outlives a power cut of the station."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+
+class Disk(Protocol):
+    """Where what units say is kept."""
+
+    @property
+    def written(self) -> int:
+        """Records that were taken so far."""
+        ...
+
+    @property
+    def on_disk(self) -> int:
+        """So many of these, the first ones, are on the disk."""
+        ...
+
+
+class ReportsOnDisk:
+    """``report_comes`` with each report, from one thread; any other asks."""
+
+    def __init__(self, disk: Disk, late_waits: Callable[[], bool]) -> None:
+        """``late_waits``: whether anything that was fetched may not be written yet; it counts as
+        there for whoever asks the journals.
+        """
+        self._disk = disk
+        self._late_waits = late_waits
+        self._written: tuple[int | None, int | None] = (None, None)  # at the last two reports
+
+    def report_comes(self) -> None:
+        written = None if self._late_waits() else self._disk.written
+        self._written = self._written[1], written
+
+    def has_report_before(self) -> bool:
+        """Whether all that the report before the last one told of is on the disk."""
+        written = self._written[0]
+        return written is not None and written <= self._disk.on_disk

@@ -1,0 +1,141 @@
+"""A power cut of the station at the very instant at which it tells a unit what it may forget."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from threading import Event, Thread
+
+import pytest
+
+from base_station import drive as drive_module
+from base_station.journals import unit_journal
+from base_station.journals.backfill import Backfill, Report
+from base_station.journals.on_disk import ReportsOnDisk
+from edge.journal.server import JournalServer
+from edge.journal.spool import Journaled, Spool
+from shared.channels import POSITION
+from shared.clock import NS_PER_S, SystemClock
+from shared.codec import decode, encode
+from shared.mcap_log import read_log, segment_paths
+from shared.messages import Header, Position
+from shared.messages.station import RegisterUnit
+from tests.live_station import LiveStation
+from tests.waiting import until
+
+U, BOOT = "FF-01", 0xB007
+CUTS = 4
+MakePosition = Callable[..., Position]
+
+
+class Disk:
+    """What of each file a power cut would leave: what it was asked to keep, and has kept."""
+
+    def __init__(self) -> None:
+        self._fsync = os.fsync
+        self._kept: dict[Path, int] = {}
+
+    def fsync(self, descriptor: int) -> None:
+        size = os.fstat(descriptor).st_size
+        self._fsync(descriptor)
+        self._kept[Path(f"/proc/self/fd/{descriptor}").resolve()] = size
+
+    def cut(self, log: Path, to: Path) -> None:
+        to.mkdir()
+        for path in segment_paths(log):
+            shutil.copy(path, to)
+            os.truncate(to / path.name, self._kept.get(path.resolve(), 0))
+
+
+class Station(LiveStation):
+    """Asks its unit's journal, as the real one does."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._reports = ReportsOnDisk(self.recorder, lambda: self.feed.late_waits)
+        self.backfill = Backfill(
+            self.bus, self.feed.deliver, SystemClock(), self._reports.has_report_before
+        )
+
+    def _note_report(self, report: Report, in_memory: bool) -> None:
+        self._reports.report_comes()
+        self.backfill.report(report, alerts_only=in_memory)
+
+
+class Unit:
+    """Speaks thirty times a second; every third message is lost on the air."""
+
+    def __init__(self, folder: Path, make_position: MakePosition) -> None:
+        self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
+        self._make = make_position
+        self._stop = Event()
+
+    def speak(self, station: LiveStation) -> None:
+        seq = 0
+        while not self._stop.wait(0.03):
+            seq += 1
+            said = self._make(header=Header(U, BOOT, seq, seq * NS_PER_S // 30))
+            self.spool.append([Journaled(seq, POSITION, seq, encode(said))])
+            if seq % 3:
+                station.say(said)
+
+    def close(self) -> None:
+        self._stop.set()
+
+
+def there(log: Path) -> set[int]:
+    return {
+        decode(POSITION, payload).header.seq
+        for _, key, payload in read_log(log)
+        if key.endswith(POSITION.suffix)
+    }
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reports so soon after each other that the disk has not what the first one told of."""
+    monkeypatch.setattr(drive_module, "TICK_NS", NS_PER_S // 10)
+    monkeypatch.setattr(unit_journal, "_ACKNOWLEDGE_EVERY_NS", NS_PER_S // 2)
+
+
+@pytest.fixture
+def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
+    unit = Unit(tmp_path, make_position)
+    with closing(unit.spool):
+        yield unit
+
+
+def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, hasty: None, unit: Unit
+) -> None:
+    disk, cuts = Disk(), list[tuple[int, Path]]()
+    monkeypatch.setattr("shared.mcap_log.durable_file.os.fsync", disk.fsync)
+    server = JournalServer(U, unit.spool)
+    with Station(tmp_path / "data") as station:
+
+        def replies(key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
+            if key.endswith("acknowledge"):
+                said = dict(pair.split("=") for pair in parameters.split(";"))
+                to = tmp_path / f"cut-{len(cuts)}"
+                disk.cut(station.recorder.folder, to)
+                cuts.append((int(said["to"]), to))
+            return server.replies(key, parameters, payload)
+
+        station.router.attach_unit().serve(server.key_expression, replies)
+        station.act(RegisterUnit(U, "one"))
+        station.backfill.start()
+        speaking = Thread(target=unit.speak, args=(station,))
+        speaking.start()
+        try:
+            until(lambda: len(cuts) >= CUTS)
+        finally:
+            unit.close()
+            speaking.join()
+            station.feed.close()
+            station.backfill.close()
+    assert cuts[-1][0] > 20
+    for told, log in cuts:
+        assert set(range(1, told + 1)) <= there(log)

@@ -1,0 +1,50 @@
+"""What the journals may forget is what is on the station's disk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from base_station.journals.on_disk import ReportsOnDisk
+
+
+@dataclass
+class Disk:
+    written: int = 0
+    on_disk: int = 0
+
+
+@pytest.mark.parametrize(
+    ("on_disk", "is_there"), [(0, False), (9, False), (10, True), (20, True), (30, True)]
+)
+def test_what_the_report_before_the_last_told_of_is_on_the_disk(on_disk, is_there):
+    disk = Disk()
+    reports = ReportsOnDisk(disk, lambda: False)
+    for written in (5, 10, 20):
+        disk.written = written
+        reports.report_comes()
+    disk.written, disk.on_disk = 30, on_disk
+    assert reports.has_report_before() is is_there
+
+
+def test_before_there_are_two_reports_nothing_is_known():
+    disk = Disk(5, 5)
+    reports = ReportsOnDisk(disk, lambda: False)
+    assert not reports.has_report_before()
+    reports.report_comes()
+    assert not reports.has_report_before()
+    reports.report_comes()
+    assert reports.has_report_before()
+
+
+def test_while_something_that_was_fetched_is_not_written_nothing_is_known():
+    """Whoever asks the journals counts it as there."""
+    disk, late = Disk(5, 5), {"waits": True}
+    reports = ReportsOnDisk(disk, lambda: late["waits"])
+    reports.report_comes()
+    late["waits"] = False
+    reports.report_comes()
+    assert not reports.has_report_before()
+    reports.report_comes()
+    assert reports.has_report_before()
