@@ -38,7 +38,7 @@ from shared.codec import encode
 from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.messages import STATION_ID, OperatorAction, Tick
-from shared.messages.station import Action, ForgetWearers, SendCommand
+from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
 
 TICK_NS = NS_PER_S
 DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
@@ -50,6 +50,8 @@ REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs 
 MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
 FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
+
+_OPERATOR_KEY = OPERATOR.key(STATION_ID)
 
 log = logging.getLogger(__name__)
 
@@ -216,7 +218,12 @@ class StationDrive:
                 self._inbox.append((by, action, action_id, future))
                 continue
             before = ActionDone.before(self._pipeline.state, action_id)
-            done = before or self._do(by, action, action_id)
+            try:
+                done = before or self._do(by, action, action_id)
+            except StoreError as error:
+                if future.set_running_or_notify_cancel():
+                    future.set_exception(error)
+                continue
             self._settle()
             if isinstance(action, SendCommand):
                 self._ports.say(command_book.unanswered(self._pipeline.state))
@@ -225,16 +232,29 @@ class StationDrive:
             self._due.delta_ns = 0  # who did something sees it at once
 
     def _do(self, by: str, action: Action, action_id: str = "") -> ActionDone:
-        header = self._stamper.header()
-        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
-        message = OperatorAction(header, action_id, by, action)
-        t_ns = max(header.t_utc_ns, self._not_before_ns)
-        outputs = self._write_ahead.keep_and_step(
-            t_ns, OPERATOR.key(STATION_ID), encode(message), urgent=True
-        )
+        """Raises StoreError where the log does not take it: it is not done then."""
+        message = self._said(by, action, action_id)
+        outputs = self._write_ahead.act(self._acting_ns(message), _OPERATOR_KEY, encode(message))
         self._not_before_ns = self._pipeline.state.t_ns + 1
         refused = next((output for output in outputs if isinstance(output, Refused)), None)
-        return ActionDone(action_id, self._pipeline.state.t_ns, refused, once.made_by(action))
+        t_ns, done_id = self._pipeline.state.t_ns, message.action_id
+        return ActionDone(done_id, t_ns, refused, once.made_by(action))
+
+    def _say_of_itself(self, report: ReportProblem) -> None:
+        """People are to know of it, whether or not the log takes it."""
+        message = self._said(STATION_ID, report)
+        self._write_ahead.keep_and_step(
+            self._acting_ns(message), _OPERATOR_KEY, encode(message), urgent=True
+        )
+        self._not_before_ns = self._pipeline.state.t_ns + 1
+
+    def _said(self, by: str, action: Action, action_id: str = "") -> OperatorAction:
+        header = self._stamper.header()
+        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
+        return OperatorAction(header, action_id, by, action)
+
+    def _acting_ns(self, message: OperatorAction) -> int:
+        return max(message.header.t_utc_ns, self._not_before_ns)
 
     def _tick(self) -> None:
         header = self._stamper.header()
@@ -286,7 +306,7 @@ class StationDrive:
         }
         for report in list(self._watch.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
-            self._do(STATION_ID, report)
+            self._say_of_itself(report)
 
     def _held(self) -> Report:
         state = self._pipeline.state

@@ -17,6 +17,7 @@ from base_station.past.playback import is_decision
 from base_station.pipeline import StationPipeline
 from shared.channels import ALARM, FUSED
 from shared.codec import encode
+from shared.errors import StoreError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition
 
 _DECISIONS = (FusedPosition, AlarmChange)
@@ -82,6 +83,16 @@ class WriteAhead:
         """What followed from a record."""
         return self.keep(self.event_of(t_ns, key, payload), key, payload, urgent=urgent)
 
+    def act(self, t_ns: int, key: str, payload: bytes) -> list[Output]:
+        """As ``keep_and_step``, of what somebody does: nobody else has it, and it is not done where
+        the log does not take it.  Raises StoreError then.
+        """
+        event = self.event_of(t_ns, key, payload)
+        self._urgent = True
+        if not self._log.write(event.t_ns, key, payload):
+            raise StoreError(f"this is not done, as it cannot be recorded: {self._log.problem}")
+        return self._follow(event)
+
     def event_of(self, t_ns: int, key: str, payload: bytes) -> StationEvent:
         """Station time never goes back, whatever the machine's clock does."""
         return event_of(max(t_ns, self._pipeline.state.t_ns), key, payload)
@@ -92,13 +103,9 @@ class WriteAhead:
         """What followed from an event, the bytes of which are in the log before it is stepped."""
         self._urgent = self._urgent or urgent
         kept = self._log.write(event.t_ns, key, payload)
-        outputs = self._step(event)
+        outputs = self._follow(event)
         if not kept:
             take_back(event, self._pipeline.state)
-        for output in outputs:
-            if isinstance(output, _DECISIONS):
-                self._keep_output(output)
-        self._show_building(event.t_ns)
         return outputs
 
     def settle(self) -> None:
@@ -106,6 +113,14 @@ class WriteAhead:
         if self._urgent:
             self._urgent = False
             self._log.flush()
+
+    def _follow(self, event: StationEvent) -> list[Output]:
+        outputs = self._step(event)
+        for output in outputs:
+            if isinstance(output, _DECISIONS):
+                self._keep_output(output)
+        self._show_building(event.t_ns)
+        return outputs
 
     def _step(self, event: StationEvent) -> list[Output]:
         same_time = event.t_ns == self._pipeline.state.t_ns

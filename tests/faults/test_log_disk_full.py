@@ -14,7 +14,7 @@ from base_station.storage.recorder import Recorder
 from shared.channels import POSITION, Qos, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode
-from shared.errors import LogError
+from shared.errors import LogError, StoreError
 from shared.mcap_log import (
     SegmentInfo,
     SegmentPolicy,
@@ -23,7 +23,7 @@ from shared.mcap_log import (
     rewrite_segment,
     segment_paths,
 )
-from shared.messages import Header, Position
+from shared.messages import EventKind, Header, Position, UnitEvent
 from shared.messages.station import RegisterUnit
 from shared.sequence_set import Run
 from tests.full_disk import files_of_at_most
@@ -172,6 +172,51 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
     keys = [key for _, key, _ in read_log(tmp_path / "log")]
     backfilled = keys.count(backfilled_key(unit, POSITION.suffix))
     assert keys.count(POSITION.key(unit)) + backfilled == 99
+
+
+def test_what_people_do_is_kept_where_the_log_takes_nothing_else(
+    tmp_path: Path, make_position: Callable[..., Position]
+) -> None:
+    """No unit's journal has it: it would be gone when the station starts again."""
+    with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
+        station.act(RegisterUnit("FF-01", "one"))
+        with files_of_at_most(0):
+            until_it_refuses(station)
+            lost = station.recorder.lost
+            station.act(RegisterUnit("FF-03", "of now"))
+            station.say(UnitEvent(Header("FF-01", 0xB007, 1, 1), EventKind.MAYDAY))
+            until(lambda: station.snapshot().alarms)
+            assert station.recorder.lost - lost < 10  # ticks and what is said of the log itself
+        until(lambda: not station.recorder.is_behind)
+    with LiveStation(tmp_path) as again:
+        assert again.pipeline.state.units["FF-03"].label == "of now"
+        assert any(alarm.rule == "mayday" for alarm in again.snapshot().alarms)
+
+
+def test_what_people_do_and_the_log_cannot_take_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
+        with files_of_at_most(0):
+            until_it_refuses(station)
+            with pytest.raises(StoreError, match=r"this is not done.*cannot be recorded.*disk"):
+                register_many(station)
+            shown = {unit.unit_id for unit in station.snapshot().units}
+            until(lambda: "log" in station.pipeline.state.problems)  # people hear of it
+        until(lambda: not station.recorder.is_behind)
+        station.act(RegisterUnit("FF-last", "when there is room"))
+    with LiveStation(tmp_path) as again:
+        assert {*again.pipeline.state.units} == {*shown, "FF-last"}
+
+
+def register_many(station: LiveStation) -> None:
+    for number in range(100):
+        station.act(RegisterUnit(f"FF-{number}", os.urandom(20_000).hex()))
+
+
+def until_it_refuses(station: LiveStation) -> None:
+    """Of what nobody can read, which is logged too, so much that memory is full."""
+    while not station.recorder.refuses:
+        station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
+        time.sleep(0.1)
 
 
 def test_a_segment_that_cannot_be_written_anew_leaves_the_room_to_the_log(tmp_path: Path) -> None:
