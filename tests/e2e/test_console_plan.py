@@ -180,9 +180,16 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
 
 def clicked_places(form: Locator) -> list[tuple[float, float]]:
     """North and east, as the panel says them."""
-    found = re.findall(r"(-?[\d.]+) m north, (-?[\d.]+) m east", form.text_content() or "")
+    said = form.text_content() or ""
+    found = re.findall(r"([\d.]+) m (north|south), ([\d.]+) m (east|west)", said)
     assert len(found) == 2
-    return [(float(north), float(east)) for north, east in found]
+    return [
+        (
+            float(along) * (1 if way == "north" else -1),
+            float(across) * (1 if side == "east" else -1),
+        )
+        for along, way, across, side in found
+    ]
 
 
 def fill_point(form: Locator, index: int, lat_deg: float, lon_deg: float) -> None:
