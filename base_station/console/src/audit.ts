@@ -92,5 +92,6 @@ function rounded(value: number): string {
 }
 
 function spaced(name: string): string {
+  if (name === "t") return "at";
   return name.replaceAll(/[_.]/g, " ").replace(/\bstd\b/, "±").replace(/^(.*) ±$/, "± of $1");
 }

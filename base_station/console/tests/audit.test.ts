@@ -2,6 +2,7 @@ import { describe, expect, it } from "vitest";
 import { actionWord, detailWords } from "../src/audit";
 import { dateAndTime } from "../src/words";
 
+const AT_MS = Date.UTC(2026, 10, 23, 20, 35);
 const NAMES = new Map([["26ab024f9849922c", "Elena Rossi"]]);
 
 function words(detail: object | string): string {
@@ -44,6 +45,7 @@ describe("the audit log", () => {
     ],
     [{ name: "Mill Road", par_interval_s: 0, work_limit_s: 0 }, "name: Mill Road"],
     [{ kind: 2, unit_id: "FF-01", position_rate_hz: 0 }, "PAR, FF-01"],
+    [{ unit_id: "FF-05", t_ns: 1e6 * AT_MS }, `FF-05, at ${dateAndTime(AT_MS)}`],
     [{ station: "engine-2", after_t_ns: 0, after_count: 0 }, "station: engine-2, after count 0"],
     [{ thresholds: { "heat.caution_degc": 0 } }, "heat caution 0 °C"],
     [{ unit_id: "FF-01", resting: false }, "FF-01, back to work"],

@@ -6,12 +6,20 @@ interface Props {
   label: string;
   about?: string; // what it would be done to, where the label alone could be any of several
   question: string;
+  yes?: string; // where the label is too long to be said again
   focused?: boolean; // to begin with: it comes in place of what was pressed
   onConfirm: (press: MouseEvent) => void;
 }
 
 /** A button for what cannot be taken back: the first press only asks. */
-export function ConfirmButton({ label, about = "", question, focused = false, onConfirm }: Props) {
+export function ConfirmButton({
+  label,
+  about = "",
+  question,
+  yes = `Yes, ${label.toLowerCase()}`,
+  focused = false,
+  onConfirm,
+}: Props) {
   const asked = useSignal(false);
   const button = useFocusBack(asked.value);
   useEffect(() => {
@@ -21,7 +29,7 @@ export function ConfirmButton({ label, about = "", question, focused = false, on
     return (
       <Confirm
         question={question}
-        yes={`Yes, ${label.toLowerCase()}`}
+        yes={yes}
         onYes={(press) => {
           asked.value = false;
           onConfirm(press);

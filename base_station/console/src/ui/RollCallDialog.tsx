@@ -70,8 +70,8 @@ function Crew({ crew, place, picture }: CrewProps) {
         )}
         {mayAct.value && crew.crew !== "" && crew.people.length > 1 && needy.length > 0 && (
           <ConfirmButton
-            label="All heard"
-            about={name}
+            label={`${name}: all heard`}
+            yes="Yes, all heard"
             question={`Have all answered${named(needy)}?`}
             onConfirm={steady(all)}
           />
