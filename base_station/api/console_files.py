@@ -7,9 +7,11 @@ from pathlib import Path
 
 from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse, Response
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+_PACKING = 6  # of 9: a percent larger than the smallest, in half the time
 _NOT_BUILT = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>Muster</title>
 <h1>The console has not been built</h1>
@@ -40,11 +42,18 @@ def serve_console(app: FastAPI) -> None:
             return HTMLResponse(_NOT_BUILT, 503)
 
         return
+    serve_built(app, page.parent)
+
+
+def serve_built(app: FastAPI, dist: Path) -> None:
+    """The console as it lies in that folder."""
+    page = dist / "index.html"
 
     @app.get("/", include_in_schema=False)
     def console() -> FileResponse:
         return FileResponse(page, headers={"Cache-Control": "no-cache"})
 
-    if (page.parent / "assets").is_dir():
-        app.mount("/assets", _Assets(directory=page.parent / "assets"), name="assets")
-    app.mount("/", StaticFiles(directory=page.parent), name="console")
+    if (dist / "assets").is_dir():
+        assets = GZipMiddleware(_Assets(directory=dist / "assets"), compresslevel=_PACKING)
+        app.mount("/assets", assets, name="assets")
+    app.mount("/", StaticFiles(directory=dist), name="console")
