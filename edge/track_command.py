@@ -14,11 +14,12 @@ from edge.sources.black_box import BlackBoxSource
 from edge.sources.port import Source
 from edge.sources.recording import RecordingSource
 from edge.tracker import TRACKERS, make_tracker
-from edge.tracker.port import Quality, TrackBatch
+from edge.tracker.port import Quality, Reason, TrackBatch
 from edge.tracker.rows import join_rows
 from shared.errors import RecordingError
 from shared.mcap_log import segment_paths
 from shared.out_file import whole, writable
+from shared.quality import in_words
 
 COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
 
@@ -42,11 +43,10 @@ def track(
         raise RecordingError(f"{recording} holds no inertial samples: there is nothing to track")
     write_csv(rows, out)
     step_m = rows.position_n_m[-1] - rows.position_n_m[0]
-    doubtful = float(np.mean(rows.quality != Quality.GOOD))
     Console(stderr=True).print(
         f"{_report(source)}{len(rows)} rows to {out}: {rows.distance_m[-1]:.1f} m in "
         f"{rows.steps[-1]} strides, ends {np.hypot(step_m[0], step_m[1]):.2f} m from its start "
-        f"and {-step_m[2]:+.2f} m higher; {100 * doubtful:.0f} % of the rows are not good."
+        f"and {-step_m[2]:+.2f} m higher. {_doubts(rows)}."
     )
 
 
@@ -58,6 +58,14 @@ def _is_black_box(path: Path) -> bool:
 
 def _report(source: Source) -> str:
     return f"{source.report}\n" if isinstance(source, RecordingSource) else ""
+
+
+def _doubts(rows: TrackBatch) -> str:
+    doubtful = rows.quality != Quality.GOOD
+    parts = {reason: float(np.mean(doubtful & (rows.reasons & reason > 0))) for reason in Reason}
+    worst = sorted(filter(parts.get, parts), key=parts.__getitem__, reverse=True)
+    why = ", ".join(f"{in_words(reason)} ({parts[reason]:.0%})" for reason in worst)
+    return f"{np.mean(doubtful):.0%} of the rows are not good" + (f": {why}" if why else "")
 
 
 def run_tracker(source: Source, name: str, *, quiet: bool) -> TrackBatch:

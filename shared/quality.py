@@ -15,7 +15,7 @@ class Quality(IntEnum):
 
 
 class Reason(IntFlag):
-    """Why an estimate is not ``GOOD``; the bits are those on the wire."""
+    """Why an estimate is not ``GOOD``, or no better; the bits are those on the wire."""
 
     NONE = 0
     ALIGNING = 1  # not enough stillness yet to know which way is down
@@ -37,7 +37,7 @@ _IN_WORDS = {
     Reason.ACCEL_SATURATED: "struck harder than it measures",
     Reason.SAMPLE_GAP: "samples missing",
     Reason.BAD_SAMPLES: "samples unusable",
-    Reason.UNCERTAIN: "a long way from its start",
+    Reason.UNCERTAIN: "place only roughly known",
     Reason.UNSETTLED: "heading not settled: stand still for five seconds",
 }
 

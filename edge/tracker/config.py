@@ -180,7 +180,7 @@ class EskfConfig(NamedTuple):
     degraded_std_m: float = 3.0
     lost_std_m: float = 15.0
     aligned_tilt_std_rad: float = 0.05
-    settled_heading_std_rad: float = 0.05
+    settled_heading_std_rad: float = 0.1
 
 
 _PARAMETERS = np.dtype(list(get_type_hints(EskfConfig).items()))

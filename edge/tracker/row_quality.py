@@ -70,9 +70,9 @@ def judge(
     std_m = math.sqrt(max(stated_m2[0, 0], stated_m2[1, 1]))
     if std_m > config.degraded_std_m:
         reasons |= UNCERTAIN
-    if unshown_heading_variance(state) > config.settled_heading_std_rad**2:
-        reasons |= UNSETTLED
     quality = GOOD if reasons == 0 else DEGRADED
+    if unshown_heading_variance(state) > config.settled_heading_std_rad**2:
+        reasons |= UNSETTLED  # how far off that may be is in what is stated
     if unseen_s > config.no_stance_lost_s or std_m > config.lost_std_m:
         quality = LOST
     ring[slot].reasons = reasons

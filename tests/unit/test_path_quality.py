@@ -28,7 +28,7 @@ FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of w
         (Quality.LOST, Reason.NO_STANCE, Quality.LOST),
         (Quality.LOST, Reason.UNCERTAIN | Reason.SAMPLE_GAP, Quality.DEGRADED),
         (Quality.LOST, Reason.UNCERTAIN | Reason.NO_STANCE, Quality.LOST),
-        (Quality.DEGRADED, Reason.UNSETTLED, Quality.GOOD),
+        (Quality.LOST, Reason.UNCERTAIN | Reason.UNSETTLED, Quality.GOOD),
         (Quality.DEGRADED, Reason.UNSETTLED | Reason.SAMPLE_GAP, Quality.DEGRADED),
     ],
 )
@@ -84,7 +84,7 @@ def test_nobody_is_alarmed_by_a_long_walk():
 @pytest.mark.parametrize(
     ("quality", "reasons", "words"),
     [
-        (Quality.DEGRADED, Reason.UNSETTLED, "heading not settled: stand still for five seconds"),
+        (Quality.GOOD, Reason.UNSETTLED, "heading not settled: stand still for five seconds"),
         (
             Quality.DEGRADED,
             Reason.SAMPLE_GAP | Reason.UNSETTLED,

@@ -66,6 +66,15 @@ def test_a_box_without_an_inertial_sample_is_said_to_have_none(tmp_path):
     assert not out.exists()
 
 
+def test_track_says_why_rows_are_not_good(trial, tmp_path):
+    whole = invoke(track, trial, "--out", tmp_path / "whole.csv")
+    assert "0% of the rows are not good." in " ".join(whole.split())
+    lines = (trial / "imu.csv").read_text().splitlines(keepends=True)
+    (trial / "imu.csv").write_text("".join(lines[:500] + lines[600:]))
+    holed = invoke(track, trial, "--out", tmp_path / "holed.csv")
+    assert "of the rows are not good: samples missing (" in " ".join(holed.split())
+
+
 def test_track_writes_a_line_a_sample(trial, tmp_path):
     out = tmp_path / "track.csv"
     invoke(track, trial, "--out", out)
