@@ -52,6 +52,7 @@ FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
+_HEARD_IN_ANY_CASE = (SendCommand, ReportProblem)  # an evacuation waits for no disk
 
 log = logging.getLogger(__name__)
 
@@ -232,29 +233,20 @@ class StationDrive:
             self._due.delta_ns = 0  # who did something sees it at once
 
     def _do(self, by: str, action: Action, action_id: str = "") -> ActionDone:
-        """Raises StoreError where the log does not take it: it is not done then."""
-        message = self._said(by, action, action_id)
-        outputs = self._write_ahead.act(self._acting_ns(message), _OPERATOR_KEY, encode(message))
-        self._not_before_ns = self._pipeline.state.t_ns + 1
-        refused = next((output for output in outputs if isinstance(output, Refused)), None)
-        t_ns, done_id = self._pipeline.state.t_ns, message.action_id
-        return ActionDone(done_id, t_ns, refused, once.made_by(action))
-
-    def _say_of_itself(self, report: ReportProblem) -> None:
-        """People are to know of it, whether or not the log takes it."""
-        message = self._said(STATION_ID, report)
-        self._write_ahead.keep_and_step(
-            self._acting_ns(message), _OPERATOR_KEY, encode(message), urgent=True
-        )
-        self._not_before_ns = self._pipeline.state.t_ns + 1
-
-    def _said(self, by: str, action: Action, action_id: str = "") -> OperatorAction:
+        """Raises StoreError where the log does not take it: it is not done then, but for what
+        people are to hear in any case.
+        """
         header = self._stamper.header()
         action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
-        return OperatorAction(header, action_id, by, action)
-
-    def _acting_ns(self, message: OperatorAction) -> int:
-        return max(message.header.t_utc_ns, self._not_before_ns)
+        payload = encode(OperatorAction(header, action_id, by, action))
+        t_ns = max(header.t_utc_ns, self._not_before_ns)
+        if isinstance(action, _HEARD_IN_ANY_CASE):
+            outputs = self._write_ahead.keep_and_step(t_ns, _OPERATOR_KEY, payload, urgent=True)
+        else:
+            outputs = self._write_ahead.act(t_ns, _OPERATOR_KEY, payload)
+        self._not_before_ns = self._pipeline.state.t_ns + 1
+        refused = next((output for output in outputs if isinstance(output, Refused)), None)
+        return ActionDone(action_id, self._pipeline.state.t_ns, refused, once.made_by(action))
 
     def _tick(self) -> None:
         header = self._stamper.header()
@@ -306,7 +298,7 @@ class StationDrive:
         }
         for report in list(self._watch.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
-            self._say_of_itself(report)
+            self._do(STATION_ID, report)
 
     def _held(self) -> Report:
         state = self._pipeline.state

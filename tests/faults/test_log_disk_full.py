@@ -23,8 +23,8 @@ from shared.mcap_log import (
     rewrite_segment,
     segment_paths,
 )
-from shared.messages import EventKind, Header, Position, UnitEvent
-from shared.messages.station import RegisterUnit
+from shared.messages import CommandKind, EventKind, Header, Position, UnitEvent
+from shared.messages.station import RegisterUnit, SendCommand
 from shared.sequence_set import Run
 from tests.full_disk import files_of_at_most
 from tests.live_station import LiveStation, make_pipeline
@@ -193,12 +193,14 @@ def test_what_people_do_is_kept_where_the_log_takes_nothing_else(
         assert any(alarm.rule == "mayday" for alarm in again.snapshot().alarms)
 
 
-def test_what_people_do_and_the_log_cannot_take_is_refused_in_a_sentence(tmp_path: Path) -> None:
+def test_what_people_do_and_the_log_cannot_take_is_refused_but_not_an_order(tmp_path: Path) -> None:
     with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
         with files_of_at_most(0):
             until_it_refuses(station)
             with pytest.raises(StoreError, match=r"this is not done.*cannot be recorded.*disk"):
                 register_many(station)
+            station.act(SendCommand("out", CommandKind.EVACUATE, "FF-0", "", False, "", 0.0, 600.0))
+            assert [one.command_id for one in station.snapshot().commands] == ["out"]
             shown = {unit.unit_id for unit in station.snapshot().units}
             until(lambda: "log" in station.pipeline.state.problems)  # people hear of it
         until(lambda: not station.recorder.is_behind)
