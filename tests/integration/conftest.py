@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 import pytest_asyncio
 
@@ -14,7 +15,7 @@ from base_station.storage.data_folder import DataFolder
 from shared.clock import ManualClock
 from tests.forgetting_folders import split_log
 from tests.forgetting_story import Story
-from tests.station import DeskStation
+from tests.station import ORIGIN, PASSWORD, DeskStation
 from tests.station_command import Command, Unit
 
 
@@ -23,6 +24,17 @@ def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
     station = DeskStation(tmp_path, clock)
     yield station
     station.close()
+
+
+@pytest_asyncio.fixture
+async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+    """Logged in as the commander with a cookie."""
+    async with station.client() as client:
+        client.headers["origin"] = ORIGIN
+        credentials = {"username": "commander", "password": PASSWORD}
+        answer = await client.post("/login", json=credentials)
+        assert answer.status_code == 200, answer.text
+        yield client
 
 
 @pytest_asyncio.fixture
