@@ -169,7 +169,7 @@ def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> Non
 @pytest.mark.parametrize(
     ("quality", "reasons", "level", "text"),
     [
-        (Quality.LOST, Reason.SAMPLE_GAP, "lost", "is lost (sample gap)"),
+        (Quality.LOST, Reason.SAMPLE_GAP, "lost", "is lost (samples missing)"),
         (Quality.DEGRADED, Reason.NONE, "degraded", "is unsure (it gives no reason)"),
     ],
 )
