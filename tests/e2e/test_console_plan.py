@@ -65,6 +65,9 @@ def draws_no_more(page: Page, colour: str, than: int) -> bool:
 
 
 def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
+    incident_id = answer_to(page, "incidents")[0]["incident_id"]
+    trails = f"incidents/{incident_id}/trails?kind=raw"
+    until(lambda: len(answer_to(page, trails)["trails"][0]["points"]) > 1, "somebody has walked")
     card.get_by_role("button", name=NAME).click()
     drawn(page)
     page.get_by_role("button", name="Trails").click()
