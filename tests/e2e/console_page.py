@@ -11,6 +11,7 @@ from playwright.sync_api import Locator, Page
 from tests.e2e.console_files import CONSOLE
 
 AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
+RESTS = 6  # looks in a row, a frame and 60 ms apart, between which the plan stays as large
 
 
 def menu(page: Page, name: str) -> Locator:
@@ -80,10 +81,14 @@ def on_plan(page: Page, right_px: int, down_px: int) -> tuple[float, float]:
 
 
 def drawn(page: Page) -> None:
-    """Wait until the plan stands as it will: in the size that panels leave it, however slowly."""
-    frame = "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))"
-    for _ in range(3):
+    """Wait until the plan stands as it will, however slowly: in the size that panels leave it, and
+    moved to where it is going (a quarter of a second).
+    """
+    frame = "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 60)))"
+    sizes: list[object] = []
+    while len(sizes) < RESTS or any(size != sizes[-1] for size in sizes[-RESTS:]):
         page.evaluate(frame)
+        sizes.append(page.locator(".map").bounding_box())
 
 
 def click_plan(page: Page, right_px: int, down_px: int) -> None:

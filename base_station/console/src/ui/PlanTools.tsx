@@ -1,5 +1,5 @@
 import type { ComponentChildren, JSX } from "preact";
-import { useEffect, useLayoutEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { dialog } from "../view";
@@ -79,15 +79,23 @@ export function ToolPanel({ picture }: { picture: Picture }) {
 }
 
 /** Keys go on in the panel, which stands far behind the button that opened it, and afterwards there.
- * A dialog that led to it has given the focus back by then (`Dialogs.tsx`). */
+ * A dialog that led to it gives the focus back first (`Dialogs.tsx`). */
 function useFocus(now: Tool | null): void {
-  useEffect(() => {
-    const before = document.activeElement;
+  useLayoutEffect(() => {
     const panel = document.querySelector<HTMLElement>(".tool-panel");
     if (now === null || panel === null) return undefined;
-    panel.tabIndex = -1;
-    panel.focus({ preventScroll: true });
+    let before: Element | null = null;
+    const enter = () => {
+      before = document.activeElement;
+      panel.tabIndex = -1;
+      panel.focus({ preventScroll: true });
+    };
+    const opener = document.activeElement;
+    const isInDialog = opener === document.body || Boolean(opener?.closest("dialog"));
+    const entering = isInDialog ? requestAnimationFrame(enter) : 0;
+    if (!isInDialog) enter();
     return () => {
+      cancelAnimationFrame(entering);
       const isLost = document.activeElement === document.body;
       if (isLost && before instanceof HTMLElement) before.focus({ preventScroll: true });
     };
