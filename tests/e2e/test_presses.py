@@ -28,15 +28,16 @@ def let_time_go_on(page: Page) -> None:
 
 
 def press_twice(page: Page, button: Locator, between: object) -> None:
-    """At one place, whatever has come there by then."""
+    """At one place, whatever has come there by then; what the first one sends is answered."""
     button.scroll_into_view_if_needed()
     box = button.bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    page.mouse.click(x, y)
     assert callable(between)
-    between()
-    page.mouse.click(x, y)
+    with page.expect_response(lambda answer: answer.request.method == "POST"):
+        page.mouse.click(x, y)
+        between()
+        page.mouse.click(x, y)
 
 
 def heard(one: UnitView) -> UnitView:
