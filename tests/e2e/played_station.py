@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import mimetypes
+import time
 from collections.abc import Mapping, Sequence
 from urllib.parse import parse_qs, urlsplit
 
@@ -20,6 +21,7 @@ from tests.e2e.console_files import DIST
 
 ADDRESS = "http://station.test"
 API = "/api/v1"
+CHANGES_WITHIN_S = 10.0
 
 # Of these lists a delta has only what has changed.
 _ID_OF = {"units": "unit_id", "alarms": "alarm_id", "commands": "command_id"}
@@ -48,10 +50,16 @@ class PlayedStation:
     def open(self) -> None:
         self._page.goto(ADDRESS)
 
-    def changes(self) -> list[str]:
-        """The paths of what it was asked to change so far."""
-        self._page.wait_for_timeout(100)
-        return list(self._changes)
+    def expect_changes(self, *paths: str) -> None:
+        """It is asked to change these so far, in this order, and nothing more: a press takes time.
+
+        Raises ``AssertionError`` where some have not come within ``CHANGES_WITHIN_S``.
+        """
+        until_s = time.monotonic() + CHANGES_WITHIN_S
+        while len(self._changes) < len(paths) and time.monotonic() < until_s:
+            self._page.wait_for_timeout(20)
+        self._page.wait_for_timeout(100)  # for one too many
+        assert self._changes == list(paths), self._changes
 
     def change(self, **what: object) -> None:
         """Something happens: a delta goes out."""

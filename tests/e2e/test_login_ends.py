@@ -50,7 +50,7 @@ def test_a_message_that_was_being_written_is_there_after_the_login(stage: Stage)
     expect(text).to_be_focused()
     page.keyboard.type(" now")
     page.get_by_role("dialog").get_by_role("button", name="Send").click()
-    assert station.changes()[-1] == "/commands"
+    station.expect_changes("/login", "/commands")
 
 
 def test_what_is_live_goes_on_after_the_login(stage: Stage) -> None:

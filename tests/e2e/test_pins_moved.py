@@ -87,7 +87,7 @@ def test_who_moves_the_plan_moves_no_pin_along(stage: Stage) -> None:
         page.wait_for_timeout(350)  # it is no double click
 
     draw()
-    assert station.changes() == []
+    station.expect_changes()
     panel = pin_panel(page)
     expect(panel).to_be_visible()
     for _ in range(10):  # a loaded machine has not drawn the plan yet

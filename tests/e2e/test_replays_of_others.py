@@ -20,7 +20,7 @@ def test_a_commander_sees_whose_replays_are_open_and_ends_one(stage: Stage) -> N
     assert barriers(page) == []
     assert flaws(page) == []
     confirm(row, "End replay")
-    assert station.changes() == ["/replays/r1"]
+    station.expect_changes("/replays/r1")
 
 
 def test_a_viewer_is_offered_to_end_only_the_own(stage: Stage) -> None:
