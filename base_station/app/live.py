@@ -127,8 +127,7 @@ class _LiveStation:
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
-        feed = resources.feed
-        self._reports = ReportsOnDisk(resources.recorder, lambda: feed.late_waits)
+        self._reports = ReportsOnDisk(resources.recorder)
         self._backfill = Backfill(bus, resources.feed.deliver, resources.clock, self._may_forget)
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
         self._downlink = Downlink(bus, stamper, steady)

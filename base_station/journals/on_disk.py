@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Protocol
 
 
@@ -23,17 +22,12 @@ class Disk(Protocol):
 class ReportsOnDisk:
     """``report_comes`` with each report, from one thread; any other asks."""
 
-    def __init__(self, disk: Disk, late_waits: Callable[[], bool]) -> None:
-        """``late_waits``: whether anything that was fetched may not be written yet; it counts as
-        there for whoever asks the journals.
-        """
+    def __init__(self, disk: Disk) -> None:
         self._disk = disk
-        self._late_waits = late_waits
         self._written: tuple[int | None, int | None] = (None, None)  # at the last two reports
 
     def report_comes(self) -> None:
-        written = None if self._late_waits() else self._disk.written
-        self._written = self._written[1], written
+        self._written = self._written[1], self._disk.written
 
     def has_report_before(self) -> bool:
         """Whether all that the report before the last one told of is on the disk."""

@@ -62,6 +62,7 @@ class _Boot:
     def __init__(self) -> None:
         self.held = SequenceSet()  # by the last report
         self._fetched = SequenceSet()  # or gone for ever
+        self._gone = SequenceSet()  # of these, what the journal has no more
         self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
         self._have = SequenceSet()  # held or fetched
         self._known = SequenceSet()  # held, fetched or without an alert
@@ -80,12 +81,21 @@ class _Boot:
         self._settled_to = self.newest
         self.newest = max(self.newest, runs[-1].last if runs else 0)
         if safe:
-            self.complete.append(self._have.complete_to(self.first))
+            # What was fetched may still wait to be written, and is held by a later report.
+            self.complete.append(_union(self.held, self._gone).complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
         """What the journal has of it came."""
         for one in (self._fetched, self._have, self._known):
             one.add_run(run)
+
+    def note_gone(self, run: Run, entries: tuple[JournalEntry, ...]) -> None:
+        """But for these the journal has nothing of it any more."""
+        there = SequenceSet()
+        for entry in entries:
+            there.add(entry.seq)
+        for gone in there.missing(run.first, run.last):
+            self._gone.add_run(gone)
 
     def new(self, entries: tuple[JournalEntry, ...]) -> tuple[JournalEntry, ...]:
         """Those that are not there yet."""
@@ -115,6 +125,7 @@ class _Boot:
     def start_over(self) -> None:
         """What was fetched has not all come into the log."""
         self._fetched = SequenceSet()
+        self._gone = SequenceSet()
         self._without_alert = SequenceSet()
         self._have = _union(self.held, self._fetched)
         self._known = _union(self.held, self._fetched)
@@ -214,6 +225,7 @@ class UnitJournal:
                 boot.note_fetched(Run(entry.seq, entry.seq))
         else:
             boot.note_fetched(run)
+            boot.note_gone(run, chunk.entries)
             self._note_size(chunk)
         return msgspec.structs.replace(chunk, entries=new)
 

@@ -6,18 +6,20 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from itertools import count
 from pathlib import Path
 from threading import Event, Thread
 
 import pytest
 
 from base_station import drive as drive_module
+from base_station.feed import LiveFeed
 from base_station.journals import unit_journal
 from base_station.journals.backfill import Backfill, Report
 from base_station.journals.on_disk import ReportsOnDisk
 from edge.journal.server import JournalServer
 from edge.journal.spool import Journaled, Spool
-from shared.channels import POSITION
+from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import decode, encode
 from shared.mcap_log import read_log, segment_paths
@@ -55,7 +57,7 @@ class Station(LiveStation):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
-        self._reports = ReportsOnDisk(self.recorder, lambda: self.feed.late_waits)
+        self._reports = ReportsOnDisk(self.recorder)
         self.backfill = Backfill(
             self.bus, self.feed.deliver, SystemClock(), self._reports.has_report_before
         )
@@ -139,3 +141,37 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
     assert cuts[-1][0] > 20
     for told, log in cuts:
         assert set(range(1, told + 1)) <= there(log)
+
+
+def test_while_one_units_backlog_comes_others_are_told_what_they_may_forget(
+    tmp_path: Path, hasty: None, unit: Unit, make_position: MakePosition
+) -> None:
+    server = JournalServer(U, unit.spool)
+    ending = Event()
+
+    def bring_for_long(feed: LiveFeed) -> None:
+        """The backlog of another one that was out of reach for a shift."""
+        for seq in count(1):
+            if ending.is_set():
+                return
+            said = make_position(header=Header("FF-02", BOOT, seq, seq))
+            feed.deliver(backfilled_key("FF-02", POSITION.suffix), encode(said))
+
+    with Station(tmp_path / "data") as station:
+        station.router.attach_unit().serve(server.key_expression, server.replies)
+        for unit_id in (U, "FF-02"):
+            station.act(RegisterUnit(unit_id, unit_id))
+        bringing = Thread(target=bring_for_long, args=(station.feed,))
+        bringing.start()
+        station.backfill.start()
+        speaking = Thread(target=unit.speak, args=(station,))
+        speaking.start()
+        try:
+            until(lambda: unit.spool.last_seq - unit.spool.pending > 20, "they are told", 30.0)
+        finally:
+            ending.set()
+            unit.close()
+            station.feed.close()
+            for thread in (bringing, speaking):
+                thread.join()
+            station.backfill.close()

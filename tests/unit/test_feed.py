@@ -104,7 +104,7 @@ def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None
         feed.deliver(KEY, payload)
     feed.offer(KEY, b"live 1")
     first = payloads_of(feed.take(60.0))
-    assert feed.late_waits  # no unit may forget it yet
+    assert feed.late_waits  # it is in no log yet
     feed.offer(KEY, b"live 2")
     second = payloads_of(feed.take(60.0))
     assert [first[0], second[0]] == [b"live 1", b"live 2"]
@@ -145,7 +145,7 @@ def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() ->
 
 @pytest.mark.parametrize("key", [KEY, ALERT])
 def test_what_was_delivered_waits_until_who_took_it_comes_again(key: str) -> None:
-    """It is in no log before: nobody may forget it, nor take it for brought."""
+    """It is in no log before: nobody may take it for brought."""
     feed = LiveFeed(ManualClock())
     waited = [feed.late_waits]
     feed.deliver(key, b"fetched")

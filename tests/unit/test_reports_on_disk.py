@@ -20,7 +20,7 @@ class Disk:
 )
 def test_what_the_report_before_the_last_told_of_is_on_the_disk(on_disk, is_there):
     disk = Disk()
-    reports = ReportsOnDisk(disk, lambda: False)
+    reports = ReportsOnDisk(disk)
     for written in (5, 10, 20):
         disk.written = written
         reports.report_comes()
@@ -30,20 +30,8 @@ def test_what_the_report_before_the_last_told_of_is_on_the_disk(on_disk, is_ther
 
 def test_before_there_are_two_reports_nothing_is_known():
     disk = Disk(5, 5)
-    reports = ReportsOnDisk(disk, lambda: False)
+    reports = ReportsOnDisk(disk)
     assert not reports.has_report_before()
-    reports.report_comes()
-    assert not reports.has_report_before()
-    reports.report_comes()
-    assert reports.has_report_before()
-
-
-def test_while_something_that_was_fetched_is_not_written_nothing_is_known():
-    """Whoever asks the journals counts it as there."""
-    disk, late = Disk(5, 5), {"waits": True}
-    reports = ReportsOnDisk(disk, lambda: late["waits"])
-    reports.report_comes()
-    late["waits"] = False
     reports.report_comes()
     assert not reports.has_report_before()
     reports.report_comes()

@@ -6,7 +6,7 @@ import pytest
 
 from base_station.journals.unit_journal import Held, Question, UnitJournal
 from shared.clock import NS_PER_S
-from shared.messages import JournalBoot, JournalChunk, JournalIndex
+from shared.messages import JournalBoot, JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run
 from tests.asked_journal import BOOT, answer, asked_in_turn, asked_of, indexed, journal_of, next_of
 
@@ -98,6 +98,25 @@ def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
     for number in (3, 4):
         journal.report((Held(BOOT, (Run(1, 4), Run(8, 8))),), number)
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8, "newest": 0})
+
+
+def test_what_was_fetched_is_safe_once_it_is_reported_and_no_sooner() -> None:
+    """It may wait a while to be written."""
+    journal, before = journal_of(Run(1, 10), last=12), (Held(BOOT, (Run(1, 10),)),)
+    entries = tuple(JournalEntry(number, "up/position", b"") for number in (11, 12))
+    for number in range(1, 7):
+        question = journal.next_question()
+        if question is not None and question.what == "urgent":
+            answer(journal, question, JournalChunk(BOOT, 11, 12, (), urgent_only=True))
+        elif question is not None and question.what == "range":
+            answer(journal, question, JournalChunk(BOOT, 11, 12, entries))
+        elif question is not None:
+            assert dict(question.parameters)["to"] == 10
+        journal.report(before, number)
+    for number in range(7, 10):
+        journal.report((Held(BOOT, (Run(1, 12),)),), number * NS_PER_S)
+    journal.report((Held(BOOT, (Run(1, 12),)),), 20 * NS_PER_S)
+    assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 12, "newest": 0})
 
 
 def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
