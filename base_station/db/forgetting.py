@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import msgspec
 from sqlalchemy import ColumnElement, and_, delete, or_, select, update
@@ -21,7 +22,7 @@ from base_station.db.models import (
     UnitStart,
 )
 from base_station.forgetting.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
-from base_station.forgetting.redaction import name_pattern, what_is_left
+from base_station.forgetting.redaction import is_the_programs, name_pattern, what_is_left
 from base_station.live_state import FORGOTTEN
 from shared.messages.station import DoneApart, ResolveAlarm
 
@@ -100,15 +101,44 @@ def _audit(session: Session, erasure: Erasure) -> None:
     units = name_pattern(tuple(erasure.unit_ids))
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
-        entry.detail = names.sub(FORGOTTEN, entry.detail)
+        entry.detail = _without_names(entry.detail, names)
         about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
         if about is not None:
             entry.detail = FORGOTTEN
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _RESOLVED)):
         if _is_about(entry, erasure):
-            entry.detail = names.sub(FORGOTTEN, entry.detail)
+            entry.detail = _without_names(entry.detail, names)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
         entry.detail = _apart(entry, erasure, names)
+
+
+def _without_names(detail: str, names: re.Pattern[str]) -> str:
+    """Of an action it is JSON, where a quotation mark within a name is written in another way, and
+    a field may be called like somebody.
+    """
+    try:
+        said = msgspec.json.decode(detail)
+    except msgspec.DecodeError:
+        return names.sub(FORGOTTEN, detail)
+    if not isinstance(said, dict):
+        return names.sub(FORGOTTEN, detail)
+    left = _renamed(said, names)
+    return detail if left == said else msgspec.json.encode(left).decode()
+
+
+def _renamed(value: Any, names: re.Pattern[str]) -> Any:
+    match value:
+        case str():
+            return names.sub(FORGOTTEN, value)
+        case list():
+            return [_renamed(one, names) for one in value]
+        case dict():
+            return {
+                field: one if is_the_programs(field) else _renamed(one, names)
+                for field, one in value.items()
+            }
+        case _:
+            return value
 
 
 def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
+from base_station.db.forgetting import known_names
 from base_station.db.models import Assignment, Person, Unit
 from base_station.db.pages import newest
 from base_station.db.store import Store
@@ -32,6 +33,11 @@ class Roster:
     def person(self, person_id: str) -> Person | None:
         with self._store.read() as session:
             return session.get(Person, person_id)
+
+    def names_of(self, person_id: str) -> Collection[str]:
+        """How somebody is or was called, who may be in the roster no more."""
+        with self._store.read() as session:
+            return known_names(session, person_id)
 
     def add_person(self, name: str, crew: str, role: str, once_id: str = "") -> Person:
         """``once_id`` (``base_station.once.row_id``): whoever was added with that key before is

@@ -266,10 +266,15 @@ def _instead(message: OperatorAction, actions: Any) -> list[OperatorAction]:
     ]
 
 
+def is_the_programs(field: str) -> bool:
+    """Whether what is in a field of this name is what the program goes by, and nobody's name."""
+    return field in _WORDS or field.endswith(("_id", "_ids"))
+
+
 def _rename(wire: WireMessage, names: re.Pattern[str]) -> None:
     """In every text of a message and of what is in it, but for what the program goes by."""
     for field, value in wire.ListFields():
-        if field.name in _WORDS or field.name.endswith(("_id", "_ids")):
+        if is_the_programs(field.name):
             continue
         if field.message_type is not None:
             for part in value if field.is_repeated else [value]:

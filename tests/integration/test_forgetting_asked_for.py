@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from base_station.accounts.principals import Role
+from base_station.live_state import FORGOTTEN
 from shared.clock import ManualClock
 from shared.messages import CommandKind
 from shared.messages.station import (
@@ -62,3 +63,30 @@ async def test_a_message_that_is_on_its_way_is_not_forgotten_before_it_is_there(
         assert "message" in refused.json()["detail"]
         desk.drive.submit("chief", ConfirmCommand("c1", "FF-01"))
         assert (await administrator.post(path, json={"name": ANA})).status_code == 202
+
+
+async def test_who_was_taken_off_the_roster_can_still_be_forgotten(
+    desk: DeskStation, clock: ManualClock
+) -> None:
+    """A commander may do that, and then everything but name and photo is still there."""
+    desk.hub.connect(asyncio.get_running_loop(), desk.drive)
+    desk.drive.submit("chief", RegisterUnit("FF-01", "one"))
+    async with desk.client(Role.COMMANDER) as commander:
+        person_id = (await commander.post("/people", json={"name": ANA})).json()["person_id"]
+        worn = {"unit_id": "FF-01", "person_id": person_id}
+        assert (await commander.post("/assignments", json=worn)).status_code < 300
+        clock.advance(60.0)
+        assert (await commander.delete("/assignments/FF-01")).status_code < 300
+        assert (await commander.delete(f"/people/{person_id}")).status_code == 204
+        (before,) = (await commander.get("/assignments")).json()
+        assert before["person_name"] == ANA
+    async with desk.client(Role.ADMINISTRATOR) as administrator:
+        path = f"/people/{person_id}/forget"
+        assert (await administrator.post(path, json={"name": BO})).status_code == 422
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 202
+        while (await administrator.get("/forgettings")).json()[-1]["state"] != "done":
+            await asyncio.sleep(0.02)
+        (after,) = (await administrator.get("/assignments")).json()
+        assert after["person_name"] == FORGOTTEN
+        assert ANA not in (await administrator.get("/audit")).text
+        assert (await administrator.post(path, json={"name": ANA})).status_code == 404

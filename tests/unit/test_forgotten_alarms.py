@@ -1,4 +1,4 @@
-"""What the tables said of somebody who is forgotten: alarms, and what was done apart."""
+"""What the tables said of somebody who is forgotten: alarms, the audit, what was done apart."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from msgspec.structs import replace
 
 from base_station.db.forgetting import forget_in
 from base_station.db.models import Alarm, AlarmLife, AuditEntry
 from base_station.db.store import Store
 from base_station.forgetting.erasure import Erasure, Wearing
 from base_station.live_state import FORGOTTEN
-from shared.messages.station import DoneApart, ResolveAlarm
+from shared.messages.station import Action, Assign, DoneApart, ResolveAlarm
 
 FALL = {"alarm_id": "fall:FF-01:1", "state": "raised", "level": "fall", "by": ""}
 
@@ -112,3 +113,33 @@ def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
         "evacuation": said["evacuation"].replace("Ana", FORGOTTEN),
         "broken": FORGOTTEN,
     }
+
+
+OF_JO = Assign("FF-01", "p", 'Jo "Mac" Neil', "E 1", "")
+OF_MAX = Assign("Max", "p", "Max", "E 1", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "done", "left"),
+    [
+        ('Jo "Mac" Neil', OF_JO, replace(OF_JO, person_name=FORGOTTEN)),
+        ("Neil\\Jo", ResolveAlarm("a", "met neil\\jo"), ResolveAlarm("a", f"met {FORGOTTEN}")),
+        ("Note", ResolveAlarm("a", "Note is well"), ResolveAlarm("a", f"{FORGOTTEN} is well")),
+        ("Max", OF_MAX, replace(OF_MAX, person_name=FORGOTTEN)),
+    ],
+)
+def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_else(
+    tmp_path: Path, name: str, done: Action, left: Action
+) -> None:
+    """An entry is JSON, which marks quotation marks within a text, and has names of fields."""
+    detail = msgspec.json.encode(done).decode()
+    with Store(tmp_path / "station.sqlite") as store:
+        with store.write() as session:
+            kind = type(done).__name__
+            session.add(AuditEntry(entry_id="a", t_ns=30, by="eve", action=kind, detail=detail))
+        for _ in range(2):
+            with store.write() as session:
+                forget_in(session, Erasure((), (name,), person_id="p"))
+        with store.read() as session:
+            said = session.query(AuditEntry).one().detail
+    assert msgspec.json.decode(said, type=type(left)) == left

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from fastapi import APIRouter
 from pydantic import BaseModel
 
@@ -43,16 +45,17 @@ def forget_person(
     person_id: Id, confirmation: Confirmation, station: Station, who: Administrator
 ) -> Progress:
     """Name, photo and everywhere the person was; goes on until it is done, whoever is started
-    again meanwhile.
+    again meanwhile.  Who was removed from the roster is known by every name of before.
     """
     desk = _desk(station)
     person = station.roster.person(person_id)
-    if person is None:
+    names = station.roster.names_of(person_id) if person is None else {person.name}
+    if not names:
         raise Problem(404, "There is no such person.")
-    _require_name(confirmation, person.name)
+    _require_name(confirmation, names)
     worn = station.roster.worn_by(person_id)
     if worn:
-        raise Problem(409, f"{person.name} wears {', '.join(worn)}; unassign that first.")
+        raise Problem(409, f"{confirmation.name} wears {', '.join(worn)}; unassign that first.")
     return _progress(desk.add(who.username, "person", person_id))
 
 
@@ -63,7 +66,7 @@ def forget_incident(
     """Who was there and where; its name, its times and that there were alarms stay."""
     desk = _desk(station)
     incident = incident_or_404(station, incident_id)
-    _require_name(confirmation, incident.name)
+    _require_name(confirmation, {incident.name})
     if incident.closed_ns is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
     return _progress(desk.add(who.username, "incident", incident_id))
@@ -89,8 +92,8 @@ def _is_under_way(command: CommandView) -> bool:
     return any(one.state in {"queued", "sent"} for one in command.units)
 
 
-def _require_name(confirmation: Confirmation, name: str) -> None:
-    if confirmation.name != name:
+def _require_name(confirmation: Confirmation, names: Collection[str]) -> None:
+    if confirmation.name not in names:
         raise Problem(422, "The name is another: give it exactly as it is shown.")
 
 
