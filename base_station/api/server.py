@@ -89,6 +89,7 @@ class _Connection(H11Protocol):
     """Nobody holds one without asking anything."""
 
     _deadline: asyncio.TimerHandle | None = None
+    _is_websocket = False  # by now: another protocol minds it
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -98,11 +99,18 @@ class _Connection(H11Protocol):
         super().data_received(data)
         self._mind_deadline()
 
+    def handle_websocket_upgrade(self, event: Any) -> None:
+        self._is_websocket = True  # this one does not hear when it ends
+        self._end_deadline()
+        super().handle_websocket_upgrade(event)
+
     def connection_lost(self, exc: Exception | None) -> None:
         self._end_deadline()
         super().connection_lost(exc)
 
     def _mind_deadline(self) -> None:
+        if self._is_websocket:
+            return
         answering = getattr(self.cycle, "response_complete", True) is False
         if answering:
             self._end_deadline()
@@ -120,7 +128,7 @@ class _Connection(H11Protocol):
         self._deadline = None
         if self.flow.read_paused:  # the station lets the body wait
             self._mind_deadline()
-        elif self.transport.get_protocol() is self:  # else it is a WebSocket by now
+        else:
             self.transport.close()
 
 

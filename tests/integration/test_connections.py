@@ -23,6 +23,10 @@ from shared.enrolment import Holder
 from tests.waiting import PATIENCE_S
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
+UPGRADE = (
+    b" HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+)
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 
@@ -34,6 +38,11 @@ async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> No
             return
         asks = f"{scope['client'][0]} {scope['scheme']} " if scope["path"] == "/who" else ""
         await PlainTextResponse(f"{asks}here")(scope, receive, send)
+    elif scope["type"] == "websocket":
+        taken = scope["path"] != "/refused"
+        await send({"type": "websocket.accept" if taken else "websocket.close"})
+        while taken and (await receive())["type"] != "websocket.disconnect":
+            pass
 
 
 @pytest.fixture
@@ -120,6 +129,23 @@ async def test_who_does_not_go_on_with_a_body_is_let_go(port: int) -> None:
         assert await half[0].read() == b""
     for stream in (whole, half):
         stream[1].close()
+
+
+async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -> None:
+    """Nor is one that goes on: what it says is not waited for."""
+    troubles: list[object] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, told: troubles.append(told))
+    refused, open_one = [await connect(secure_port, secured=trusting()) for _ in range(2)]
+    for path, stream in ((b"/refused", refused), (b"/", open_one)):
+        stream[1].write(b"GET " + path + UPGRADE)
+    assert (await refused[0].read()).startswith(b"HTTP/1.1 403")
+    refused[1].close()
+    assert (await open_one[0].readuntil(b"\r\n\r\n")).startswith(b"HTTP/1.1 101")
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(2.0 * server._ASK_WITHIN_S):
+            await open_one[0].read()
+    open_one[1].close()
+    assert troubles == []
 
 
 async def test_one_place_has_only_so_many(port: int) -> None:
