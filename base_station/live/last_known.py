@@ -156,6 +156,7 @@ class LastKnown:
                 (one.level for one in alarms if (one.unit_id, one.rule) == (unit.unit_id, "heat")),
                 "",
             ),
+            heat_used=0.0,
             position=_position(trail[-1]) if trail else None,
             inside_since_ms=None,
             duty=None,

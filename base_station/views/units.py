@@ -72,6 +72,7 @@ def _unit_view(
         to_ms_or_none(unit.status_ns) if unit.status else None,
         unit.temperature.ambient_degc if unit.temperature else None,
         levels.get("heat", ""),
+        round(unit.heat_dose, 2),
         _position_view(state, unit.fused, unit.reach) if unit.fused else None,
         to_ms_or_none(unit.inside_since_ns),
         _duty_view(unit.duty) if unit.duty else None,

@@ -148,6 +148,7 @@ class UnitView(Answer, frozen=True):
     status_ms: int | None  # age of the status is shown too
     ambient_degc: float | None
     heat_level: str  # "" | caution | warning | critical
+    heat_used: float  # part of the equipment's heat budget, in this incident
     position: PositionView | None
     inside_since_ms: int | None
     duty: DutyView | None  # nobody wears it, or no incident is open: None

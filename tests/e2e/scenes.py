@@ -77,6 +77,7 @@ def unit(index: int) -> wire.UnitView:
         status_ms=NOW_MS - 500,
         ambient_degc=18.0 + index,
         heat_level="",
+        heat_used=0.0,
         position=position(index),
         inside_since_ms=NOW_MS - 14 * MINUTE_MS,
         duty=wire.DutyView(

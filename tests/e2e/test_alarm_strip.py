@@ -24,12 +24,12 @@ def test_an_alarm_says_the_figure_of_now_beside_the_time_since(stage: Stage) -> 
     walking = wire.StatusView("walking", 0.0, 0.07, False, 80, 51.0)
     station.change(
         units=(
-            msgspec.structs.replace(hot, ambient_degc=231.4),
+            msgspec.structs.replace(hot, ambient_degc=231.4, heat_used=0.65),
             msgspec.structs.replace(lying, status=walking),
         )
     )
     expect(row["heat"]).to_contain_text("186 °C around")
-    expect(row["heat"].locator(".since")).to_contain_text("ago now 231 °C")
+    expect(row["heat"].locator(".since")).to_contain_text("ago now 231 °C, 65 % used")
     expect(row["no-motion"].locator(".since")).to_contain_text("ago has moved since")
     for name, (width, height) in SCREENS.items():
         page.set_viewport_size({"width": width, "height": height})

@@ -121,6 +121,7 @@ export interface UnitView {
   status_ms: number | null;
   ambient_degc: number | null;
   heat_level: string; // "" | caution | warning | critical
+  heat_used: number; // part of the equipment's heat budget, in this incident
   position: PositionView | null;
   inside_since_ms: number | null;
   duty: DutyView | null;

@@ -71,6 +71,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     status_ms: 1_000,
     ambient_degc: 20,
     heat_level: "",
+    heat_used: 0,
     position: null,
     inside_since_ms: null,
     duty: null,

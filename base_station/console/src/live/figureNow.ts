@@ -4,7 +4,7 @@ import type { AlarmView, UnitView } from "../wire";
 import * as words from "../words";
 import { isOfAnother } from "./alarms";
 
-/** "now 80 °C", or "last 80 °C" where nothing newer is heard; empty where there is no figure.
+/** "now 4 %", or "last 4 %" where nothing newer is heard; empty where there is no figure.
  * `silent`: the station itself is not heard. */
 export function figureNow(
   alarm: AlarmView,
@@ -19,7 +19,12 @@ export function figureNow(
     `${unit.link === "live" && !silent ? "now" : "last"} ${figure}`;
   switch (alarm.rule) {
     case "heat":
-      return unit.ambient_degc === null ? "" : told(words.temperature(unit.ambient_degc));
+    case "heat-dose": {
+      if (unit.ambient_degc === null) return "";
+      const used = `${words.percent(unit.heat_used)} used`;
+      const hot = alarm.rule === "heat" ? `${words.temperature(unit.ambient_degc)}, ` : "";
+      return told(`${hot}${used}`);
+    }
     case "battery": {
       const part = unit.status?.battery ?? null;
       return part === null ? "" : told(words.percent(part));
