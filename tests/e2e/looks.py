@@ -19,7 +19,8 @@ _FIND = """
   const dialog = document.querySelector("dialog[open]");
   const root = dialog ?? document.body;
 
-  // What of an element its scrolling ancestors leave to be seen.
+  // What of an element its scrolling ancestors leave to be seen; what is drawn at its edge, within a
+  // pixel, may be what stands beside it.
   const seen = (element) => {
     let { left, top, right, bottom } = element.getBoundingClientRect();
     for (let at = element.parentElement; at; at = at.parentElement) {
@@ -48,7 +49,7 @@ _FIND = """
       found.push(`too small to hit: ${said(one)}`);
     const left = seen(one);
     const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
-    if (x <= left.left || x >= left.right || y <= left.top || y >= left.bottom) {
+    if (x <= left.left + 1 || x >= left.right - 1 || y <= left.top + 1 || y >= left.bottom - 1) {
       const scrolls = (at) => at && (at.scrollWidth > at.clientWidth || scrolls(at.parentElement));
       if ((x < 0 || x > innerWidth) && !scrolls(one.parentElement))
         found.push(`beside the screen: ${said(one)}`);

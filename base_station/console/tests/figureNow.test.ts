@@ -24,10 +24,10 @@ function said(rule: string, change: Partial<UnitView>, of: Partial<AlarmView> = 
 
 describe("figureNow", () => {
   it.each<[string, Partial<UnitView>, string]>([
-    ["heat", { ambient_degc: 80.4 }, "now 80 °C, 0 % used"],
-    ["heat", { ambient_degc: 80.4, heat_used: 0.65, link: "lost" }, "last 80 °C, 65 % used"],
-    ["heat-dose", { ambient_degc: 25, heat_used: 1.12 }, "now 112 % used"],
-    ["heat-dose", { ambient_degc: 25, heat_used: 1.12, link: "stale" }, "last 112 % used"],
+    ["heat", { ambient_degc: 80.4 }, "now 80 °C, 0 %"],
+    ["heat", { ambient_degc: 80.4, heat_used: 0.65, link: "lost" }, "last 80 °C, 65 %"],
+    ["heat-dose", { ambient_degc: 25, heat_used: 1.12 }, "now 112 %"],
+    ["heat-dose", { ambient_degc: 25, heat_used: 1.12, link: "stale" }, "last 112 %"],
     ["heat-dose", { ambient_degc: null }, ""],
     ["heat", { ambient_degc: null }, ""],
     ["battery", { status: { ...STATUS, battery: 0.04 } }, "now 4 %"],
@@ -52,7 +52,7 @@ describe("figureNow", () => {
   });
 
   it("is the last where the station is not heard, and counts on nothing", () => {
-    expect(said("heat", { ambient_degc: 80 }, {}, true)).toBe("last 80 °C, 0 % used");
+    expect(said("heat", { ambient_degc: 80 }, {}, true)).toBe("last 80 °C, 0 %");
     expect(said("link-lost", { link: "lost" }, {}, true)).toBe("");
     expect(said("missed-check-in", { duty: DUTY }, {}, true)).toBe("");
   });
@@ -65,6 +65,6 @@ describe("figureNow", () => {
   it("is none where somebody else wears the unit now: it is not theirs", () => {
     const still = { status: { ...STATUS, motionless_s: 95 } };
     expect(said("no-motion", still, { text: "Bo has not moved for 30 s" })).toBe("");
-    expect(said("heat", { ambient_degc: 80 }, { text: "123 °C around Bo" })).toBe("now 80 °C, 0 % used");
+    expect(said("heat", { ambient_degc: 80 }, { text: "123 °C around Bo" })).toBe("now 80 °C, 0 %");
   });
 });

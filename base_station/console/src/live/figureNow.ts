@@ -21,9 +21,9 @@ export function figureNow(
     case "heat":
     case "heat-dose": {
       if (unit.ambient_degc === null) return "";
-      const used = `${words.percent(unit.heat_used)} used`;
-      const hot = alarm.rule === "heat" ? `${words.temperature(unit.ambient_degc)}, ` : "";
-      return told(`${hot}${used}`);
+      const used = words.percent(unit.heat_used); // as the words say it: of the heat budget
+      if (alarm.rule === "heat-dose") return told(used);
+      return told(`${words.temperature(unit.ambient_degc)}, ${used}`);
     }
     case "battery": {
       const part = unit.status?.battery ?? null;
