@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import msgspec
-from sqlalchemy import ColumnElement, func, update
+from sqlalchemy import ColumnElement, func, select, update
 from sqlalchemy.dialects.sqlite import Insert, insert
 from sqlalchemy.orm import Session
 
@@ -26,6 +26,7 @@ from base_station.db.models import (
 from base_station.live.sinks import Projection
 from shared.clock import NS_PER_S
 from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
+from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
@@ -126,12 +127,28 @@ _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
 
 def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
     said = msgspec.structs.asdict(done.action)
-    if isinstance(done.action, SetPlan):
-        said = {"bytes": len(done.action.geojson)}
+    match done.action:
+        case SetPlan(geojson=geojson):
+            said = {"bytes": len(geojson)}
+        case RemovePin(pin_id=pin_id):
+            said |= _whose_pin(session, pin_id)
     _add(
         session, AuditEntry, entry_id=done.action_id, t_ns=t_ns, by=done.by,
         action=type(done.action).__name__, detail=msgspec.json.encode(said).decode(),
     )  # fmt: skip
+
+
+def _whose_pin(session: Session, pin_id: str) -> dict[str, object]:
+    """The units that a pin was about, as the audit told when it was set; they may be forgotten."""
+    group, _, of_group = pin_id.partition(":")
+    if of_group:
+        return {"unit_id": of_group}
+    was_set = AuditEntry.action.in_([one.__name__ for one in (SetPin, StartTogether, SetMeeting)])
+    of_this = AuditEntry.detail.contains(f'"pin_id":"{group}"', autoescape=True)
+    newest = select(AuditEntry.detail).where(was_set, of_this).order_by(AuditEntry.number.desc())
+    detail = session.scalars(newest.limit(1)).first()
+    told = {} if detail is None else msgspec.json.decode(detail)
+    return {name: told[name] for name in ("unit_id", "unit_ids", "other_unit_id") if name in told}
 
 
 def _alarm(session: Session, change: AlarmChange) -> None:

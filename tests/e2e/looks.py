@@ -19,8 +19,8 @@ _FIND = """
   const dialog = document.querySelector("dialog[open]");
   const root = dialog ?? document.body;
 
-  // What of an element its scrolling ancestors leave to be seen; what is drawn at its edge, within a
-  // pixel, may be what stands beside it.
+  // What of an element its scrolling ancestors leave to be seen; within a pixel of its edge, what
+  // is drawn may be what stands beside it.
   const seen = (element) => {
     let { left, top, right, bottom } = element.getBoundingClientRect();
     for (let at = element.parentElement; at; at = at.parentElement) {

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import httpx
 import msgspec
 import pytest
 
 from base_station.accounts.principals import Role
+from base_station.db.records import EVER
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.station import DeskStation
@@ -64,6 +67,32 @@ async def test_a_pin_is_set_moved_and_removed(
         position = station.drive.picture().units[0].position
         assert position is not None
         assert position.east_m == pytest.approx(0.0, abs=0.1)
+
+
+async def test_the_audit_says_whose_pin_was_removed(
+    station: DeskStation, clock: ManualClock, make_position: object
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await walk(station, clock, commander, make_position)
+        met = {"unit_id": "FF-01", "other_unit_id": "FF-02"}
+        pin = (await commander.post("/pins/meeting", json=met)).json()
+        await commander.delete(f"/pins/{pin['pin_id']}")
+        start = {"unit_ids": ["FF-01", "FF-02"], "north_m": 0.0, "east_m": 0.0}
+        both = (await commander.post("/pins/start", json=start)).json()
+        group, _, _ = both[0]["pin_id"].partition(":")
+        await commander.delete(f"/pins/{group}:FF-02")
+        await commander.delete(f"/pins/{group}")
+        beacon = {"label": "door", "north_m": 1.0, "east_m": 2.0}
+        await commander.put("/beacons/door-3", json=beacon)
+        await commander.delete("/beacons/door-3")
+    entries = station.services.records.audit_entries(EVER)
+    removed = [json.loads(one.detail) for one in entries if one.action.startswith("Remove")]
+    assert removed == [
+        {"beacon_id": "door-3"},
+        {"pin_id": group, "unit_ids": ["FF-01", "FF-02"]},
+        {"pin_id": f"{group}:FF-02", "unit_id": "FF-02"},
+        {"pin_id": pin["pin_id"], **met},
+    ]
 
 
 async def test_what_a_move_leaves_out_stays_as_it_was_said(

@@ -51,6 +51,7 @@ function said(name: string, value: unknown): string {
   if (typeof value === "number") return quantity(name, value);
   if (name === "thresholds") return thresholds(value as Record<string, number>);
   const words = Array.isArray(value) ? value.join(" ") : String(value);
+  if (name === "other_unit_id") return `met ${words}`;
   return name === "unit_id" || name === "unit_ids" ? words : `${spaced(name)}: ${words}`;
 }
 

@@ -50,6 +50,7 @@ describe("the audit log", () => {
     [{ thresholds: { "heat.caution_degc": 0 } }, "heat caution 0 °C"],
     [{ unit_id: "FF-01", resting: false }, "FF-01, back to work"],
     [{ unit_ids: ["FF-01", "FF-02"], pin_id: "17" }, "FF-01 FF-02"],
+    [{ pin_id: "17", unit_id: "FF-01", other_unit_id: "FF-02" }, "FF-01, met FF-02"],
     [
       { unit_id: "FF-05", person_id: "26ab", person_name: "Elena Rossi", crew: "Rescue 3", role: "" },
       "FF-05, person name: Elena Rossi, crew: Rescue 3",
